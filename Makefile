@@ -1,0 +1,33 @@
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: demo test check bench docs clean
+
+demo: .venv/ready ## rank the paper's seven cage materials
+	$(BIN)/separatrix rank cryogenic-turbopump --out demo
+
+test: .venv/ready ## every test
+	$(BIN)/pytest -n 2
+
+check: .venv/ready ## what CI and reviewers run: lint, types, layers, tests
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n 2
+
+bench: .venv/ready ## speeds; numbers go in benchmarks/README.md
+	$(BIN)/pytest benchmarks --benchmark-only -p no:xdist
+
+docs: .venv/ready
+	$(BIN)/pip install --quiet --constraint constraints.txt --editable '.[docs]'
+	$(BIN)/sphinx-build -W -n docs docs/_build
+
+clean:
+	rm -rf .venv demo docs/_build
+
+.venv/ready: pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "separatrix needs Python 3.11 or later; name one: make PYTHON=python3.11")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@
