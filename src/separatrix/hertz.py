@@ -1,0 +1,189 @@
+"""Hertz contact of a ball on a race: ellipse, pressure and approach from the exact elliptic integrals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from numba import njit
+
+from separatrix.errors import InputError
+from separatrix.study import BallBearing, Material, Race
+from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactEllipse:
+    """One Hertz contact: `semi_major` lies across the groove, `semi_minor` along rolling (paper, 4.1)."""
+
+    load: Newton
+    semi_major: Metre
+    semi_minor: Metre
+    max_pressure: Pascal
+    approach: Metre
+    curvature_rolling: PerMetre
+    curvature_transverse: PerMetre
+    contact_modulus: Pascal
+
+    @property
+    def stiffness(self) -> NewtonPerMetre:
+        """Slope of load against approach, 3 Q / (2 approach); 0 without load."""
+        return 1.5 * self.load / self.approach if self.load > 0.0 else 0.0
+
+
+def contact_modulus(first: Material, second: Material) -> Pascal:
+    """Pair modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 [Pa]."""
+    return 1.0 / sum((1.0 - m.poisson_ratio**2) / m.elastic_modulus for m in (first, second))
+
+
+def race_curvatures(bearing: BallBearing, race: Race, contact_angle: Radian) -> tuple[PerMetre, PerMetre]:
+    """Gap curvatures 1/R_x (along rolling) and 1/R_y (across the groove) at the operating angle.
+
+    Parameters
+    ----------
+    bearing : BallBearing
+        Its diameters and conformities.
+    race : Race
+        Which of the two contacts.
+    contact_angle : float
+        The angle under load at this race [rad]; not the free angle.
+
+    Returns
+    -------
+    tuple of float
+        Rolling and transverse curvature [1/m]; the gap is h = x^2/(2 R_x) + y^2/(2 R_y).
+
+    Notes
+    -----
+    1/R_x = (2/D)/(1 -+ gamma) with gamma = D cos(alpha)/d_m, minus for the inner race;
+    1/R_y = 2/D - 1/(f D) (docs/theory/hertz.md).
+    """
+    D, gamma = bearing.ball_diameter, bearing.ball_diameter * math.cos(contact_angle) / bearing.pitch_diameter
+    side, f = (-1.0, bearing.inner_conformity) if race is Race.INNER else (1.0, bearing.outer_conformity)
+    return 2.0 / (D * (1.0 + side * gamma)), (2.0 - 1.0 / f) / D
+
+
+def contact_ellipse(
+    load: Newton, curvature_rolling: PerMetre, curvature_transverse: PerMetre, contact_modulus: Pascal
+) -> ContactEllipse:
+    r"""Hertz contact of a load and the gap curvatures of two bodies.
+
+    Parameters
+    ----------
+    load : float
+        Normal load, >= 0 [N]; 0 gives an ellipse of no size.
+    curvature_rolling, curvature_transverse : float
+        Gap curvatures 1/R_x and 1/R_y, the first not below the second, both > 0 [1/m].
+    contact_modulus : float
+        E* of the pair [Pa].
+
+    Returns
+    -------
+    ContactEllipse
+        Semi-axes [m], largest pressure [Pa], approach of the bodies [m].
+
+    Raises
+    ------
+    InputError
+        A negative or non-finite number, or curvatures in the wrong order.
+
+    Notes
+    -----
+    With k = b/a and q = k^2, R_y/R_x = (E/q - K)/(K - E); a^3 = 3 Q R_y (K - E)/(pi E* (1 - q));
+    p0 = 3 Q/(2 pi a b); approach = p0 b K/E* (paper, 4.1, after Hertz; docs/theory/hertz.md).
+    Half-spaces: the semi-axes should be small beside the radii of the bodies.
+
+    Examples
+    --------
+    >>> ellipse = contact_ellipse(100.0, 200.0, 200.0, 110e9)
+    >>> ellipse.semi_major == ellipse.semi_minor
+    True
+    """
+    _check(load, curvature_rolling, curvature_transverse, contact_modulus)
+    k, K, D = ellipse_shape(curvature_rolling / curvature_transverse, 0.0)
+    a = math.cbrt(3.0 * load * D / (math.pi * contact_modulus * curvature_transverse))
+    b = k * a
+    p0 = 1.5 * load / (math.pi * a * b) if load > 0.0 else 0.0
+    return ContactEllipse(
+        load=load,
+        semi_major=a,
+        semi_minor=b,
+        max_pressure=p0,
+        approach=p0 * b * K / contact_modulus,
+        curvature_rolling=curvature_rolling,
+        curvature_transverse=curvature_transverse,
+        contact_modulus=contact_modulus,
+    )
+
+
+def axis_ratio(curvature_ratio: Ratio) -> Ratio:
+    """Ratio b/a of the ellipse for R_y/R_x = `curvature_ratio` >= 1 [-]."""
+    return float(ellipse_shape(curvature_ratio, 0.0)[0])
+
+
+def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> None:
+    where = "contact_ellipse:"
+    if not 0.0 <= load < math.inf:
+        raise InputError(f"{where} load", "must be finite and >= 0", "N", f"{load:g}")
+    if not 0.0 < modulus < math.inf:
+        raise InputError(f"{where} contact_modulus", "must be finite and > 0", "Pa", f"{modulus:g}")
+    if not 0.0 < transverse < math.inf:
+        cure = "The groove radius must exceed the ball radius."
+        raise InputError(
+            f"{where} curvature_transverse", "must be finite and > 0", "1/m", f"{transverse:g}", cure
+        )
+    if not transverse <= rolling < math.inf:
+        cure = "Swap the two: the ellipse is long where the gap curves less."
+        raise InputError(
+            f"{where} curvature_rolling", f"must lie from {transverse:g} up", "1/m", f"{rolling:g}", cure
+        )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def elliptic_integrals(k: float) -> tuple[float, float, float]:
+    """K(m), (K - E)/m and (E - k^2 K)/m for m = 1 - k^2 from k in (0, 1]: AGM, without cancellation."""
+    # K = pi/(2 agm); K - E = K S, S = sum 2^(n-1) c_n^2, c_0^2 = m; terms are divided by m = (1-k)(1+k).
+    a, g = 0.5 * (1.0 + k), math.sqrt(k)
+    c2 = 0.25 * (1.0 - k) / (1.0 + k)  # c_1^2 / m
+    tail, weight, c = c2, 2.0, 0.5 * (1.0 - k)
+    while c > 1e-9 * a:  # the next c is c^2/(4a): below rounding
+        c = 0.25 * c * c / (0.5 * (a + g))
+        a, g = 0.5 * (a + g), math.sqrt(a * g)
+        c2 = c * c / ((1.0 - k) * (1.0 + k))
+        tail += weight * c2
+        weight *= 2.0
+    K = 0.5 * math.pi / (0.5 * (a + g))
+    return K, K * (0.5 + tail), K * (0.5 - tail)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def ellipse_shape(ratio: float, guess: float) -> tuple[float, float, float]:
+    """Ratio k = b/a, K and (K - E)/(1 - k^2) for R_y/R_x = `ratio`; `guess` for k, or 0 if there is none."""
+    log_ratio = math.log(ratio)
+    t = math.log(guess) if guess > 0.0 else -log_ratio / 1.5
+    k, K, D, N = 1.0, 0.0, 0.0, 0.0
+    for _ in range(60):
+        k = min(math.exp(t), 1.0)
+        K, D, N = elliptic_integrals(k)
+        q = k * k
+        m = (1.0 - k) * (1.0 + k)
+        slope = (K - m * D) / (m * D) - q * K / (m * N) - 2.0 if m > 1e-3 else -1.5
+        step = (math.log(N / (q * D)) - log_ratio) / slope
+        if abs(step) < 1e-15:
+            break
+        t = min(t - step, 0.0)
+        if abs(step) < 1e-8 and m > 1e-3:  # Newton has converged: the error left is step^2
+            k = math.exp(t)
+            K, D, N = elliptic_integrals(k)
+            break
+    return k, K, D
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def approach_coefficient(
+    curvature_rolling: float, curvature_transverse: float, modulus: float, guess: float
+) -> tuple[float, float, float]:
+    """Stiffness kappa of Q = kappa approach^1.5 [N/m^1.5], semi-major axis per load^(1/3), and k = b/a."""
+    k, K, D = ellipse_shape(curvature_rolling / curvature_transverse, guess)
+    c = (3.0 * D / (math.pi * modulus * curvature_transverse)) ** (1.0 / 3.0)  # a = c Q^(1/3)
+    return (math.pi * modulus * c / (1.5 * K)) ** 1.5, c, k
