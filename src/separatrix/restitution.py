@@ -1,0 +1,176 @@
+r"""Restitution factor of a ball/cage impact, from the damping that the races give the ball (Eqs 17-18).
+
+The cage, of mass :math:`M_C`, meets a massless ball through the spring :math:`k_{BC}`; the races hold
+the ball through the damper :math:`C_\mu`, in series with the spring. docs/theory/restitution.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, hypot, log, pi, sqrt
+
+from separatrix.errors import InputError
+from separatrix.hertz import contact_modulus
+from separatrix.study import Material
+from separatrix.units import (
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Ratio,
+)
+
+SOLID_LUBRICATION_LIMIT: Ratio = 0.6
+"""The paper, section 5: "a fairly low restitution factor (eta < 0.6). This threshold value is too low to
+be reached using solid lubrication"."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Restitution:
+    """Restitution factor of the cage's blow on a ball, and what it is made of.
+
+    The plain names follow the paper's Eq. 18 (damping of both races added); the ones ending in
+    `_free_spin` let the ball change its spin within the blow.
+    """
+
+    ball_cage_stiffness: NewtonPerMetre
+    cage_mass: Kilogram
+    inner_damping: NewtonSecondPerMetre
+    outer_damping: NewtonSecondPerMetre
+    race_damping: NewtonSecondPerMetre
+    damping_ratio: Ratio
+    restitution_factor: Ratio
+    race_damping_free_spin: NewtonSecondPerMetre
+    damping_ratio_free_spin: Ratio
+    restitution_factor_free_spin: Ratio
+
+
+def contact_damping(slope: Ratio, load: Newton, rolling_speed: MetrePerSecond) -> NewtonSecondPerMetre:
+    """One race's share of C_mu, alpha N / V (Eq. 18)."""
+    return slope * load / rolling_speed
+
+
+def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
+    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the blow."""
+    return inner + outer
+
+
+def race_damping_free_spin(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
+    """C_mu of a ball whose spin follows the blow, 4 C_I C_E / (C_I + C_E): both contacts carry half."""
+    return 4.0 * inner * outer / (inner + outer)
+
+
+def damping_ratio(stiffness: NewtonPerMetre, mass: Kilogram, damping: NewtonSecondPerMetre) -> Ratio:
+    r"""Damping ratio of the blow, :math:`\zeta = \sqrt{k_{BC} M_C} / (2 C_\mu)`."""
+    if not damping > 0.0:
+        cure = "A race friction above 0 and a rolling bearing give one."
+        raise InputError("race_damping", "must be > 0", "N s/m", f"{damping:.6g}", cure)
+    return sqrt(stiffness * mass) / (2.0 * damping)
+
+
+def restitution_factor(damping_ratio: Ratio) -> Ratio:
+    r"""Restitution factor :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})`; 0 from :math:`\zeta = 1`.
+
+    This stands for the paper's Eq. 17, which is lost in the text at hand (docs/deviations.md).
+    """
+    zeta = damping_ratio
+    return exp(-pi * zeta / sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0
+
+
+def damping_ratio_for(restitution_factor: Ratio) -> Ratio:
+    """Damping ratio that returns this share of the speed; 1 (the least that returns none) for 0.
+
+    Raises
+    ------
+    InputError
+        Outside 0 <= eta < 1: a blow that returns everything needs infinite damping.
+    """
+    eta = restitution_factor
+    if not 0.0 <= eta < 1.0:
+        cure = "A blow that returns all its speed would need races that grip without any creep."
+        raise InputError("restitution_factor", "must lie in 0 <= eta < 1", "-", f"{eta:.6g}", cure)
+    return -log(eta) / hypot(pi, log(eta)) if eta > 0.0 else 1.0
+
+
+def damping_for(restitution_factor: Ratio, stiffness: NewtonPerMetre, mass: Kilogram) -> NewtonSecondPerMetre:
+    """C_mu that gives this restitution factor; for 0, the largest one that does."""
+    return sqrt(stiffness * mass) / (2.0 * damping_ratio_for(restitution_factor))
+
+
+def free_ring_restitution_factor(nominal: Ratio, inertia_ratio: Ratio = 1.0) -> Ratio:
+    r"""Restitution factor felt by a ring that is free to turn, from the nominal one of the whole mass.
+
+    A blow at the pitch radius R moves the ring and turns it: it feels the mass
+    :math:`M / (1 + M R^2/I)`, half of M for a thin ring.
+
+    Parameters
+    ----------
+    nominal : float
+        Restitution factor of the whole cage mass; 0 stays 0, for its damping ratio is not known [-].
+    inertia_ratio : float
+        :math:`I / (M R^2)`, 1 for a thin ring at the pitch radius [-].
+    """
+    share = inertia_ratio / (1.0 + inertia_ratio)
+    return restitution_factor(damping_ratio_for(nominal) * sqrt(share)) if nominal > 0.0 else 0.0
+
+
+def ball_pocket_stiffness(
+    ball_diameter: Metre,
+    ball_material: Material,
+    cage_material: Material,
+    *,
+    cage_mass: Kilogram,
+    impact_speed: MetrePerSecond,
+) -> NewtonPerMetre:
+    r"""Linear stiffness of a ball on a flat pocket wall that stores the same energy at the same depth.
+
+    Hertz: :math:`F = K \delta^{3/2}`, :math:`K = \frac43 E^* \sqrt{D/2}`. The cage's kinetic energy
+    :math:`\frac12 M_C v^2 = \frac25 K \delta_m^{5/2}` sets the depth :math:`\delta_m`, and
+    :math:`k = \frac45 K \delta_m^{1/2}` stores it there too.
+
+    Parameters
+    ----------
+    ball_diameter : float
+        D [m].
+    ball_material, cage_material : Material
+        Ball, and pocket wall.
+    cage_mass : float
+        The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
+    impact_speed : float
+        Speed of the blow, the middle kick in a study [m/s]. The stiffness goes as its power 2/5.
+
+    Notes
+    -----
+    A flat wall, because the conformity of a bored pocket to its ball wears and is rarely known; a
+    cylindrical bore with 5 % of play is stiffer by about 1.5 (docs/theory/restitution.md).
+    """
+    K = 4.0 / 3.0 * contact_modulus(ball_material, cage_material) * sqrt(ball_diameter / 2.0)
+    delta = (1.25 * cage_mass * impact_speed**2 / K) ** 0.4
+    return 0.8 * K * sqrt(delta)
+
+
+def restitution(
+    inner: NewtonSecondPerMetre,
+    outer: NewtonSecondPerMetre,
+    *,
+    ball_cage_stiffness: NewtonPerMetre,
+    cage_mass: Kilogram,
+) -> Restitution:
+    """Restitution factors of a blow, from the damping of each race (`contact_damping`)."""
+    both, free = race_damping(inner, outer), race_damping_free_spin(inner, outer)
+    zeta = damping_ratio(ball_cage_stiffness, cage_mass, both)
+    zeta_free = damping_ratio(ball_cage_stiffness, cage_mass, free)
+    return Restitution(
+        ball_cage_stiffness=ball_cage_stiffness,
+        cage_mass=cage_mass,
+        inner_damping=inner,
+        outer_damping=outer,
+        race_damping=both,
+        damping_ratio=zeta,
+        restitution_factor=restitution_factor(zeta),
+        race_damping_free_spin=free,
+        damping_ratio_free_spin=zeta_free,
+        restitution_factor_free_spin=restitution_factor(zeta_free),
+    )

@@ -1,0 +1,143 @@
+"""The restitution factor: table of the closed form, its inverse, and the same blows by integration."""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from separatrix.hertz import contact_modulus
+from separatrix.restitution import (
+    ball_pocket_stiffness,
+    damping_for,
+    damping_ratio,
+    free_ring_restitution_factor,
+    race_damping,
+    race_damping_free_spin,
+    restitution_factor,
+)
+from separatrix.study import Material
+
+MASS, STIFFNESS = 0.05, 3e6
+STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285)
+
+
+def polymer(elastic_modulus):
+    """A cage material."""
+    return Material(name="polymer", elastic_modulus=elastic_modulus, poisson_ratio=0.4)
+
+
+def blow(mass, stiffness, damping):
+    """Speed after over speed before, by integrating mass, spring and damper in series until they part."""
+
+    def rates(_, state):
+        force = stiffness * (state[0] - state[2])
+        return [state[1], -force / mass, force / damping]
+
+    def parting(_, state):
+        return state[0] - state[2] + 1e-15
+
+    parting.terminal, parting.direction = True, -1.0
+    end = 40.0 * sqrt(mass / stiffness)
+    run = solve_ivp(
+        rates, (0.0, end), [0.0, 1.0, 0.0], events=parting, rtol=1e-10, atol=1e-14, method="Radau"
+    )
+    return max(0.0, -run.y[1, -1])
+
+
+@pytest.mark.parametrize(
+    ("damping", "eta"),
+    [(10000, 0.9410), (3979, 0.8581), (2000, 0.7367), (1200, 0.5983), (600, 0.3426), (300, 0.0703)],
+)
+def test_closed_form_gives_the_table(damping, eta):
+    """0.05 kg on 3e6 N/m: six values computed independently, four digits each."""
+    assert restitution_factor(damping_ratio(STIFFNESS, MASS, damping)) == pytest.approx(eta, abs=5e-5)
+
+
+def test_nothing_returns_from_the_critical_damping_down():
+    """At zeta = 1, here C = 193.65 N s/m, the spring never parts with speed."""
+    assert damping_for(0.0, STIFFNESS, MASS) == pytest.approx(193.65, abs=5e-3)
+    assert restitution_factor(damping_ratio(STIFFNESS, MASS, 193.64)) == 0.0
+    assert restitution_factor(damping_ratio(STIFFNESS, MASS, 210.0)) > 0.0
+
+
+@pytest.mark.parametrize("damping", [10000.0, 2000.0, 600.0, 300.0])
+def test_closed_form_equals_the_integrated_blow(damping):
+    """Mass, spring and damper in series, stepped in time; tolerance: 1e-6 of the integrator at its event."""
+    eta = restitution_factor(damping_ratio(STIFFNESS, MASS, damping))
+    assert blow(MASS, STIFFNESS, damping) == pytest.approx(eta, abs=1e-6)
+
+
+@pytest.mark.parametrize(("nominal", "free"), [(0.90, 0.928), (0.60, 0.698)])
+def test_a_ring_free_to_turn_feels_half_its_mass(nominal, free):
+    """Three digits computed independently, and the same by integrating the blow on M/2."""
+    assert free_ring_restitution_factor(nominal) == pytest.approx(free, abs=5e-4)
+    damping = damping_for(nominal, STIFFNESS, MASS)
+    assert blow(MASS / 2.0, STIFFNESS, damping) == pytest.approx(
+        free_ring_restitution_factor(nominal), abs=1e-6
+    )
+
+
+def test_a_ring_that_cannot_turn_feels_its_whole_mass():
+    """With a very large moment of inertia the nominal value is left."""
+    assert free_ring_restitution_factor(0.6, 1e12) == pytest.approx(0.6, rel=1e-9)
+
+
+def test_a_blow_on_a_turning_ring_feels_half_its_mass():
+    """Impulse J at radius R: J/M of translation and J R^2/I of turning at the point, with I = M R^2."""
+    radius, impulse = 0.03, 0.7
+    inertia = MASS * radius**2
+    speed = impulse / MASS + radius * (impulse * radius / inertia)
+    assert impulse / speed == pytest.approx(MASS / 2.0, rel=1e-12)  # rounding
+
+
+def test_free_spin_from_the_balance_of_the_ball():
+    """Force and moment on a massless ball at two contacts, solved as a 2x2 system; rounding only."""
+    c_inner, c_outer = 700.0, 2100.0
+    balance = np.array([[c_inner + c_outer, c_inner - c_outer], [c_inner - c_outer, c_inner + c_outer]])
+    speed, _ = np.linalg.solve(balance, [1.0, 0.0])  # unit push; speed of the centre, and radius times spin
+    assert race_damping_free_spin(c_inner, c_outer) == pytest.approx(1.0 / speed, rel=1e-12)
+
+
+def test_the_two_dampings_agree_only_for_equal_contacts():
+    """Equal contacts: both are 2 C. Else free spin damps less; one slack contact alone damps nothing."""
+    assert race_damping_free_spin(500.0, 500.0) == race_damping(500.0, 500.0)
+    assert race_damping_free_spin(500.0, 600.0) < race_damping(500.0, 600.0)
+    assert race_damping_free_spin(500.0, 1e-9) == pytest.approx(4e-9, rel=1e-9)
+
+
+def test_pocket_stiffness_stores_the_energy_of_the_blow_at_the_depth_of_hertz():
+    """Integrate the true blow, M x'' = -K x^1.5, to its deepest point: both springs then hold M v^2/2."""
+    modulus, diameter, speed = 4e9, 11.1125e-3, 0.5
+    k = ball_pocket_stiffness(diameter, STEEL, polymer(modulus), cage_mass=MASS, impact_speed=speed)
+    K = 4.0 / 3.0 * contact_modulus(STEEL, polymer(modulus)) * sqrt(diameter / 2.0)
+
+    def at_rest(_, state):
+        return state[1]
+
+    at_rest.terminal = True
+
+    def rates(_, state):
+        return [state[1], -K / MASS * max(state[0], 0.0) ** 1.5]
+
+    run = solve_ivp(rates, (0.0, 1.0), [0.0, speed], events=at_rest, rtol=1e-10, atol=1e-15, max_step=1e-5)
+    depth = run.y[0, -1]
+    assert 0.5 * k * depth**2 == pytest.approx(0.5 * MASS * speed**2, rel=1e-6)  # the event of the integrator
+
+
+@pytest.mark.parametrize("elastic_modulus", [3e9, 5e9, 10e9])
+def test_polymer_pockets_are_of_the_stated_stiffness(elastic_modulus):
+    """1e6 to 8e6 N/m for polymer cages of 3-10 GPa and kicks of 0.1 to 2 m/s at 25 g."""
+    for speed in (0.1, 0.5, 2.0):
+        k = ball_pocket_stiffness(
+            11.1125e-3, STEEL, polymer(elastic_modulus), cage_mass=0.025, impact_speed=speed
+        )
+        assert 1e6 < k < 1e7
+
+
+def test_blow_lasts_half_a_period():
+    """Weak damping: contact ends at pi / omega_d, here 0.41 ms, long against the ball's spin."""
+    zeta = damping_ratio(STIFFNESS, MASS, 3979.0)
+    assert pi / (sqrt(STIFFNESS / MASS) * sqrt(1 - zeta**2)) == pytest.approx(
+        0.406e-3, rel=2e-3
+    )  # three digits

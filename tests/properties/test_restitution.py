@@ -1,0 +1,44 @@
+"""The restitution factor for inputs nobody thought of."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from separatrix.restitution import (
+    damping_for,
+    damping_ratio,
+    race_damping,
+    race_damping_free_spin,
+    restitution,
+    restitution_factor,
+)
+
+positive = st.floats(1e-3, 1e5)
+
+
+@settings(derandomize=True, max_examples=50, deadline=None)
+@given(st.floats(1e-6, 0.9999), st.floats(1e5, 1e8), st.floats(1e-3, 1.0))
+def test_the_inverse_undoes_the_factor(eta, stiffness, mass):
+    """From eta to C_mu and back; tolerance: rounding, magnified by 1/(1-eta) near 1."""
+    damping = damping_for(eta, stiffness, mass)
+    assert restitution_factor(damping_ratio(stiffness, mass, damping)) == pytest.approx(eta, rel=1e-9)
+
+
+@settings(derandomize=True, max_examples=50, deadline=None)
+@given(positive, positive)
+def test_free_spin_never_damps_more_than_the_sum(inner, outer):
+    """4ab/(a+b) <= a+b, equal at a = b, and swapping the races changes nothing."""
+    assert race_damping_free_spin(inner, outer) <= race_damping(inner, outer) * (1 + 1e-15)
+    assert race_damping_free_spin(inner, outer) == race_damping_free_spin(outer, inner)
+
+
+@settings(derandomize=True, max_examples=50, deadline=None)
+@given(positive, positive, st.floats(1.01, 10.0))
+def test_more_damping_returns_more(inner, outer, factor):
+    """The paper, section 2.1.1: eta near one is insufficient lubrication, a ball gripped by its races."""
+    held = {"ball_cage_stiffness": 3e6, "cage_mass": 0.05}
+    less = restitution(inner, outer, **held)
+    more = restitution(factor * inner, factor * outer, **held)
+    assert more.restitution_factor >= less.restitution_factor
+    assert more.restitution_factor_free_spin >= less.restitution_factor_free_spin
+    assert 0.0 <= less.restitution_factor_free_spin <= less.restitution_factor + 1e-15 < 1.0
