@@ -1,1 +1,39 @@
-"""Predicts whether the cage of a dry-lubricated ball bearing runs stably, and ranks candidate materials."""
+"""Predicts whether the cage of a dry-lubricated ball bearing runs stably, and ranks candidate materials.
+
+The names below are the public interface; each is imported when it is first used, so that
+``import separatrix`` costs nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+_PUBLIC = {
+    "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
+    "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation Race "
+    "RankingQuestion StabilitySettings Study",
+}
+"""Module -> the public names it holds."""
+
+_HOME = {name: module for module, names in _PUBLIC.items() for name in names.split()}
+
+__all__ = sorted([*_HOME, "__version__"])
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("separatrix")
+    if name not in _HOME:
+        raise AttributeError(f"module 'separatrix' has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"separatrix.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names."""
+    return list(__all__)

@@ -1,0 +1,9 @@
+"""`python -m separatrix` is the command line."""
+
+from __future__ import annotations
+
+import sys
+
+from separatrix.cli import main
+
+sys.exit(main())

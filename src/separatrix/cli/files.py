@@ -1,0 +1,95 @@
+"""Files are written beside their final name and renamed; nothing is ever left half-written."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from separatrix.errors import InputError
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Let `write` fill a temporary file beside `path`, then give it that name.
+
+    Parameters
+    ----------
+    path : Path
+        Final name; an older file of that name is replaced at once.
+    write : callable
+        Writes a file at the path it is given, which has the same suffix.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or is full.
+    """
+    temporary = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    except OSError as error:
+        raise _cannot_write(path.parent, error) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def writable_folder(path: Path) -> Iterator[Path]:
+    """Make the folder and see that it can be written, before the long work; take it away if left empty.
+
+    Parameters
+    ----------
+    path : Path
+        The folder; its parents are made too.
+
+    Raises
+    ------
+    InputError
+        It is a file, or cannot be made or written.
+    """
+    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path, prefix=".separatrix-"):
+            pass
+    except OSError as error:
+        _remove_empty(missing)
+        raise _cannot_write(path, error) from error
+    try:
+        yield path
+    finally:
+        _remove_empty(missing)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    """Remove those folders, deepest first, that are empty."""
+    with contextlib.suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
+
+
+def _cannot_write(path: Path, error: OSError) -> InputError:
+    reason = error.strerror or str(error)
+    where = "the file" if isinstance(error, FileExistsError | NotADirectoryError) else "the folder"
+    cure = "Name a folder that can be written: --out DIR."
+    return InputError(f"--out {path}", f"cannot be written ({where}: {reason})", cure=cure)
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a text file that must not exist yet.
+
+    Raises
+    ------
+    InputError
+        There is something of that name, or the folder cannot be written.
+    """
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError as error:
+        raise InputError(str(path), "exists already", cure="It was not touched; name a new file.") from error
+    except OSError as error:
+        raise InputError(str(path), f"cannot be written ({error.strerror or error})") from error

@@ -1,0 +1,122 @@
+"""How every figure looks: sizes, colours that colour-blind readers tell apart, labels at the lines."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+COLUMN, PAGE = 3.5, 7.0
+"""Widths of one and of two columns of a journal [inch]."""
+
+BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW, BLACK = (
+    "#0072B2",
+    "#E69F00",
+    "#009E73",
+    "#D55E00",
+    "#CC79A7",
+    "#56B4E9",
+    "#F0E442",
+    "#000000",
+)
+"""Okabe and Ito's palette."""
+
+CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+GREY = "#6b6b6b"
+VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
+VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
+
+STYLE: Any = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": cycler(color=CYCLE),
+    "axes.titlelocation": "left",
+    "lines.linewidth": 1.3,
+    "lines.markersize": 4.0,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "figure.dpi": 100.0,
+    "savefig.dpi": 200.0,
+    "svg.hashsalt": "separatrix",
+    "svg.fonttype": "path",
+    "path.simplify": True,
+}
+
+
+@contextlib.contextmanager
+def journal() -> Iterator[None]:
+    """Draw with this style inside the block."""
+    with mpl.rc_context(STYLE):
+        yield
+
+
+def canvas(width: float = COLUMN, height: float = 2.6, **grid: Any) -> tuple[Figure, Any]:
+    """Return a figure and its axes; no state of matplotlib's is touched."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(**grid)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure in the format of the suffix; the same data give the same bytes."""
+    metadata = {"Date": None, "Creator": None} if path.suffix == ".svg" else {"Software": None}
+    with journal():
+        figure.savefig(path, metadata=metadata)
+
+
+def label_lines(axes: Axes, labels: Sequence[tuple[float, float, str, str]], *, gap: float = 0.055) -> None:
+    """Write labels at the right ends of lines, moved apart where they would overlap.
+
+    Parameters
+    ----------
+    axes : Axes
+        Its limits must be final.
+    labels : sequence of (x, y, text, colour)
+        Ends of the lines, in data.
+    gap : float
+        Least distance of two labels, as a share of the height.
+    """
+    low, high = axes.get_ylim()
+    wanted = [(y - low) / (high - low) for _, y, _, _ in labels]
+    for place, (x, _, text, colour) in zip(spread(wanted, gap), labels, strict=True):
+        axes.annotate(
+            text,
+            (x, low + place * (high - low)),
+            xytext=(3, 0),
+            textcoords="offset points",
+            color=colour,
+            va="center",
+            fontsize=7.0,
+            annotation_clip=False,
+        )
+
+
+def spread(wanted: Sequence[float], gap: float) -> list[float]:
+    """Return places at least `gap` apart, in the same order, as near to the wanted ones as a sweep gets."""
+    order = np.argsort(wanted, kind="stable")
+    places = np.array(wanted, dtype=float)[order]
+    for _ in range(200):
+        for low, high in zip(range(len(places) - 1), range(1, len(places)), strict=True):
+            lack = gap - (places[high] - places[low])
+            if lack > 1e-9:
+                places[low] -= lack / 2
+                places[high] += lack / 2
+    result = np.empty(len(places))
+    result[order] = places
+    return [float(value) for value in result]

@@ -1,0 +1,82 @@
+"""Records as plain data: dictionaries, lists, numbers and text, in SI units, without NaN."""
+
+from __future__ import annotations
+
+import functools
+import typing
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from enum import Enum, IntEnum
+from math import isfinite
+from typing import Any, get_type_hints
+
+import numpy as np
+
+
+class NotFiniteError(ArithmeticError):
+    """A result holds a NaN or an infinity: a fault of ours, never an answer."""
+
+
+def plain(value: object, path: str = "result") -> Any:
+    """Return a record, however nested, as what JSON can hold.
+
+    Dataclasses become dictionaries, enumerations their value (integer ones their name in lower case),
+    arrays nested lists.
+
+    Parameters
+    ----------
+    value : object
+        A record, array, number, text, None, or a container of them.
+    path : str
+        Where it stands, for the message.
+
+    Raises
+    ------
+    NotFiniteError
+        A number is NaN or infinite.
+    TypeError
+        Something that has no plain form.
+    """
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name), f"{path}.{f.name}") for f in fields(value)}
+    if isinstance(value, Enum):
+        return value.name.lower() if isinstance(value, IntEnum) else value.value
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist(), path)
+    if isinstance(value, Mapping):
+        return {_key(k): plain(v, f"{path}.{_key(k)}") for k, v in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        return [plain(v, f"{path}[{i}]") for i, v in enumerate(value)]
+    return _scalar(value, path)
+
+
+def _scalar(value: object, path: str) -> object:
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if not isinstance(value, float):
+        raise TypeError(f"{path}: a {type(value).__name__} has no plain form")
+    if not isfinite(value):
+        raise NotFiniteError(f"{path} is {value}")
+    return value
+
+
+def _key(key: object) -> str:
+    return str(key.value) if isinstance(key, Enum) else str(key)
+
+
+@functools.cache
+def field_units(record: type) -> dict[str, str]:
+    """Return the unit of each field of a record class that has one, read from its annotations."""
+    hints = get_type_hints(record, include_extras=True)
+    units = {name: _unit(hint) for name, hint in hints.items()}
+    return {name: unit for name, unit in units.items() if unit is not None}
+
+
+def _unit(hint: object) -> str | None:
+    """Return the unit inside an annotation such as ``Annotated[float, "N"]``, also in a union or tuple."""
+    metadata = getattr(hint, "__metadata__", ())
+    for item in metadata:
+        if isinstance(item, str):
+            return item
+    inner = (_unit(argument) for argument in typing.get_args(hint))
+    return next((unit for unit in inner if unit is not None), None)
