@@ -1,0 +1,29 @@
+"""Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
+
+from separatrix.cage.ensemble import Ensemble, run_ensemble
+from separatrix.cage.linear import (
+    drift_law,
+    linear_critical_friction,
+    linear_roots,
+    linear_whirl_frequency,
+    turning_critical_friction,
+)
+from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
+from separatrix.cage.verdict import Judgement, growth_probability, judge, wilson_interval
+
+__all__ = [
+    "Ensemble",
+    "Judgement",
+    "PlanarCage",
+    "RunOutcome",
+    "Verdict",
+    "drift_law",
+    "growth_probability",
+    "judge",
+    "linear_critical_friction",
+    "linear_roots",
+    "linear_whirl_frequency",
+    "run_ensemble",
+    "turning_critical_friction",
+    "wilson_interval",
+]

@@ -1,0 +1,156 @@
+"""From the runs of an ensemble to a verdict, its probability and its reason."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from separatrix.cage.linear import drift_law
+from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
+from separatrix.units import Array, Hertz, Metre, Newton, Ratio, Second
+
+if TYPE_CHECKING:
+    from separatrix.cage.ensemble import Ensemble
+
+CLEAR = 0.9
+FEW = 0.5
+NORMAL_95 = 1.959963984540054
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judgement:
+    """Verdict on a cage with its evidence.
+
+    Attributes
+    ----------
+    verdict : Verdict
+        STABLE, UNSTABLE or UNDECIDED.
+    probability_stable, probability_low, probability_high : float
+        Share of all runs that die, and its 95 % Wilson interval [-].
+    reason : str
+        One sentence.
+    largest_offset : float
+        Largest offset of the cage centre in any run [m].
+    drift_rate : float
+        Median growth rate of the mean offset over the runs that went to the end [1/s].
+    largest_contact_force : float
+        Largest force between a ball and its pocket in any run [N].
+    whirl_frequency, whirl_direction
+        Medians over the runs that grow, over all runs if none does [Hz]; 1 forward, -1 backward, 0 none.
+    energy_growth, energy_imbalance : float
+        Median of the first over all runs, and the worst of the second [-].
+    duration : float
+        Of a run [s].
+    runs : int
+        Runs at each kick.
+    """
+
+    verdict: Verdict
+    probability_stable: Ratio
+    probability_low: Ratio
+    probability_high: Ratio
+    reason: str
+    largest_offset: Metre
+    drift_rate: float
+    largest_contact_force: Newton
+    whirl_frequency: Hertz
+    whirl_direction: int
+    energy_growth: Ratio
+    energy_imbalance: Ratio
+    duration: Second
+    runs: int
+
+
+def wilson_interval(successes: int, count: int) -> tuple[Ratio, Ratio]:
+    """Wilson's 95 % interval of a share [-]; 0 to 1 without a trial."""
+    if count == 0:
+        return 0.0, 1.0
+    p, z2 = successes / count, NORMAL_95**2
+    middle = (p + z2 / (2 * count)) / (1 + z2 / count)
+    half = NORMAL_95 / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def growth_probability(ensemble: Ensemble) -> Array:
+    """Share of the runs that grow at each kick, shape (kick,) [-]."""
+    return ensemble.count(RunOutcome.GROWS) / ensemble.outcome.shape[1]
+
+
+def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
+    """Judge a cage by its ensemble.
+
+    STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above one half,
+    and the cage cannot drift. UNSTABLE: the same with runs that grow. UNDECIDED otherwise. The rule is ours.
+    """
+    runs = ensemble.outcome.shape[1]
+    verdict, reason = _decide(cage, ensemble, runs)
+    dies = int(ensemble.count(RunOutcome.DIES).sum())
+    low, high = wilson_interval(dies, ensemble.outcome.size)
+    grows = ensemble.outcome == RunOutcome.GROWS
+    whirling = grows if grows.any() else np.ones_like(grows)
+    return Judgement(
+        verdict=verdict,
+        probability_stable=dies / ensemble.outcome.size,
+        probability_low=low,
+        probability_high=high,
+        reason=reason,
+        largest_offset=float(ensemble.largest_offset.max()),
+        drift_rate=float(np.median(ensemble.drift_rate[~grows])) if not grows.all() else 0.0,
+        largest_contact_force=float(ensemble.largest_contact_force.max()),
+        whirl_frequency=float(np.median(ensemble.whirl_frequency[whirling])),
+        whirl_direction=int(np.sign(np.median(ensemble.whirl_direction[whirling]))),
+        energy_growth=float(np.median(ensemble.energy_growth)),
+        energy_imbalance=float(ensemble.energy_imbalance.max()),
+        duration=ensemble.duration,
+        runs=runs,
+    )
+
+
+def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, str]:
+    """Verdict and the sentence that gives its reason."""
+    dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
+    drifts, stalled = ensemble.count(RunOutcome.DRIFT), ensemble.count(RunOutcome.STALLED)
+    few = wilson_interval(runs, runs)[0] <= FEW
+    if few:
+        return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
+    if _clear(grows, runs):
+        return Verdict.UNSTABLE, f"The motion grows in {_percent(grows, runs)} of the runs at every kick."
+    if stalled.any():
+        return Verdict.UNDECIDED, f"{int(stalled.sum())} runs met too many impacts in no time and were ended."
+    rate = drift_law(cage)
+    if drifts.any() or (_clear(dies, runs) and math.isinf(cage.land_gap) and rate > 0.0):
+        return Verdict.UNDECIDED, _drift_reason(ensemble, int(drifts.sum()), rate)
+    if _clear(dies, runs):
+        return Verdict.STABLE, f"The motion dies in {_percent(dies, runs)} of the runs at every kick."
+    return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
+
+
+def _clear(counts: Array, runs: int) -> bool:
+    return all(n / runs >= CLEAR and wilson_interval(int(n), runs)[0] > FEW for n in counts)
+
+
+def _percent(counts: Array, runs: int) -> str:
+    return f"at least {100 * int(counts.min()) // runs} %"
+
+
+def _drift_reason(ensemble: Ensemble, drifted: int, rate: float) -> str:
+    count = ensemble.outcome.size
+    return (
+        f"The cage has no land and drifts: without growing in energy its offset passed the pocket's play in "
+        f"{drifted} of {count} runs; by the linear law it grows e-fold every {1.0 / rate:.3g} s."
+        if rate > 0.0
+        else f"The offset passed the pocket's play in {drifted} of {count} runs without growing in energy."
+    )
+
+
+def _mixed_reason(kicks: Array, dies: Array, grows: Array, runs: int) -> str:
+    order = np.argsort(kicks)
+    calm = [kicks[i] for i in order if dies[i] / runs >= CLEAR]
+    wild = [kicks[i] for i in order if grows[i] / runs >= CLEAR]
+    if calm and wild:
+        return f"Sub-critical: the motion dies from {max(calm):g} m/s and grows from {min(wild):g} m/s."
+    shares = ", ".join(f"{100 * grows[i] / runs:.0f} % from {kicks[i]:g} m/s" for i in order)
+    return f"Neither clear: the motion grows in {shares}."
