@@ -1,0 +1,65 @@
+"""Figures of the equilibrium: loads and contact angles ball by ball, and the most loaded contact."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from separatrix.figures.style import BLUE, GREY, PAGE, VERMILION, canvas, label_lines
+
+RACES = (("inner", BLUE, "o"), ("outer", VERMILION, "s"))
+
+
+def balls(data: xr.Dataset) -> Figure:
+    """Loads and contact angles around the bearing, against the azimuth of the ball."""
+    figure, (left, right) = canvas(PAGE, 2.5, ncols=2)
+    azimuth = np.degrees(data["azimuth"].values)
+    for name, axes, scale in (("load", left, 1.0), ("contact_angle", right, np.degrees(1.0))):
+        for race, colour, marker in RACES:
+            axes.plot(azimuth, scale * data[f"{name}_{race}"].values, marker=marker, color=colour, lw=0.8)
+        axes.set(xlabel="azimuth of the ball [deg]", xlim=(-8, 400), xticks=range(0, 361, 60))
+    _limits_from_zero(left)
+    right.margins(y=0.25)
+    left.set(ylabel="load [N]", title="a  Ball load")
+    right.set(ylabel="contact angle [deg]", title="b  Contact angle")
+    for name, axes, scale in (("load", left, 1.0), ("contact_angle", right, np.degrees(1.0))):
+        ends = [(azimuth[-1] + 4, scale * float(data[f"{name}_{race}"][-1]), race, c) for race, c, _ in RACES]
+        label_lines(axes, ends)
+    return figure
+
+
+def contact(data: xr.Dataset) -> Figure:
+    """The contacts of the most loaded ball: ellipses to scale, pressure, creep across the groove."""
+    figure, (plan, pressure, creep) = canvas(PAGE, 2.5, ncols=3)
+    for race, colour, _ in RACES:
+        _draw_contact(data.sel(race=race), colour, (plan, pressure, creep), place=1 if race == "inner" else -1)
+    widest = 1e3 * float(data["contact_semi_major"].max())
+    for axes in (plan, pressure, creep):
+        axes.set(xlabel="y across the groove [mm]", xlim=(-1.12 * widest, 1.12 * widest))
+    plan.set(title="a  Ellipses, to scale", ylabel="x along rolling [mm]", aspect="equal")
+    plan.spines["left"].set_visible(False)
+    plan.set_yticks([])
+    pressure.set(title="b  Pressure on the axis x = 0", ylabel="pressure [MPa]", ylim=(0, None))
+    creep.set(title="c  Creep without offset", ylabel="creep ratio [%]")
+    creep.axhline(0.0, color=GREY, lw=0.6)
+    return figure
+
+
+def _draw_contact(data: xr.Dataset, colour: str, axes: tuple, *, place: int) -> None:  # type: ignore[type-arg]
+    plan, pressure, creep = axes
+    a, b, p0 = (float(data[f"contact_{name}"]) for name in ("semi_major", "semi_minor", "max_pressure"))
+    race = str(data["race"].values)
+    angle = np.linspace(0.0, 2 * np.pi, 181)
+    centre = place * 2.2 * b
+    plan.fill(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), color=colour, alpha=0.25, lw=0)
+    plan.plot(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), color=colour, lw=1)
+    plan.annotate(race, (0, 1e3 * centre), ha="center", va="center", color=colour)
+    y = np.linspace(-a, a, 201)
+    pressure.plot(1e3 * y, 1e-6 * p0 * np.sqrt(np.maximum(0.0, 1 - (y / a) ** 2)), color=colour)
+    xi = float(data["contact_spin"]) * y + float(data["contact_curvature"]) * y**2
+    creep.plot(1e3 * y, 100 * xi, color=colour)
+
+
+def _limits_from_zero(axes) -> None:  # type: ignore[no-untyped-def]
+    axes.set_ylim(0, 1.15 * axes.get_ylim()[1])

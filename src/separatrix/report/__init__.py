@@ -1,0 +1,30 @@
+"""Answers as text that an engineer reads in a terminal of 80 to 100 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from separatrix.report.chain import bearing, check
+from separatrix.report.tables import heading, paragraph
+
+REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {"check": check, "bearing": bearing}
+
+
+def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
+    """Return the answer as text, ASCII but for what the study says.
+
+    Parameters
+    ----------
+    verb : str
+        The question.
+    document : mapping
+        What `results.document` returns.
+    where : str or None
+        Folder of the figures and the dataset, if they are written.
+    """
+    blocks = [heading(document["title"]), *REPORTS[verb](document)]
+    blocks += [paragraph(note, first="Note: ", indent="      ") for note in document["warnings"]]
+    if where is not None:
+        blocks.append(f"Figures and data are in {where}/")
+    return "\n\n".join(blocks) + "\n"
