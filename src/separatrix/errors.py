@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 
 class SeparatrixError(Exception):
     """Base of every error that separatrix raises on purpose."""
@@ -27,11 +29,31 @@ class InputError(SeparatrixError, ValueError):
     def __init__(self, where: str, rule: str, unit: str = "", value: str = "", cure: str = "") -> None:
         super().__init__(where, rule, unit, value, cure)
         self.where, self.rule, self.unit, self.value, self.cure = where, rule, unit, value, cure
+        self.problems: tuple[InputError, ...] = ()
 
     def __str__(self) -> str:
-        text = f"{self.where} {self.rule}" + (f" [{self.unit}]" if self.unit else "")
+        text = f"{self.where} {self.rule}".rstrip() + (f" [{self.unit}]" if self.unit else "")
         text += f"; got {self.value}." if self.value else "."
         return f"{text} {self.cure}".rstrip()
+
+
+def together(problems: Sequence[InputError], longest: int = 380) -> InputError:
+    """One error, on one line, for everything wrong at once; its `problems` holds each.
+
+    What does not fit in `longest` characters is counted, not printed.
+    """
+    if len(problems) == 1:
+        return problems[0]
+    text = ""
+    for i, problem in enumerate(problems):
+        more = f"; {problem}" if text else str(problem)
+        if text and len(text) + len(more) > longest:
+            text += f"; and {len(problems) - i} more"
+            break
+        text = text.removesuffix(".") + more
+    error = InputError(text.removesuffix("."), "")
+    error.problems = tuple(problems)
+    return error
 
 
 class ConvergenceError(SeparatrixError, RuntimeError):

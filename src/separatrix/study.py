@@ -5,10 +5,13 @@ Every record is frozen and checks itself when built; what computes with it trust
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from separatrix import _check, _rules
+from separatrix.errors import InputError
 from separatrix.units import (
     Kelvin,
     Kilogram,
@@ -27,6 +30,9 @@ from separatrix.units import (
     Ratio,
     Second,
 )
+
+MOST_BALLS = 200
+FRICTION_LIMIT = 2.0
 
 
 class Race(Enum):
@@ -63,6 +69,14 @@ class Material:
     source: str = "given in the study"
     confidence: str = "given in the study"
 
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.printable_text(self, "name"),
+            _check.between(self, "elastic_modulus", 1e5, 5e12, hint="Steel has about 200 GPa, PTFE 0.5 GPa."),
+            _check.between(self, "poisson_ratio", 0.0, 0.5, open_high=True),
+            _check.between(self, "density", 1.0, 1e5),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BallBearing:
@@ -78,6 +92,24 @@ class BallBearing:
     ring_material: Material
     bore: Metre | None = None
 
+    def __post_init__(self) -> None:
+        groove = "If you have the groove radius, divide it by the ball diameter."
+        _check.settle(
+            _check.between(self, "ball_diameter", 1e-5, 10.0),
+            _check.between(self, "pitch_diameter", 1e-5, 100.0),
+            _check.whole(self, "ball_count", 3, MOST_BALLS),
+            _check.between(self, "contact_angle", 0.0, math.pi / 2, open_high=True),
+            _check.between(self, "inner_conformity", 0.5, 0.6, open_low=True, hint=groove),
+            _check.between(self, "outer_conformity", 0.5, 0.6, open_low=True, hint=groove),
+            _check.positive(self, "bore", 100.0),
+        )
+        _check.settle(_rules.balls_that_do_not_fit(self), _rules.bore_too_wide(self))
+
+    @property
+    def ball_gap(self) -> Metre:
+        """Distance between the surfaces of neighbouring balls: chord of the pitch circle less a diameter."""
+        return self.pitch_diameter * math.sin(math.pi / self.ball_count) - self.ball_diameter
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Operation:
@@ -92,6 +124,20 @@ class Operation:
     temperature: Kelvin | None = None
     fluid: str | None = None
 
+    def __post_init__(self) -> None:
+        lifts = "A load the other way lifts the inner ring off its balls; turn the bearing round."
+        _check.settle(
+            _check.between(self, "inner_speed", -1e6, 1e6),
+            _check.between(self, "outer_speed", -1e6, 1e6),
+            _check.between(self, "axial_load", 0.0, 1e9, hint=lifts),
+            _check.between(self, "radial_load", 0.0, 1e9, hint="Its direction is the x axis: give its size."),
+            _check.between(self, "moment", -1e9, 1e9),
+            _check.between(self, "tilt", -0.1, 0.1),
+            _check.positive(self, "temperature", 5000.0),
+            _check.printable_text(self, "fluid"),
+        )
+        _check.settle(_rules.moment_and_tilt(self), _rules.nothing_presses(self))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Film:
@@ -100,6 +146,18 @@ class Film:
     race_friction: Ratio
     material: Material | None = None
     thickness: Metre | None = None
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.between(self, "race_friction", 0.0, FRICTION_LIMIT),
+            _check.positive(self, "thickness", 1e-2, hint="For bare races leave material and thickness out."),
+        )
+        if (self.material is None) != (self.thickness is None):
+            missing = "material" if self.material is None else "thickness"
+            cure = "Give both, or neither for bare races."
+            raise InputError(
+                f"Film.{missing}", "is missing: a film needs its material and its thickness", cure=cure
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,6 +178,28 @@ class CageDesign:
     unbalance: KilogramMetre = 0.0
     gravity: MetrePerSecond2 = 0.0
 
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.positive(self, "mass", 1e4),
+            _check.positive(self, "pocket_clearance", 1.0),
+            _check.positive(self, "ball_cage_stiffness", 1e15),
+            _check.between(self, "ball_cage_friction", 0.0, FRICTION_LIMIT),
+            _check.positive(self, "land_clearance", 1.0),
+            _check.between(self, "land_friction", 0.0, FRICTION_LIMIT),
+            _check.positive(self, "land_stiffness", 1e15),
+            _check.between(self, "land_restitution", 0.0, 1.0),
+            _check.positive(self, "moment_of_inertia", 1e4),
+            _check.between(self, "unbalance", 0.0, 1e2),
+            _check.between(self, "gravity", 0.0, 1e4),
+            _rules.land(self),
+        )
+
+
+def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
+    """`count` numbers from `low` to `high`, both included, rounded to 12 decimals so that 0.15 is 0.15."""
+    steps = count - 1
+    return tuple(round((low * (steps - i) + high * i) / steps, 12) for i in range(count))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilitySettings:
@@ -129,8 +209,18 @@ class StabilitySettings:
     runs: int = 64
     duration: Second = 0.3
     ball_scatter: Ratio = 0.3
-    restitution_factors: tuple[Ratio, ...] = tuple(0.05 * i for i in range(1, 20))
+    restitution_factors: tuple[Ratio, ...] = evenly_spaced(0.05, 0.95, 19)
     seed: int = 1
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            _rules.rising(self, "kicks", 0.0, 1e4, most=20),
+            _check.whole(self, "runs", 1, 1_000_000),
+            _check.positive(self, "duration", 1e4),
+            _check.between(self, "ball_scatter", 0.0, 1.0),
+            _rules.rising(self, "restitution_factors", 0.0, 1.0, most=1000),
+            _check.whole(self, "seed", 0, 2**63 - 1),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,6 +232,13 @@ class Friction:
     count: int | None = None
     source: str = "given in the study"
 
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.between(self, "mean", 0.0, FRICTION_LIMIT),
+            _check.between(self, "standard_deviation", 0.0, FRICTION_LIMIT),
+            () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
@@ -151,6 +248,9 @@ class Candidate:
     friction: Mapping[str, Friction | None]
     material: Material | None = None
 
+    def __post_init__(self) -> None:
+        _check.settle(_check.printable_text(self, "name"), _rules.nothing_measured(self))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankingQuestion:
@@ -158,6 +258,9 @@ class RankingQuestion:
 
     environments: tuple[str, ...]
     candidates: tuple[Candidate, ...]
+
+    def __post_init__(self) -> None:
+        _check.settle(_rules.named_twice(self), _rules.unknown_environments(self))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,3 +276,15 @@ class Study:
     cage: CageDesign | None = None
     stability: StabilitySettings = field(default_factory=StabilitySettings)
     ranking: RankingQuestion | None = None
+    origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.printable_text(self, "name"),
+            _check.printable_text(self, "title"),
+            _rules.no_density(self),
+            _rules.free_kinematics_without_friction(self),
+            _rules.pockets_that_overlap(self),
+            _rules.stiffness_of_unknown_origin(self),
+        )

@@ -1,0 +1,143 @@
+"""Rules that tie several fields, or several records of a study, together; `study` asks them."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from separatrix import _check
+from separatrix.errors import InputError
+from separatrix.units import format_quantity
+
+if TYPE_CHECKING:
+    from separatrix.study import BallBearing, CageDesign, Candidate, Operation, RankingQuestion, Study
+
+
+def balls_that_do_not_fit(bearing: BallBearing) -> _check.Problems:
+    """More balls than the pitch circle holds: D must be less than the chord d_m sin(pi/Z)."""
+    if bearing.ball_gap > 0.0:
+        return
+    most = 0
+    if bearing.ball_diameter < bearing.pitch_diameter:
+        most = math.ceil(math.pi / math.asin(bearing.ball_diameter / bearing.pitch_diameter)) - 1
+    rule = f"must be at most {most}: more balls do not fit on the pitch circle"
+    cure = "Check ball_count, ball_diameter and pitch_diameter."
+    if most < 3:
+        rule = "leaves no room: the balls are too large for the pitch circle"
+    yield _check.problem(bearing, "ball_count", rule, cure)
+
+
+def bore_too_wide(bearing: BallBearing) -> _check.Problems:
+    """The bore lies inside the groove of the inner ring."""
+    widest = bearing.pitch_diameter - bearing.ball_diameter
+    if bearing.bore is not None and bearing.bore >= widest:
+        rule = f"must be smaller than the groove bottom of the inner ring, {format_quantity(widest, 'm')}"
+        yield _check.problem(bearing, "bore", rule)
+
+
+def moment_and_tilt(operation: Operation) -> _check.Problems:
+    """A moment sets the tilt free; a given tilt takes any moment."""
+    if operation.tilt is not None and operation.moment != 0.0:
+        yield _check.problem(operation, "tilt", "and moment exclude each other", "Give one of the two.")
+
+
+def nothing_presses(operation: Operation) -> _check.Problems:
+    """Without any load there is no contact to compute."""
+    if operation.axial_load == 0.0 and operation.radial_load == 0.0 and operation.moment == 0.0:
+        rule = "must be > 0 when there is no radial load and no moment: nothing presses the balls"
+        yield _check.problem(operation, "axial_load", rule, "Give the preload.")
+
+
+def land(cage: CageDesign) -> _check.Problems:
+    """A land needs its play, and a cage guided by its balls has no land."""
+    if cage.guidance.value == "ball" and cage.land_clearance is not None:
+        cure = 'Give guidance = "outer" or "inner", or leave the land out.'
+        yield _check.problem(cage, "land_clearance", "has no meaning for a cage guided by its balls", cure)
+    if cage.guidance.value != "ball" and cage.land_clearance is None:
+        where = "CageDesign.land_clearance"
+        yield InputError(
+            where, f"is missing: a cage with {cage.guidance.value} guidance needs its diametral play"
+        )
+
+
+def rising(record: object, field: str, low: float, high: float, most: int) -> _check.Problems:
+    """Refuse a tuple that is empty, too long, not strictly between the limits, or not strictly increasing."""
+    values = getattr(record, field)
+    if not 0 < len(values) <= most:
+        yield InputError(
+            f"{type(record).__name__}.{field}", f"must hold 1 to {most} values", "", str(len(values))
+        )
+    for value in values:
+        if not _check.is_number(value) or not low < value < high:
+            rule = f"must each be a finite number > {low:g} and < {high:g}"
+            yield InputError(f"{type(record).__name__}.{field}", rule, "", str(value))
+            return
+    if any(a >= b for a, b in pairwise(values)):
+        yield InputError(
+            f"{type(record).__name__}.{field}", "must increase, none twice", "", str(list(values))
+        )
+
+
+def nothing_measured(candidate: Candidate) -> _check.Problems:
+    """A candidate has at least one measured friction."""
+    if all(value is None for value in candidate.friction.values()):
+        yield InputError("Candidate.friction", f'of "{candidate.name}" holds no measured value')
+
+
+def named_twice(question: RankingQuestion) -> _check.Problems:
+    """Names are what results are keyed by."""
+    for field_name, names in (
+        ("candidates", [candidate.name for candidate in question.candidates]),
+        ("environments", list(question.environments)),
+    ):
+        if not names:
+            yield InputError(f"RankingQuestion.{field_name}", "must not be empty")
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield InputError(
+                f"RankingQuestion.{field_name}", "must have different names", "", f'"{name}" twice'
+            )
+
+
+def unknown_environments(question: RankingQuestion) -> _check.Problems:
+    """Every friction belongs to an environment of the question."""
+    for candidate in question.candidates:
+        for name in sorted(set(candidate.friction) - set(question.environments)):
+            rule = f'of "{candidate.name}" must be in the environments of the question'
+            yield InputError("RankingQuestion.candidates", rule, "", f'"{name}"')
+
+
+def free_kinematics_without_friction(study: Study) -> _check.Problems:
+    """Without race control it is friction that turns the balls."""
+    if study.kinematics.value == "free" and study.film.race_friction == 0.0:
+        cure = "Without friction nothing turns the balls; choose a race control model."
+        yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "", "0", cure)
+
+
+def pockets_that_overlap(study: Study) -> _check.Problems:
+    """A pocket's play is less than the gap between balls, or no bar is left between pockets."""
+    if study.cage is not None and study.cage.pocket_clearance >= study.bearing.ball_gap:
+        rule = f"must be smaller than the gap between balls, {format_quantity(study.bearing.ball_gap, 'm')}"
+        yield _check.problem(
+            study.cage, "pocket_clearance", rule, "It is the play of one ball, stop to stop."
+        )
+
+
+def stiffness_of_unknown_origin(study: Study) -> _check.Problems:
+    """Without a stiffness, the cage or every candidate needs a material, for the modulus of the pocket."""
+    cage, candidates = study.cage, study.ranking.candidates if study.ranking else ()
+    if cage is None or cage.ball_cage_stiffness is not None or cage.material is not None:
+        return
+    bare = [candidate.name for candidate in candidates if candidate.material is None]
+    if bare or not candidates:
+        who = f'the candidate "{bare[0]}"' if bare else "the cage"
+        rule = f"is missing, and {who} has no material to compute it from"
+        yield InputError("CageDesign.ball_cage_stiffness", rule, cure="Give the stiffness or the material.")
+
+
+def no_density(study: Study) -> _check.Problems:
+    """A turning ball needs its density, for the centrifugal force."""
+    turns = study.operation.inner_speed != 0.0 or study.operation.outer_speed != 0.0
+    if turns and study.bearing.ball_material.density is None:
+        rule = "needs a density, for the centrifugal force of the balls"
+        yield InputError("BallBearing.ball_material", rule, cure='Add density = "7650 kg/m3" or the like.')

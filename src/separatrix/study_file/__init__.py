@@ -1,0 +1,41 @@
+"""Reading study files: TOML whose every dimensional value is text with its unit (docs/study-file.md)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from separatrix.errors import InputError
+from separatrix.study import Study
+from separatrix.study_file.document import find, load
+from separatrix.study_file.provenance import resolved
+from separatrix.study_file.sections import build_study
+from separatrix.study_file.shipped import shipped_studies, template
+from separatrix.units import printable
+
+__all__ = ["read_study", "require", "resolved", "shipped_studies", "template"]
+
+
+def read_study(study: str | Path) -> Study:
+    """Study of a file, or of the shipped example of that name.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the file, on one line: place, rule, value, cure.
+    """
+    path = find(study)
+    return build_study(load(path), printable(path.stem)[:100])
+
+
+def require(study: Study, verb: str, *sections: str) -> None:
+    """Refuse a study that lacks a section which a verb needs.
+
+    Raises
+    ------
+    InputError
+        Names the missing sections, the verb, and where to see what they look like.
+    """
+    missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
+    if missing:
+        rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"
+        raise InputError(f"{study.name}: {' and '.join(missing)}", rule, cure="See `separatrix new`.")

@@ -1,0 +1,173 @@
+"""A study document: its sections key by key, each key with its place, after `extends` has been followed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from separatrix.errors import InputError
+from separatrix.study_file.shipped import shipped_studies
+from separatrix.study_file.text import label_of, read_toml
+from separatrix.units import printable, shown
+
+SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
+MOST_BASES = 8
+
+_ALTERNATIVES = {
+    "bearing": (("contact_angle",), ("radial_clearance",)),
+    "operation": (("moment",), ("tilt",)),
+    "film": (("material",), ("elastic_modulus", "poisson_ratio")),
+    "ranking": (("friction", "materials"), ("candidates",)),
+}
+"""Keys that exclude each other: a variant that gives one side drops the other side of its base."""
+
+_LAND_KEYS = ("land_clearance", "land_friction", "land_stiffness", "land_restitution")
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One value as the file gives it, and where it stands."""
+
+    value: Any
+    place: str
+
+
+@dataclass(slots=True)
+class Document:
+    """Sections of a study file, before anything is converted."""
+
+    label: str
+    top: dict[str, Entry] = field(default_factory=dict)
+    sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
+    lines: dict[str, int] = field(default_factory=dict)
+    problems: list[InputError] = field(default_factory=list)
+
+
+def find(study: str | Path) -> Path:
+    """Path of a study file, or of the shipped example of that name.
+
+    A regular file of that very name comes first; a folder does not hide a shipped example.
+    """
+    text = str(study)
+    path = Path(text)
+    shipped = shipped_studies()
+    if not text or "\0" in text:
+        raise InputError("STUDY", "must be a path or a name", "", shown(text), _shipped_names(text))
+    if _is_file(path):
+        return path
+    if text in shipped:
+        return shipped[text]
+    if not _exists(path):
+        raise InputError(label_of(path), "does not exist", cure=_shipped_names(text))
+    return path
+
+
+def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
+    """Document of a file, merged over the file it extends."""
+    document = _own(path)
+    base = document.top.get("extends")
+    if base is None:
+        return document
+    where = f"{base.place}: extends"
+    if not isinstance(base.value, str):
+        raise InputError(where, "must be a path or the name of a shipped example", "", shown(base.value))
+    target = _base(path, base.value, where)
+    chain = (*above, path.resolve())
+    if target.resolve() in chain:
+        raise InputError(where, "leads back to a file that extends this one", "", shown(base.value))
+    if len(chain) > MOST_BASES:
+        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", "", shown(base.value))
+    return _merged(load(target, chain), document)
+
+
+def unknown(where: str, what: str, name: str, known: Iterable[str], cure: str = "") -> InputError:
+    """Refusal of a name that is not known, with the nearest one that is."""
+    choices = list(known)
+    near = get_close_matches(name[:80], choices, 1, 0.6)
+    hint = f"Did you mean {near[0]}?" if near else cure or f"Known: {', '.join(choices)}."
+    return InputError(where, f"is no {what}", cure=hint)
+
+
+def _own(path: Path) -> Document:
+    label = label_of(path)
+    data, lines = read_toml(path)
+    document = Document(label, lines=lines)
+    for name, value in data.items():
+        place = _place(label, lines.get(name))
+        if name in ("title", "extends"):
+            document.top[name] = Entry(value, place)
+        elif name not in SECTIONS:
+            kind = "section" if isinstance(value, dict) else "key here"
+            known = [f"[{s}]" for s in SECTIONS] if isinstance(value, dict) else ["title", "extends"]
+            shown_name = f"[{printable(name)[:60]}]" if isinstance(value, dict) else printable(name)[:60]
+            document.problems.append(unknown(f"{place}: {shown_name}", kind, shown_name, known))
+        elif not isinstance(value, dict):
+            document.problems.append(
+                InputError(f"{place}: {name}", f"must be one section, [{name}]", "", shown(value))
+            )
+        else:
+            document.sections[name] = {
+                key: Entry(v, _place(label, lines.get(f"{name}.{key}", lines.get(f"{name}.{key}.0"))))
+                for key, v in value.items()
+            }
+    return document
+
+
+def _place(label: str, line: int | None) -> str:
+    return label if line is None else f"{label}, line {line}"
+
+
+def _base(path: Path, text: str, where: str) -> Path:
+    beside = path.parent / text if text and "\0" not in text else None
+    if beside is not None and _is_file(beside):
+        return beside
+    if text in shipped_studies():
+        return shipped_studies()[text]
+    raise InputError(where, "names no file beside this one", "", shown(text), _shipped_names(text))
+
+
+def _merged(base: Document, document: Document) -> Document:
+    merged = Document(document.label, document.top, {}, document.lines, base.problems + document.problems)
+    for name in SECTIONS:
+        below, above = base.sections.get(name), document.sections.get(name)
+        if below is not None or above is not None:
+            merged.sections[name] = {**_kept(name, below or {}, above or {}), **(above or {})}
+    if "title" not in merged.top and "title" in base.top:
+        merged.top = {**merged.top, "title": base.top["title"]}
+    return merged
+
+
+def _kept(name: str, below: dict[str, Entry], above: dict[str, Entry]) -> dict[str, Entry]:
+    """Keys of the base that the variant does not replace by an alternative."""
+    dropped: set[str] = set()
+    one, other = _ALTERNATIVES.get(name, ((), ()))
+    if any(key in above for key in one):
+        dropped.update(other)
+    if any(key in above for key in other):
+        dropped.update(one)
+    if name == "cage" and "guidance" in above and above["guidance"].value == "ball":
+        dropped.update(_LAND_KEYS)
+    return {key: entry for key, entry in below.items() if key not in dropped}
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name too long for the file system
+        return False
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:
+        return False
+
+
+def _shipped_names(text: str) -> str:
+    names = list(shipped_studies())
+    near = get_close_matches(text[:80], names, 1, 0.6)
+    return f"Did you mean {near[0]}?" if near else f"Shipped examples: {', '.join(names)}."

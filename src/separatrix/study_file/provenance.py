@@ -1,0 +1,85 @@
+"""What a study resolved to: every value in SI with its unit and origin, every record with its source."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from enum import Enum
+from typing import Any
+
+from separatrix.study import Candidate, Film, Friction, Material, Study
+from separatrix.units import unit_of
+
+_PARTS = ("bearing", "operation", "film", "cage", "stability")
+
+
+def resolved(study: Study) -> dict[str, Any]:
+    """Resolved inputs as plain nested dicts: numbers, text, lists and None only.
+
+    Each quantity is ``{"value": ..., "unit": ..., "origin": ...}``, in SI. The origin is the place and text
+    in the study file, or ``"default"``. Each material has its source and confidence.
+    """
+    parts = {name: _part(study, name) for name in _PARTS}
+    kinematics = {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})}
+    return {
+        "name": study.name,
+        "title": study.title,
+        **parts,
+        "kinematics": kinematics,
+        "ranking": _ranking(study),
+    }
+
+
+def _part(study: Study, section: str) -> dict[str, Any] | None:
+    record = getattr(study, section)
+    if record is None:
+        return None
+    values: dict[str, Any] = {f.name: _value(study, record, section, f.name) for f in fields(record)}
+    if isinstance(record, Film):
+        values["is_bare"] = record.material is None
+    return values
+
+
+def _value(study: Study, record: object, section: str, name: str) -> dict[str, Any]:
+    value = getattr(record, name)
+    unit = unit_of(type(record), name)
+    if isinstance(value, Material):
+        return _origin(study, f"{section}.{name}", _material(value))
+    plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
+    return _origin(study, f"{section}.{name}", {"value": plain, **({"unit": unit} if unit else {})})
+
+
+def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
+    """The item with where it was given; without any origins the study was built in Python."""
+    return {**item, "origin": study.origins.get(key, "default" if study.origins else "given in Python")}
+
+
+def _material(material: Material) -> dict[str, Any]:
+    return {
+        "name": material.name,
+        "elastic_modulus": {"value": material.elastic_modulus, "unit": "Pa"},
+        "poisson_ratio": {"value": material.poisson_ratio, "unit": "-"},
+        "density": {"value": material.density, "unit": "kg/m3"},
+        "source": material.source,
+        "confidence": material.confidence,
+    }
+
+
+def _ranking(study: Study) -> dict[str, Any] | None:
+    if study.ranking is None:
+        return None
+    candidates = [_candidate(candidate) for candidate in study.ranking.candidates]
+    item = {"environments": list(study.ranking.environments), "candidates": candidates}
+    key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
+    return _origin(study, key, item)
+
+
+def _candidate(candidate: Candidate) -> dict[str, Any]:
+    return {
+        "name": candidate.name,
+        "friction": {env: None if f is None else _friction(f) for env, f in candidate.friction.items()},
+        "material": None if candidate.material is None else _material(candidate.material),
+    }
+
+
+def _friction(friction: Friction) -> dict[str, Any]:
+    return {name: getattr(friction, name) for name in ("mean", "standard_deviation", "count", "source")}

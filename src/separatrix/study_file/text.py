@@ -1,0 +1,161 @@
+"""A study file as text: read with care, checked before it is parsed, and every key traced to its line."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from separatrix.errors import InputError
+from separatrix.units import printable, shown
+
+MOST_BYTES = 256 * 1024
+LONGEST_LINE = 5000
+DEEPEST = 16
+"""How deep brackets may nest; a study needs 3."""
+
+_KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
+_KEY_LINE = re.compile(rf"\s*({_KEY}(?:[ \t]*\.[ \t]*{_KEY})*)[ \t]*=")
+_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_KEY}(?:[ \t]*\.[ \t]*{_KEY})*)[ \t]*\]")
+_STRING_OR_COMMENT = re.compile(
+    r'"""(?:\\.|[^\\])*?(?:"""|\Z)'
+    r"|'''.*?(?:'''|\Z)"
+    r'|"(?:\\.|[^"\\\n])*(?:"|$)'
+    r"|'[^'\n]*(?:'|$)"
+    r"|#[^\n]*",
+    re.DOTALL | re.MULTILINE,
+)
+
+
+def label_of(path: Path) -> str:
+    """Name of a file in messages and results: without its folder, on one line."""
+    return printable(path.name or str(path))[:60]
+
+
+def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
+    """Content of a TOML file, and the line of each key as a dotted path.
+
+    Raises
+    ------
+    InputError
+        No regular file of at most `MOST_BYTES` of UTF-8 with valid TOML in it.
+    """
+    label = label_of(path)
+    text = _text(path, label)
+    _refuse_deep_nesting(text, label)
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # ValueError: bad TOML, or an integer of 5000 digits
+        raise _invalid_toml(error, text, label) from None
+    if not data:
+        raise InputError(label, "is empty", cure="`separatrix new PATH` writes a study to fill in.")
+    return data, lines_of_keys(text)
+
+
+def lines_of_keys(text: str) -> dict[str, int]:
+    """Line number of each key by its dotted path: ``bearing.bore``, ``ranking.candidates.0.name``."""
+    lines: dict[str, int] = {}
+    seen: dict[str, int] = {}
+    prefix = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        if header := _HEADER.match(line):
+            name = _plain(header.group(2))
+            if header.group(1) == "[[":
+                seen[name] = seen.get(name, -1) + 1
+                name = f"{name}.{seen[name]}"
+            prefix = name + "."
+            lines.setdefault(name, number)
+        elif key := _KEY_LINE.match(line):
+            lines.setdefault(prefix + _plain(key.group(1)), number)
+    return lines
+
+
+def _plain(key: str) -> str:
+    return ".".join(part.strip("\"'") for part in re.findall(_KEY, key))
+
+
+def _text(path: Path, label: str) -> str:
+    try:
+        mode = path.stat().st_mode
+        if not stat.S_ISREG(mode):
+            raise InputError(
+                label, "is a folder, not a file" if stat.S_ISDIR(mode) else "is not a regular file"
+            )
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
+        raise InputError(label, f"cannot be read: {reason[:1].lower()}{reason[1:]}") from None
+    if len(raw) > MOST_BYTES:
+        raise InputError(label, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
+    return _decoded(raw, label)
+
+
+def _decoded(raw: bytes, label: str) -> str:
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{label}, line {line}", "is not UTF-8 text", cure="Save the file as UTF-8."
+        ) from None
+    for number, line_text in enumerate(text.split("\n"), 1):
+        if "\0" in line_text:
+            raise InputError(f"{label}, line {number}", "holds a NUL character: this is not a text file")
+        if len(line_text) > LONGEST_LINE:
+            raise InputError(f"{label}, line {number}", f"is longer than {LONGEST_LINE} characters")
+    return text
+
+
+def _refuse_deep_nesting(text: str, label: str) -> None:
+    depth, line = 0, 1
+    for mark in re.findall(r"[\[{\]}\n]", _STRING_OR_COMMENT.sub(_newlines, text)):
+        if mark == "\n":
+            line += 1
+        depth = max(0, depth + (mark in "[{") - (mark in "]}"))
+        if depth > DEEPEST:
+            raise InputError(f"{label}, line {line}", f"nests brackets more than {DEEPEST} deep")
+
+
+def _newlines(match: re.Match[str]) -> str:
+    return "\n" * match.group().count("\n")
+
+
+def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
+    message = printable(str(error))
+    found = re.search(r" \(at line (\d+), column \d+\)", message)
+    if not found:
+        message = "it ends too early" if "end of document" in message else "a number or text it cannot hold"
+        return InputError(label, f"is not valid TOML: {message}")
+    number = int(found.group(1))
+    line = text.split("\n")[number - 1].strip()
+    where = f"{label}, line {number}"
+    key = _KEY_LINE.match(line)
+    if "overwrite" in message or "twice" in message:
+        return InputError(
+            where, f"gives {printable(_plain(key.group(1))) if key else shown(line)} a second time"
+        )
+    reason = message[: found.start()]
+    return InputError(
+        where,
+        f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120],
+        "",
+        printable(line)[:60],
+        _cure(line),
+    )
+
+
+def _cure(line: str) -> str:
+    """What the writer of an invalid line most likely meant."""
+    if comma := re.search(r"=\s*([+-]?[0-9]+),([0-9]+)", line):
+        return f"Write a decimal point: {comma.group(1)}.{comma.group(2)}."
+    if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
+        return f'Put quantities in quotes: "{printable(bare.group(1).strip())}".'
+    if re.search(r"=\s*[A-Za-z]", line):
+        return "Put text in quotes."
+    return ""
