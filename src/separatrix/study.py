@@ -222,6 +222,11 @@ class StabilitySettings:
             _check.whole(self, "seed", 0, 2**63 - 1),
         )
 
+    @property
+    def middle_kick(self) -> MetrePerSecond:
+        """The kick at which stiffness, critical friction and threshold are taken; of two, the larger."""
+        return sorted(self.kicks)[len(self.kicks) // 2]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Friction:

@@ -1,0 +1,252 @@
+"""The chain from a study to its cage: every stage once, every intermediate kept.
+
+Each verb asks for one link of it; a link holds the link before. The contacts of the most loaded ball set
+the race damping: load raises the restitution factor, so this is the unfavourable ball.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from separatrix.cage import PlanarCage
+from separatrix.creep import Creep, contact_creep
+from separatrix.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.errors import InputError
+from separatrix.hertz import ContactEllipse
+from separatrix.restitution import Restitution, ball_pocket_stiffness, contact_damping, restitution
+from separatrix.study import CageDesign, Material, Race, Study
+from separatrix.traction import TractionCurve, film_compliance, traction_curve
+from separatrix.units import MetrePerSecond, Newton, NewtonPerMetre, Radian, Ratio
+
+NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material with its elastic_modulus."
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceContact:
+    """Contact of the most loaded ball with one race."""
+
+    ball: int
+    contact_angle: Radian
+    load: Newton
+    ellipse: ContactEllipse
+    creep: Creep
+    spin_roll_ratio: Ratio
+    rolling_speed: MetrePerSecond
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingState:
+    """Equilibrium of the bearing, and the contacts of its most loaded ball."""
+
+    equilibrium: Equilibrium
+    inner: RaceContact
+    outer: RaceContact
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TractionState:
+    """Traction curves of the most loaded ball's contacts."""
+
+    bearing: BearingState
+    inner: TractionCurve
+    outer: TractionCurve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionState:
+    """Restitution factor of the cage's blows, and where the pocket's stiffness comes from."""
+
+    traction: TractionState
+    restitution: Restitution
+    stiffness_source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CageState:
+    """The cage that moves in the plane, after everything before it."""
+
+    restitution: RestitutionState
+    cage: PlanarCage
+
+
+def bearing_state(study: Study) -> BearingState:
+    """Equilibrium and contacts of a study's bearing."""
+    found = equilibrium(study.bearing, study.operation, study.kinematics, study.film.race_friction)
+    return BearingState(
+        equilibrium=found,
+        inner=_race_contact(study, found, Race.INNER),
+        outer=_race_contact(study, found, Race.OUTER),
+    )
+
+
+def _race_contact(study: Study, found: Equilibrium, race: Race) -> RaceContact:
+    ball = found.most_loaded
+
+    def of_ball(quantity: str) -> float:
+        return float(getattr(found, f"{quantity}_{race.value}")[ball])
+
+    angle, ratio = of_ball("contact_angle"), of_ball("spin_roll_ratio")
+    return RaceContact(
+        ball=ball,
+        contact_angle=angle,
+        load=of_ball("load"),
+        ellipse=contact(found, study.bearing, race, ball),
+        creep=contact_creep(study.bearing, race, angle, ratio),
+        spin_roll_ratio=ratio,
+        rolling_speed=of_ball("rolling_speed"),
+    )
+
+
+def traction_state(study: Study) -> TractionState:
+    """Traction curves of both races.
+
+    Raises
+    ------
+    InputError
+        The bearing does not roll, or its races have no friction.
+    """
+    require_rolling(study)
+    state = bearing_state(study)
+    curves = (
+        traction_curve(
+            at.ellipse,
+            at.creep,
+            race_friction=study.film.race_friction,
+            film_compliance=film_compliance(study.film),
+        )
+        for at in (state.inner, state.outer)
+    )
+    inner, outer = curves
+    return TractionState(bearing=state, inner=inner, outer=outer)
+
+
+def require_rolling(study: Study) -> None:
+    """Refuse a bearing that does not roll: traction and restitution have no meaning there."""
+    if study.operation.inner_speed == study.operation.outer_speed:
+        cure = "Without rolling only the verb bearing has an answer."
+        raise InputError("[operation] inner_speed", "must differ from outer_speed for traction", cure=cure)
+    if study.film.race_friction <= 0.0:
+        raise InputError(
+            "[film] race_friction",
+            "must be > 0 for traction",
+            "-",
+            f"{study.film.race_friction:g}",
+            "Without friction the races hold no ball.",
+        )
+
+
+def restitution_state(
+    study: Study, *, material: Material | None = None, traction: TractionState | None = None
+) -> RestitutionState:
+    """Restitution factor of a study.
+
+    Parameters
+    ----------
+    study : Study
+        With a [cage].
+    material : Material, optional
+        Of the cage, if not the study's: a candidate of a ranking.
+    traction : TractionState, optional
+        If it is known already.
+    """
+    design = cage_design(study)
+    stiffness, source = pocket_stiffness(study, material)
+    links = traction or traction_state(study)
+    damping = (
+        contact_damping(curve.slope, at.load, at.rolling_speed)
+        for curve, at in ((links.inner, links.bearing.inner), (links.outer, links.bearing.outer))
+    )
+    inner, outer = damping
+    found = restitution(inner, outer, ball_cage_stiffness=stiffness, cage_mass=design.mass)
+    return RestitutionState(traction=links, restitution=found, stiffness_source=source)
+
+
+def cage_design(study: Study) -> CageDesign:
+    """Return the cage of a study.
+
+    Raises
+    ------
+    InputError
+        It has none.
+    """
+    if study.cage is None:
+        cure = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
+        raise InputError(study.name, "lacks the section [cage]", cure=cure)
+    return study.cage
+
+
+def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[NewtonPerMetre, str]:
+    """k_BC and where it comes from: the study, or Hertz with the modulus of the cage's material.
+
+    Raises
+    ------
+    InputError
+        Neither is known.
+    """
+    design = cage_design(study)
+    if design.ball_cage_stiffness is not None:
+        return design.ball_cage_stiffness, "given in the study"
+    wall = material or design.material
+    if wall is None:
+        raise InputError("[cage] ball_cage_stiffness", "is missing, and no cage material is known", cure=NO_STIFFNESS)
+    speed = study.stability.middle_kick
+    stiffness = ball_pocket_stiffness(
+        study.bearing.ball_diameter,
+        study.bearing.ball_material,
+        wall,
+        cage_mass=design.mass,
+        impact_speed=speed,
+    )
+    return stiffness, f"Hertz, ball on a flat wall of {wall.name} at {speed:g} m/s"
+
+
+def cage_state(study: Study, *, material: Material | None = None, traction: TractionState | None = None) -> CageState:
+    """Build the cage in the plane, with the race damping that the chain gives and the study's pocket friction.
+
+    The ball set turns at the balls' mean orbital speed; a cage without a stated inertia is a thin ring.
+    """
+    links = restitution_state(study, material=material, traction=traction)
+    design, bearing = cage_design(study), study.bearing
+    radius = bearing.pitch_diameter / 2.0
+    inertia = design.mass * radius**2 if design.moment_of_inertia is None else design.moment_of_inertia
+    cage = PlanarCage(
+        mass=design.mass,
+        moment_of_inertia=inertia,
+        ball_count=bearing.ball_count,
+        pitch_radius=radius,
+        cage_speed=float(np.mean(links.traction.bearing.equilibrium.orbital_speed)),
+        inner_speed=study.operation.inner_speed,
+        outer_speed=study.operation.outer_speed,
+        pocket_clearance=design.pocket_clearance,
+        ball_cage_stiffness=links.restitution.ball_cage_stiffness,
+        race_damping=links.restitution.race_damping,
+        ball_cage_friction=pocket_friction(study),
+        guidance=design.guidance,
+        land_clearance=design.land_clearance,
+        land_friction=design.land_friction,
+        land_stiffness=design.land_stiffness,
+        land_restitution=design.land_restitution,
+        unbalance=design.unbalance,
+        gravity=design.gravity,
+    )
+    return CageState(restitution=links, cage=cage)
+
+
+def pocket_friction(study: Study) -> Ratio:
+    """Return f_BC for a single simulation: the study's, else the first candidate's first measured one.
+
+    Raises
+    ------
+    InputError
+        None is known.
+    """
+    given = cage_design(study).ball_cage_friction
+    if given is not None:
+        return given
+    for candidate in study.ranking.candidates[:1] if study.ranking else ():
+        for measured in candidate.friction.values():
+            if measured is not None:
+                return measured.mean
+    raise InputError("[cage] ball_cage_friction", "is missing", cure="Give it, or [ranking] with measured frictions.")

@@ -1,0 +1,198 @@
+"""Critical pocket friction against restitution factor, with its band: the paper's stability curve (Fig. 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from separatrix.cage import PlanarCage, linear_critical_friction
+from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing
+from separatrix.stability.growth import Count, GrowthCounter, cage_at
+from separatrix.stability.pool import Progress, work_through
+from separatrix.study import StabilitySettings
+from separatrix.units import MetrePerSecond, Ratio, Second
+
+SEARCHED_FRICTION: Ratio = 1.0
+"""Critical friction is looked for from 0 up to here."""
+
+_STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
+FRICTION_GRID: tuple[Ratio, ...] = (
+    0.0,
+    *(SEARCHED_FRICTION * 10 ** (-i / _STEPS_A_DECADE) for i in range(2 * _STEPS_A_DECADE + 12, -1, -1)),
+)
+"""Frictions at which runs are counted; between two of them the shares are joined by a line."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriticalFriction:
+    """Critical friction at one restitution factor; None where there is none, with the reason."""
+
+    restitution_factor: Ratio
+    critical_friction: Ratio | None
+    critical_friction_low: Ratio | None
+    critical_friction_high: Ratio | None
+    reason: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearLimit:
+    """Critical friction without clearance in a ball set at rest, in closed form."""
+
+    restitution_factor: Ratio
+    critical_friction: Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityCurve:
+    """Stability curve, the linear limit beside it, and the ensemble it holds for.
+
+    `complete` is False if an interrupt left points out.
+    """
+
+    curve: tuple[CriticalFriction, ...]
+    linear_limit: tuple[LinearLimit, ...]
+    kicks: tuple[MetrePerSecond, ...]
+    middle_kick: MetrePerSecond
+    runs: int
+    duration: Second
+    ball_scatter: Ratio
+    searched_friction: Ratio
+    complete: bool
+
+
+def stability_curve(
+    cage: PlanarCage,
+    settings: StabilitySettings,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    counter: GrowthCounter | None = None,
+) -> StabilityCurve:
+    """Critical friction at each restitution factor of the settings.
+
+    Parameters
+    ----------
+    cage : PlanarCage
+        Its race damping and friction are replaced.
+    settings : StabilitySettings
+        Restitution factors, kicks, runs and seed.
+    jobs : int
+        Threads; the numbers do not depend on it.
+    progress : callable, optional
+        Called with (done, total) points.
+    counter : GrowthCounter, optional
+        To share counts with other questions about the same cage and settings.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Interrupted before the first point was finished; later the finished points are returned.
+    """
+    counts = counter or GrowthCounter(cage, settings)
+    etas = settings.restitution_factors
+    points = work_through(
+        lambda eta: critical_friction(cage, eta, settings, counter=counts), etas, jobs=jobs, progress=progress
+    )
+    finished = tuple(point for point in points if point is not None)
+    if etas and not finished:
+        raise KeyboardInterrupt
+    return StabilityCurve(
+        curve=finished,
+        linear_limit=tuple(linear_limit(cage, eta) for eta in etas),
+        kicks=settings.kicks,
+        middle_kick=settings.middle_kick,
+        runs=settings.runs,
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        searched_friction=SEARCHED_FRICTION,
+        complete=len(finished) == len(etas),
+    )
+
+
+def linear_limit(cage: PlanarCage, restitution_factor: Ratio) -> LinearLimit:
+    """Critical friction of the linear law, 2 zeta sqrt(2/Z), at one restitution factor."""
+    critical = linear_critical_friction(cage_at(cage, restitution_factor, 0.0))
+    return LinearLimit(restitution_factor=restitution_factor, critical_friction=critical)
+
+
+def critical_friction(
+    cage: PlanarCage,
+    restitution_factor: Ratio,
+    settings: StabilitySettings,
+    *,
+    counter: GrowthCounter | None = None,
+) -> CriticalFriction:
+    """Friction at which half the runs grow from the middle kick, and the band over all kicks.
+
+    The band runs from the smallest friction at which one run in ten grows, from whatever kick, to the
+    largest at which nine in ten do.
+    """
+    counts = counter or GrowthCounter(cage, settings)
+    middle = settings.middle_kick
+    at = {kick: _counter(counts, restitution_factor, kick) for kick in sorted(settings.kicks)}
+    found = find_crossing(at[middle], FRICTION_GRID, 0.5, start=len(FRICTION_GRID) // 2)
+    start = found.cell if isinstance(found, Crossing) else len(FRICTION_GRID) // 2
+    ends = {
+        "critical_friction": (found, 0.5, middle),
+        "critical_friction_low": _first(at, 0.1, start),
+        "critical_friction_high": _last(at, 0.9, start),
+    }
+    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends.values() if isinstance(side, Side)]
+    values = {name: end[0].value if isinstance(end[0], Crossing) else None for name, end in ends.items()}
+    return CriticalFriction(
+        restitution_factor=restitution_factor, reason="; ".join(dict.fromkeys(reasons)) or None, **values
+    )
+
+
+_REASONS = {
+    Side.ABOVE: "a share of {0:g} of the runs kicked by {1:g} m/s grows even without pocket friction",
+    Side.BELOW: f"less than a share of {{0:g}} of the runs kicked by {{1:g}} m/s grows up to a friction of {SEARCHED_FRICTION:g}",
+}
+
+Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
+
+
+def _counter(counts: GrowthCounter, eta: Ratio, kick: MetrePerSecond) -> Counter:
+    def count(friction: Ratio, target: Ratio | None) -> Count:
+        return counts.count(eta, friction, kick, target=target)
+
+    return count
+
+
+def _first(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
+    """Smallest crossing of the target over the kicks; ABOVE if one kick is above it without friction."""
+    for kick, count in at.items():
+        if count(FRICTION_GRID[0], target).share >= target:
+            return Side.ABOVE, target, kick
+    best: Found = (Side.BELOW, target, max(at))
+    for kick in sorted(at, reverse=True):
+        known = best[0]
+        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[known.cell], target).share < target:
+            continue  # this kick needs more friction than the best one
+        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, start), target, kick), sign=1)
+    return best
+
+
+def _last(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
+    """Largest crossing of the target over the kicks; BELOW if one kick is below it at the top of the range."""
+    for kick, count in at.items():
+        if count(FRICTION_GRID[-1], target).share < target:
+            return Side.BELOW, target, kick
+    best: Found = (Side.ABOVE, target, min(at))
+    for kick in sorted(at):
+        known = best[0]
+        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[known.cell + 1], target).share >= target:
+            continue  # this kick needs less friction than the best one
+        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, start), target, kick), sign=-1)
+    return best
+
+
+def _better(best: Found, other: Found, *, sign: int) -> Found:
+    """Return the one with the smaller value (sign 1) or the larger (-1); a crossing beats none."""
+    if not isinstance(other[0], Crossing):
+        return best
+    if not isinstance(best[0], Crossing) or sign * other[0].value < sign * best[0].value:
+        return other
+    return best
+
+
