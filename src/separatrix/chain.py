@@ -115,6 +115,7 @@ def traction_state(study: Study) -> TractionState:
             at.creep,
             race_friction=study.film.race_friction,
             film_compliance=film_compliance(study.film),
+            film_thickness=study.film.thickness or 0.0,
         )
         for at in (state.inner, state.outer)
     )
@@ -190,7 +191,9 @@ def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[Ne
         return design.ball_cage_stiffness, "given in the study"
     wall = material or design.material
     if wall is None:
-        raise InputError("[cage] ball_cage_stiffness", "is missing, and no cage material is known", cure=NO_STIFFNESS)
+        raise InputError(
+            "[cage] ball_cage_stiffness", "is missing, and no cage material is known", cure=NO_STIFFNESS
+        )
     speed = study.stability.middle_kick
     stiffness = ball_pocket_stiffness(
         study.bearing.ball_diameter,
@@ -202,8 +205,10 @@ def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[Ne
     return stiffness, f"Hertz, ball on a flat wall of {wall.name} at {speed:g} m/s"
 
 
-def cage_state(study: Study, *, material: Material | None = None, traction: TractionState | None = None) -> CageState:
-    """Build the cage in the plane, with the race damping that the chain gives and the study's pocket friction.
+def cage_state(
+    study: Study, *, material: Material | None = None, traction: TractionState | None = None
+) -> CageState:
+    """Build the cage in the plane, with the chain's race damping and the study's pocket friction.
 
     The ball set turns at the balls' mean orbital speed; a cage without a stated inertia is a thin ring.
     """
@@ -249,4 +254,6 @@ def pocket_friction(study: Study) -> Ratio:
         for measured in candidate.friction.values():
             if measured is not None:
                 return measured.mean
-    raise InputError("[cage] ball_cage_friction", "is missing", cure="Give it, or [ranking] with measured frictions.")
+    raise InputError(
+        "[cage] ball_cage_friction", "is missing", cure="Give it, or [ranking] with measured frictions."
+    )

@@ -6,6 +6,7 @@ from separatrix.stability.curve import (
     LinearLimit,
     StabilityCurve,
     critical_friction,
+    curve_of_points,
     linear_limit,
     stability_curve,
 )
@@ -22,6 +23,7 @@ __all__ = [
     "StabilityCurve",
     "cage_at",
     "critical_friction",
+    "curve_of_points",
     "linear_limit",
     "race_damping_at",
     "restitution_threshold",

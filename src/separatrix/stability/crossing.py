@@ -82,7 +82,9 @@ def _between(low: Ratio, high: Ratio, shares: tuple[Ratio, Ratio], target: Ratio
     return low + min(max(part, 0.0), 1.0) * (high - low)
 
 
-def interval(counter: Counter, grid: Sequence[Ratio], crossing: Crossing, target: Ratio) -> tuple[Ratio, Ratio]:
+def interval(
+    counter: Counter, grid: Sequence[Ratio], crossing: Crossing, target: Ratio
+) -> tuple[Ratio, Ratio]:
     """Coordinates at which the target leaves the 95 % interval of the counts, before and after a crossing."""
     low, edge = crossing.cell, len(grid) - 1
 

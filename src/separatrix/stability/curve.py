@@ -1,4 +1,4 @@
-"""Critical pocket friction against restitution factor, with its band: the paper's stability curve (Fig. 2)."""
+"""Critical pocket friction against restitution factor, with its band: the stability curve (paper, Fig. 2)."""
 
 from __future__ import annotations
 
@@ -93,19 +93,26 @@ def stability_curve(
     points = work_through(
         lambda eta: critical_friction(cage, eta, settings, counter=counts), etas, jobs=jobs, progress=progress
     )
-    finished = tuple(point for point in points if point is not None)
+    finished = [point for point in points if point is not None]
     if etas and not finished:
         raise KeyboardInterrupt
+    return curve_of_points(cage, settings, finished)
+
+
+def curve_of_points(
+    cage: PlanarCage, settings: StabilitySettings, points: Sequence[CriticalFriction]
+) -> StabilityCurve:
+    """Return the curve of the points that were finished, rising restitution factors first."""
     return StabilityCurve(
-        curve=finished,
-        linear_limit=tuple(linear_limit(cage, eta) for eta in etas),
+        curve=tuple(sorted(points, key=lambda point: point.restitution_factor)),
+        linear_limit=tuple(linear_limit(cage, eta) for eta in settings.restitution_factors),
         kicks=settings.kicks,
         middle_kick=settings.middle_kick,
         runs=settings.runs,
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
         searched_friction=SEARCHED_FRICTION,
-        complete=len(finished) == len(etas),
+        complete=len(points) == len(settings.restitution_factors),
     )
 
 
@@ -137,7 +144,9 @@ def critical_friction(
         "critical_friction_low": _first(at, 0.1, start),
         "critical_friction_high": _last(at, 0.9, start),
     }
-    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends.values() if isinstance(side, Side)]
+    reasons = [
+        _REASONS[side].format(target, kick) for side, target, kick in ends.values() if isinstance(side, Side)
+    ]
     values = {name: end[0].value if isinstance(end[0], Crossing) else None for name, end in ends.items()}
     return CriticalFriction(
         restitution_factor=restitution_factor, reason="; ".join(dict.fromkeys(reasons)) or None, **values
@@ -145,8 +154,8 @@ def critical_friction(
 
 
 _REASONS = {
-    Side.ABOVE: "a share of {0:g} of the runs kicked by {1:g} m/s grows even without pocket friction",
-    Side.BELOW: f"less than a share of {{0:g}} of the runs kicked by {{1:g}} m/s grows up to a friction of {SEARCHED_FRICTION:g}",
+    Side.ABOVE: "kicked by {1:g} m/s, a share of {0:g} of the runs grows even without pocket friction",
+    Side.BELOW: f"kicked by {{1:g}} m/s, a share below {{0:g}} grows, up to a friction of {SEARCHED_FRICTION:g}",
 }
 
 Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
@@ -174,7 +183,7 @@ def _first(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Foun
 
 
 def _last(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
-    """Largest crossing of the target over the kicks; BELOW if one kick is below it at the top of the range."""
+    """Largest crossing of the target over the kicks; BELOW if one kick is below it at the top."""
     for kick, count in at.items():
         if count(FRICTION_GRID[-1], target).share < target:
             return Side.BELOW, target, kick
@@ -194,5 +203,3 @@ def _better(best: Found, other: Found, *, sign: int) -> Found:
     if not isinstance(best[0], Crossing) or sign * other[0].value < sign * best[0].value:
         return other
     return best
-
-

@@ -16,7 +16,7 @@ RESTITUTION_GRID: tuple[Ratio, ...] = (*(i / 50 for i in range(50)), 0.99, 0.995
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionThreshold:
-    """Largest restitution factor at which the cage is stable, with the 95 % interval of the ensemble's scatter."""
+    """Largest restitution factor at which the cage is stable, with the 95 % interval of the runs' scatter."""
 
     value: Ratio
     low: Ratio
@@ -27,7 +27,9 @@ class RestitutionThreshold:
 def restitution_threshold(
     cage: PlanarCage, friction: Ratio, settings: StabilitySettings, *, counter: GrowthCounter | None = None
 ) -> RestitutionThreshold:
-    """Restitution factor at which half the runs grow from the middle kick: where critical friction is `friction`.
+    """Restitution factor at which half the runs grow from the middle kick.
+
+    It is where the critical friction equals `friction`.
 
     Parameters
     ----------

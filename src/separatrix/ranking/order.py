@@ -1,0 +1,43 @@
+"""Ranks with ties: within the scatter nobody is first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from separatrix.units import Ratio
+
+Interval = tuple[Ratio, Ratio, Ratio]
+"""A threshold with the low and the high end of its scatter."""
+
+
+def ranks(thresholds: Sequence[Interval | None]) -> list[int | None]:
+    """Rank of each threshold, the largest first; None stays None.
+
+    The best one leads the first group. Whoever's interval reaches the leader's is tied with it; the best of
+    the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3). Groups are told by
+    their leader, so being tied is transitive: a chain of small steps does not tie the first with the last.
+
+    Parameters
+    ----------
+    thresholds : sequence
+        (value, low, high) of each candidate, or None [-].
+    """
+    order = sorted(
+        (i for i, t in enumerate(thresholds) if t is not None), key=lambda i: _best_first(thresholds, i)
+    )
+    found: list[int | None] = [None] * len(thresholds)
+    leader, rank = None, 0
+    for place, i in enumerate(order, start=1):
+        if leader is None or not _reaches(thresholds[i], thresholds[leader]):
+            leader, rank = i, place
+        found[i] = rank
+    return found
+
+
+def _best_first(thresholds: Sequence[Interval | None], i: int) -> tuple[float, float]:
+    found = thresholds[i]
+    return (0.0, 0.0) if found is None else (-found[0], -found[2])
+
+
+def _reaches(other: Interval | None, leader: Interval | None) -> bool:
+    return other is not None and leader is not None and other[2] >= leader[1]

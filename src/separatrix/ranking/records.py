@@ -1,0 +1,95 @@
+"""What a ranking answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from separatrix.stability import StabilityCurve
+from separatrix.units import Hertz, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Second
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RankedMaterial:
+    """One candidate in one environment; if it was not measured there, only its name and the reason.
+
+    Attributes
+    ----------
+    name : str
+        The candidate.
+    friction, friction_error : float or None
+        Mean measured pocket friction, and its standard error if its scatter is known [-].
+    ball_cage_stiffness, restitution_factor : float or None
+        Of its pocket [N/m], and of the chain with it [-].
+    restitution_threshold, restitution_threshold_low, restitution_threshold_high : float or None
+        Largest restitution factor at which it is stable, and its 95 % interval [-].
+    margin : float or None
+        Threshold less the chain's restitution factor [-].
+    probability_stable, probability_low, probability_high : float or None
+        Share of the verdict's runs that die, and its 95 % interval [-].
+    verdict : str or None
+        STABLE, UNSTABLE or UNDECIDED.
+    rank : int or None
+        By threshold; those within the scatter of the best one share its rank.
+    within_reach : bool or None
+        Whether the threshold reaches the restitution factor that the paper grants solid lubrication.
+    reason : str
+        A sentence with the numbers.
+    largest_offset, drift_rate, largest_contact_force, whirl_frequency, whirl_direction, duration, runs
+        Evidence of the verdict's ensemble, as in `Judgement`.
+    """
+
+    name: str
+    friction: Ratio | None = None
+    friction_error: Ratio | None = None
+    ball_cage_stiffness: NewtonPerMetre | None = None
+    restitution_factor: Ratio | None = None
+    restitution_threshold: Ratio | None = None
+    restitution_threshold_low: Ratio | None = None
+    restitution_threshold_high: Ratio | None = None
+    margin: Ratio | None = None
+    probability_stable: Ratio | None = None
+    probability_low: Ratio | None = None
+    probability_high: Ratio | None = None
+    verdict: str | None = None
+    rank: int | None = None
+    within_reach: bool | None = None
+    reason: str
+    largest_offset: Metre | None = None
+    drift_rate: float | None = None
+    largest_contact_force: Newton | None = None
+    whirl_frequency: Hertz | None = None
+    whirl_direction: int | None = None
+    duration: Second | None = None
+    runs: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RankedEnvironment:
+    """The candidates in one environment, best first; those not measured come last."""
+
+    name: str
+    materials: tuple[RankedMaterial, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ranking:
+    """Answer of a ranking.
+
+    `restitution_factor` is the chain's; where each candidate has a pocket stiffness, and so a restitution
+    factor, of its own, it is the largest of them. `overall` takes the mean friction over the measured
+    environments. The stability curve holds for `ball_cage_stiffness`. `complete` is False if an interrupt
+    left something out.
+    """
+
+    restitution_factor: Ratio
+    restitution_factor_free_spin: Ratio
+    ball_cage_stiffness: NewtonPerMetre
+    solid_lubrication_limit: Ratio
+    paper_statement: str
+    environments: tuple[RankedEnvironment, ...]
+    overall: tuple[RankedMaterial, ...]
+    stability: StabilityCurve | None
+    kicks: tuple[MetrePerSecond, ...]
+    runs: int
+    duration: Second
+    complete: bool
