@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from separatrix.cage import run as single
-from separatrix.cage.motion import ball_directions, coefficients, longest_step
+from separatrix.cage.motion import ball_directions, coefficients, step_counts, unit_step
 from separatrix.cage.planar import PlanarCage, RunOutcome
 from separatrix.errors import InputError
 from separatrix.units import Array, MetrePerSecond, Ratio, Second
@@ -107,12 +107,13 @@ def run_ensemble(
     size = max(1, CHUNK_STEPS // (5 * fifth))
     chunks = [(i, slice(first, first + size)) for i in range(len(kicks)) for first in range(0, runs, size)]
     cos, sin = ball_directions(cage.ball_count)
+    counts = step_counts(cage, p.unit)
     scatter = settings.ball_scatter * cage.half_play
 
     def work(chunk: tuple[int, slice]) -> None:
         i, rows = chunk
         single.run_chunk(
-            p, cos, sin, starts[rows], scatter, kicks[i], fifth, _limits(cage, kicks[i]), cage.rotation_sense,
+            p, cos, sin, counts, starts[rows], scatter, kicks[i], fifth, _limits(cage, kicks[i]), cage.rotation_sense,
             evidence[i, rows],
         )  # fmt: skip
 
@@ -133,7 +134,7 @@ def _check(kicks: Sequence[float], runs: int, duration: float) -> None:
 
 def _steps(cage: PlanarCage, duration: Second) -> tuple[Coefficients, int]:
     """Kernel's numbers at the step that divides a fifth of the duration, and the steps in it."""
-    count = duration / single.FIFTHS / longest_step(cage)
+    count = duration / single.FIFTHS / unit_step(cage)
     if not count <= MOST_STEPS:
         cure = "Shorten [stability] duration, or check the cage's stiffnesses and inertia."
         raise InputError("[stability] duration", "needs too many steps", "s", f"{duration}", cure)

@@ -44,7 +44,7 @@ def rebound_damping(restitution: Ratio) -> Ratio:
 
 
 @kernel
-def land_impulse(p, x, y, vx, vy, spin):  # type: ignore[no-untyped-def]
+def land_impulse(p, x, y, vx, vy, spin, dt):  # type: ignore[no-untyped-def]
     r"""Impulse of the land on the cage over one step, from the state at its middle.
 
     Normal: :math:`F = \max(0, K\delta + c\dot\delta)`, implicit in the damper, with the part of the step in touch.
@@ -62,7 +62,7 @@ def land_impulse(p, x, y, vx, vy, spin):  # type: ignore[no-untyped-def]
         return 0.0, 0.0, 0.0, 0.0
     nx, ny = x / r, y / r
     closing = nx * vx + ny * vy
-    reach = 0.5 * closing * p.dt
+    reach = 0.5 * closing * dt
     first, last = depth - reach, depth + reach
     if first <= 0.0 and last <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
@@ -71,8 +71,8 @@ def land_impulse(p, x, y, vx, vy, spin):  # type: ignore[no-untyped-def]
         deepest = max(first, last)
         share = deepest / abs(last - first)
         mean = 0.5 * deepest * share
-    damping = p.land_damping * share * p.dt
-    normal = (p.land_stiffness * mean * p.dt + damping * closing) / (1.0 + 0.5 * damping / p.mass)
+    damping = p.land_damping * share * dt
+    normal = (p.land_stiffness * mean * dt + damping * closing) / (1.0 + 0.5 * damping / p.mass)
     if normal <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     # Outer land: the cage touches on the side of its offset; inner land: on the opposite side.

@@ -17,11 +17,15 @@ from separatrix.cage.pocket import kernel, relaxation, settle
 from separatrix.study import Guidance
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from separatrix.cage.planar import PlanarCage
     from separatrix.units import Array, Second
 
-STEPS_PER_RADIAN = 4.0
-LONGEST_FLIGHT = 256
+STEPS_PER_RADIAN = 6.0
+UNITS = 4
+CALM_AFTER, CALM_STRIDE = 100, 3
+LONGEST_FLIGHT = 1024
 
 # Slots of the state: centre of mass, its velocity, rotation against the ball set and its rate, step counter.
 X, Y, VX, VY, THETA, SPIN, STEP = range(7)
@@ -37,7 +41,7 @@ TALLY = 8
 class Coefficients(NamedTuple):
     """Numbers of one cage as the kernel wants them; `dt` and what follows from it included."""
 
-    dt: float
+    unit: float
     mass: float
     inertia: float
     radius: float
@@ -46,7 +50,7 @@ class Coefficients(NamedTuple):
     yielding: float  # 1 / C_mu
     half_play: float
     friction: float  # sigma f
-    relax: float
+    longest_flight: float
     land_side: float
     land_gap: float
     land_stiffness: float
@@ -57,13 +61,54 @@ class Coefficients(NamedTuple):
     gravity: float
 
 
-def longest_step(cage: PlanarCage) -> Second:
-    """Step that resolves the fastest contact motion: a quarter of its time per radian [s]."""
-    turning = cage.pitch_radius**2 / cage.moment_of_inertia
-    rate = cage.ball_count * cage.ball_cage_stiffness * max(turning, 0.5 / cage.mass)
+class Press(NamedTuple):
+    """What the balls' forces on their pockets sum to."""
+
+    cos: float  # sums of N cos, N sin and N [N]
+    sin: float
+    total: float
+    edge_cos: float  # the same of what a touch or a parting inside the step takes off the trapezium rule
+    edge_sin: float
+    edge: float
+    squares: float  # sum of N^2 [N2]
+    reach: float  # largest excursion |u| of a ball in its pocket [m]
+    peak: float  # largest |N| [N]
+    touching: int
+    changes: int  # balls that touched or parted inside the step
+
+
+def unit_step(cage: PlanarCage) -> Second:
+    """Unit of time of which every step is a multiple: a quarter of the step with all balls in touch [s]."""
+    return _step(_contact_rate(cage, cage.ball_count)) / UNITS
+
+
+def step_counts(cage: PlanarCage, unit: Second) -> NDArray[np.int64]:
+    """Units in a step, by the number of balls in touch, shape (ball + 1,).
+
+    One more ball than touches at the start may touch within the step; the land may as well.
+    """
+    rates = [_contact_rate(cage, min(n + 1, cage.ball_count)) for n in range(cage.ball_count + 1)]
+    return np.array([max(1, int(_step(rate) / unit * (1 + 1e-9))) for rate in rates])
+
+
+def _step(rate_squared: float) -> Second:
+    return 1.0 / (STEPS_PER_RADIAN * math.sqrt(rate_squared))
+
+
+def _contact_rate(cage: PlanarCage, touching: int) -> float:
+    """Bound on the squared rate of the fastest motion with this many balls in touch, and the land [1/s2]."""
+    turning, k = cage.pitch_radius**2 / cage.moment_of_inertia, cage.ball_cage_stiffness
+    few = touching * k * (turning + 1.0 / cage.mass)
+    rate = min(few, cage.ball_count * k * max(turning, 0.5 / cage.mass))
     if cage.guidance is not Guidance.BALL:
-        rate = max(rate, cage.land_stiffness / cage.mass)
-    return 1.0 / (STEPS_PER_RADIAN * math.sqrt(rate))
+        rate += cage.land_stiffness / cage.mass
+    return rate
+
+
+def _longest_flight(cage: PlanarCage, unit: Second) -> Second:
+    """Longest step without touch: the frame turns by no more than a tenth of a radian in it [s]."""
+    turning = 0.1 / abs(cage.cage_speed) if cage.cage_speed else math.inf
+    return min(turning, LONGEST_FLIGHT * unit)
 
 
 def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
@@ -71,7 +116,7 @@ def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
     k, m = cage.ball_cage_stiffness, cage.mass
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     return Coefficients(
-        dt=dt,
+        unit=dt,
         mass=m,
         inertia=cage.moment_of_inertia,
         radius=cage.pitch_radius,
@@ -80,7 +125,7 @@ def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
         yielding=1.0 / cage.race_damping,
         half_play=cage.half_play,
         friction=cage.friction_sense * cage.ball_cage_friction,
-        relax=k * dt / cage.race_damping,
+        longest_flight=_longest_flight(cage, dt),
         land_side=side,
         land_gap=cage.land_gap,
         land_stiffness=cage.land_stiffness,
@@ -99,7 +144,17 @@ def ball_directions(count: int) -> tuple[Array, Array]:
 
 
 @kernel
-def fly(p, t, s, dt):  # type: ignore[no-untyped-def]
+def pace(p, count):  # type: ignore[no-untyped-def]
+    """Time of a number of unit steps with what follows from it: relaxation, and the turn of the frame in it."""
+    dt = count * p.unit
+    a = p.stiffness * p.yielding * dt
+    kept, followed = relaxation(a)
+    angle = p.turning * dt
+    return dt, a, kept, followed, np.cos(angle), np.sin(angle), np.cos(0.5 * angle), np.sin(0.5 * angle)
+
+
+@kernel
+def fly(p, t, s, dt, c, i):  # type: ignore[no-untyped-def]
     """Advance the free motion exactly: a straight line (or gravity's parabola) in space, seen in the turning frame."""
     W = p.turning
     ux, uy = s[VX] - W * s[Y], s[VY] + W * s[X]
@@ -108,12 +163,9 @@ def fly(p, t, s, dt):  # type: ignore[no-untyped-def]
         gx, gy = p.gravity * np.cos(W * t), -p.gravity * np.sin(W * t)
         x, y = x + 0.5 * gx * dt * dt, y + 0.5 * gy * dt * dt
         ux, uy = ux + gx * dt, uy + gy * dt
-    if W != 0.0:
-        c, i = np.cos(W * dt), np.sin(W * dt)
-        x, y = c * x + i * y, c * y - i * x
-        ux, uy = c * ux + i * uy, c * uy - i * ux
-    s[X], s[Y] = x, y
-    s[VX], s[VY] = ux + W * y, uy - W * x
+    s[X], s[Y] = c * x + i * y, c * y - i * x
+    s[VX] = c * ux + i * uy + W * s[Y]
+    s[VY] = c * uy - i * ux - W * s[X]
     s[THETA] += s[SPIN] * dt
 
 
@@ -127,12 +179,12 @@ def centre(p, s):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def drift(p, t, s, ledger, dt):  # type: ignore[no-untyped-def]
+def drift(p, t, s, ledger, dt, c, i):  # type: ignore[no-untyped-def]
     """Advance the free motion and enter the work of gravity, moving frame and unbalance."""
     W2 = p.mass * p.turning * p.turning
     x, y = s[X], s[Y]
     cx, cy = centre(p, s)
-    fly(p, t, s, dt)
+    fly(p, t, s, dt, c, i)
     dx, dy = s[X] - x, s[Y] - y
     frame = 0.5 * W2 * ((s[X] + x) * dx + (s[Y] + y) * dy)
     unbalance = 0.0
@@ -165,7 +217,7 @@ def lean(p, s, impulse_x, impulse_y, moment):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def press(p, cos, sin, s, seat, lead, load):  # type: ignore[no-untyped-def]
+def press(p, cos, sin, s, seat, lead, load, a, kept, followed):  # type: ignore[no-untyped-def]
     """Let every ball yield to the cage's new place; return what its forces sum to.
 
     Parameters
@@ -181,14 +233,15 @@ def press(p, cos, sin, s, seat, lead, load):  # type: ignore[no-untyped-def]
 
     Returns
     -------
-    tuple of float
-        Sums of N cos, N sin and N [N], of N^2 [N2], and the largest excursion |u| of a ball in its pocket [m].
+    Press
+        What the forces sum to at the end of the step.
     """
     x, y = centre(p, s)
     turned = p.radius * s[THETA]
-    kept, followed = relaxation(p.relax)
     c = p.half_play
-    sum_cos = sum_sin = total = squares = reach = 0.0
+    sum_cos = sum_sin = total = squares = reach = peak = 0.0
+    edge_cos = edge_sin = edge = 0.0
+    touching = changes = 0
     for j in range(cos.size):
         w = y * cos[j] - x * sin[j] + turned
         old, new = seat[j] - lead[j], w - lead[j]
@@ -200,16 +253,25 @@ def press(p, cos, sin, s, seat, lead, load):  # type: ignore[no-untyped-def]
             n = p.stiffness * q
         elif abs(old) > c or abs(new) > c:
             side = 1.0 if (old > c or (new > c and old >= -c)) else -1.0
-            q, gave = settle(side * old - c, side * new - c, p.relax, kept, followed)
+            q, gave, share = settle(side * old - c, side * new - c, a, kept, followed)
             lead[j] += side * gave
             n = side * p.stiffness * q
+            if share < 1.0:
+                miss = (n + load[j]) * (share - 1.0)
+                edge_cos += miss * cos[j]
+                edge_sin += miss * sin[j]
+                edge += miss
+                changes += 1
         reach = max(reach, abs(w - lead[j]))
         load[j] = n
-        sum_cos += n * cos[j]
-        sum_sin += n * sin[j]
-        total += n
-        squares += n * n
-    return sum_cos, sum_sin, total, squares, reach
+        if n != 0.0:
+            sum_cos += n * cos[j]
+            sum_sin += n * sin[j]
+            total += n
+            squares += n * n
+            peak = max(peak, abs(n))
+            touching += 1
+    return Press(sum_cos, sum_sin, total, edge_cos, edge_sin, edge, squares, reach, peak, touching, changes)
 
 
 @kernel
@@ -224,43 +286,44 @@ def kick(p, s, ledger, sum_cos, sum_sin, total, dt):  # type: ignore[no-untyped-
 
 
 @kernel
-def flight_steps(p, s, reach, limit):  # type: ignore[no-untyped-def]
-    """Steps for which nothing can touch, from the gaps left and a bound on the speed."""
+def clear_time(p, s, reach, longest):  # type: ignore[no-untyped-def]
+    """Time in which nothing can touch, from the gaps left and a bound on the speed; at most `longest` [s]."""
     x, y = centre(p, s)
-    r = np.sqrt(x * x + y * y)
-    gap = min(p.half_play - reach, p.land_gap - r)
+    gap = min(p.half_play - reach, p.land_gap - np.sqrt(x * x + y * y))
+    if gap <= 0.0:
+        return 0.0
     W = abs(p.turning)
-    limit = min(limit, LONGEST_FLIGHT)
-    if W > 0.0:
-        limit = min(limit, int(0.1 / (W * p.dt)))
-    if gap <= 0.0 or limit < 2:
-        return 1
     ux, uy = s[VX] - p.turning * s[Y], s[VY] + p.turning * s[X]
-    rim = np.sqrt(s[X] * s[X] + s[Y] * s[Y])
-    speed = 1.1 * np.sqrt(ux * ux + uy * uy) + W * rim
-    speed += abs(s[SPIN]) * (p.radius + p.eccentricity) + 1.1 * p.gravity * limit * p.dt
-    if speed * p.dt * limit <= gap:
-        return limit
-    return max(1, int(gap / (speed * p.dt)))
+    speed = 1.1 * np.sqrt(ux * ux + uy * uy) + W * np.sqrt(s[X] * s[X] + s[Y] * s[Y])
+    speed += abs(s[SPIN]) * (p.radius + p.eccentricity) + 1.1 * p.gravity * longest
+    return min(longest, gap / speed) if speed > 0.0 else longest
 
 
 @kernel
-def strike_land(p, t, s, ledger, tally):  # type: ignore[no-untyped-def]
-    """Drift one step with the land's impulse in its middle."""
-    half = 0.5 * p.dt
-    drift(p, t, s, ledger, half)
+def strike_land(p, t, s, ledger, tally, dt, c, i):  # type: ignore[no-untyped-def]
+    """Drift one step with the land's impulse in its middle; c and i turn the frame by half the step."""
+    half = 0.5 * dt
+    drift(p, t, s, ledger, half, c, i)
     x, y = centre(p, s)
     e = p.eccentricity
     vx, vy = s[VX], s[VY]
     if e != 0.0:
         vx, vy = vx + e * s[SPIN] * np.sin(s[THETA]), vy - e * s[SPIN] * np.cos(s[THETA])
-    px, py, moment, normal = land_impulse(p, x, y, vx, vy, s[SPIN])
+    px, py, moment, normal = land_impulse(p, x, y, vx, vy, s[SPIN], dt)
     if normal > 0.0:
         work = lean(p, s, px, py, moment)
         ledger[LAND] += work
         ledger[GROSS] += abs(work)
-        tally[LAND_MAX] = max(tally[LAND_MAX], normal / p.dt)
-    drift(p, t + half, s, ledger, half)
+        tally[LAND_MAX] = max(tally[LAND_MAX], normal / dt)
+    drift(p, t + half, s, ledger, half, c, i)
+
+
+@kernel
+def near_land(p, s, dt):  # type: ignore[no-untyped-def]
+    """Whether the cage may touch its land within a step."""
+    x, y = centre(p, s)
+    reach = (abs(s[VX]) + abs(s[VY]) + p.eccentricity * abs(s[SPIN]) + p.gravity * dt) * dt
+    return p.land_side != 0.0 and np.sqrt(x * x + y * y) + 1.5 * reach > p.land_gap
 
 
 @kernel
@@ -283,7 +346,7 @@ def enter(p, s, tally, before_vx, before_vy, before_energy, peak, dt):  # type: 
 
 
 @kernel
-def advance(p, cos, sin, s, seat, lead, load, ledger, tally, steps):  # type: ignore[no-untyped-def]
+def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, steps):  # type: ignore[no-untyped-def]
     """Advance the cage by a number of steps, in place.
 
     Parameters
@@ -297,38 +360,35 @@ def advance(p, cos, sin, s, seat, lead, load, ledger, tally, steps):  # type: ig
     steps : int
         How many; never more are taken, so the work is bounded.
     """
-    sum_cos = sum_sin = total = squares = reach = peak = 0.0
-    for j in range(cos.size):
-        n = load[j]
-        sum_cos += n * cos[j]
-        sum_sin += n * sin[j]
-        total += n
-        squares += n * n
-        reach = max(reach, abs(seat[j] - lead[j]))
+    f = press(p, cos, sin, s, seat, lead, load, 0.0, 1.0, 1.0)
     energy = 0.5 * (p.mass * (s[VX] ** 2 + s[VY] ** 2) + p.inertia * s[SPIN] ** 2)
-    done = 0
+    done, was_count, calm = 0, -1, 0
+    now = pace(p, 1)
     while done < steps:
-        t = s[STEP] * p.dt
-        count = flight_steps(p, s, reach, steps - done) if squares == 0.0 else 1
-        dt = count * p.dt
-        vx, vy, was = s[VX], s[VY], squares
-        if count == 1:
-            kick(p, s, ledger, sum_cos, sum_sin, total, 0.5 * dt)
-            if p.land_side != 0.0:
-                strike_land(p, t, s, ledger, tally)
-            else:
-                drift(p, t, s, ledger, dt)
+        t = s[STEP] * p.unit
+        count = counts[f.touching] * (CALM_STRIDE if calm > CALM_AFTER else 1)
+        if f.touching == 0:
+            count = max(count, int(clear_time(p, s, f.reach, p.longest_flight) / p.unit))
+        count = min(count, steps - done)
+        if count != was_count:
+            now = pace(p, count)
+            was_count = count
+        dt, a, kept, followed, c, i, c_half, i_half = now
+        vx, vy, was = s[VX], s[VY], f.squares
+        if f.touching > 0:
+            kick(p, s, ledger, f.cos, f.sin, f.total, 0.5 * dt)
+        if near_land(p, s, dt):
+            strike_land(p, t, s, ledger, tally, dt, c_half, i_half)
         else:
-            drift(p, t, s, ledger, dt)
-        sum_cos, sum_sin, total, squares, reach = press(p, cos, sin, s, seat, lead, load)
-        if squares > 0.0 or was > 0.0:
-            kick(p, s, ledger, sum_cos, sum_sin, total, 0.5 * dt)
-            lost = 0.5 * (was + squares) * p.yielding * dt
-            ledger[RACE_DAMPERS] -= lost
-            ledger[GROSS] += lost
-            peak = np.max(np.abs(load))
-        energy = enter(p, s, tally, vx, vy, energy, peak, dt)
-        peak = 0.0
+            drift(p, t, s, ledger, dt, c, i)
+        f = press(p, cos, sin, s, seat, lead, load, a, kept, followed)
+        calm = calm + 1 if f.changes == 0 and f.touching > 0 else 0
+        if f.touching > 0 or f.changes > 0:
+            kick(p, s, ledger, f.cos + f.edge_cos, f.sin + f.edge_sin, f.total + f.edge, 0.5 * dt)
+        lost = 0.5 * (was + f.squares) * p.yielding * dt
+        ledger[RACE_DAMPERS] -= lost
+        ledger[GROSS] += lost
+        energy = enter(p, s, tally, vx, vy, energy, f.peak, dt)
         done += count
         s[STEP] += count
-    ledger[STORED] = 0.5 * squares / p.stiffness
+    ledger[STORED] = 0.5 * f.squares / p.stiffness

@@ -34,19 +34,21 @@ def settle(gap_start, gap_end, a, kept, followed):  # type: ignore[no-untyped-de
     Returns
     -------
     tuple of float
-        Penetration at the end (0 if parted) and how far the ball has yielded [m].
+        Penetration at the end (0 if parted), how far the ball has yielded [m], and the share of the step in touch [-].
     """
+    share = 1.0
     start = gap_start
     travel = gap_end - gap_start
     if gap_start <= 0.0:
         if gap_end <= 0.0:
-            return 0.0, 0.0
-        a *= gap_end / travel
+            return 0.0, 0.0, 0.0
+        share = gap_end / travel
+        a *= share
         kept, followed = relaxation(a)
         start, travel = 0.0, gap_end
     end = start * kept + travel * followed
     if end > 0.0:
-        return end, start + travel - end
+        return end, start + travel - end, share
     ratio = -a * start / travel if travel != 0.0 else 0.0
     parted = np.log1p(ratio) / a if a > 0.0 else -start / travel
-    return 0.0, start + travel * parted
+    return 0.0, start + travel * parted, parted

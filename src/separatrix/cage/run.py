@@ -64,7 +64,7 @@ def energy_scale(cage: PlanarCage, kick: float) -> Joule:
 
 
 @kernel
-def run_one(p, cos, sin, direction, kick, lead, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
+def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
     """Run from the kick; write the outcome and its evidence into `out`, shape (evidence,).
 
     `limits`: offset of drift [m], and the energies above which the run is known to grow and below which to die [J].
@@ -84,7 +84,7 @@ def run_one(p, cos, sin, direction, kick, lead, fifth, limits, sense, out):  # t
         left = fifth
         while left > 0 and decided < 0:
             steps = min(left, (fifth + LOOKS - 1) // LOOKS)
-            advance(p, cos, sin, state, seat, lead, load, ledger, look, steps)
+            advance(p, cos, sin, counts, state, seat, lead, load, ledger, look, steps)
             left -= steps
             energy = 0.5 * (p.mass * (state[VX] ** 2 + state[VY] ** 2) + p.inertia * state[SPIN] ** 2)
             energy += ledger[STORED]
@@ -93,9 +93,9 @@ def run_one(p, cos, sin, direction, kick, lead, fifth, limits, sense, out):  # t
             elif energy < dies_below:
                 decided = _DIES
         if decided >= 0:
-            elapsed = (fifth - left) * p.dt
+            elapsed = (fifth - left) * p.unit
             break
-        elapsed = fifth * p.dt
+        elapsed = fifth * p.unit
     largest = 0.0
     force = 0.0
     for window in range(FIFTHS):
@@ -130,8 +130,8 @@ def run_one(p, cos, sin, direction, kick, lead, fifth, limits, sense, out):  # t
 
 
 @kernel
-def run_chunk(p, cos, sin, starts, scatter, kick, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
+def run_chunk(p, cos, sin, counts, starts, scatter, kick, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
     for i in range(starts.shape[0]):
         lead = starts[i, 1:] * scatter
-        run_one(p, cos, sin, starts[i, 0], kick, lead, fifth, limits, sense, out[i])
+        run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, out[i])
