@@ -25,6 +25,7 @@ FILES = {
 
 FRICTION_TABLES = ("pin-on-disk-77K",)
 
+_WORDS = {"elastic_modulus": "modulus", "poisson_ratio": "Poisson's ratio", "density": "density"}
 _UNITS = {"elastic_modulus": "Pa", "density": "kg/m3"}
 
 
@@ -62,11 +63,18 @@ def material(kind: str, name: str) -> Material:
     """
     if name not in names(kind):
         raise DataError(f'no {kind} "{name}"; the library has {", ".join(names(kind))}')
-    data = {key: datum for key, datum in _data(FILES[kind])[name].items() if isinstance(datum, dict)}
-    values = {key: _value(key, datum["value"]) for key, datum in data.items()}
-    source = "; ".join(f"{key}: {datum['source']}" for key, datum in data.items())
-    confidence = "; ".join(f"{key}: {datum['confidence']}" for key, datum in data.items())
-    return Material(name=name, source=source, confidence=confidence, **values)
+    record = _data(FILES[kind])[name]
+    data = {key: datum for key, datum in record.items() if isinstance(datum, dict)}
+    sources = [
+        record["remark"].rstrip("."),
+        *(f"{_WORDS[key]}: {datum['source']}" for key, datum in data.items()),
+    ]
+    return Material(
+        name=name,
+        source=". ".join(sources),
+        confidence=", ".join(f"{_WORDS[key]}: {datum['confidence']}" for key, datum in data.items()),
+        **{key: _value(key, datum["value"]) for key, datum in data.items()},
+    )
 
 
 def bearing_material(name: str) -> Material:

@@ -33,6 +33,8 @@ class Entry:
 
     value: Any
     place: str
+    item_places: tuple[str, ...] = ()
+    """Place of each item, if it is a list of tables."""
 
 
 @dataclass(slots=True)
@@ -44,6 +46,11 @@ class Document:
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     problems: list[InputError] = field(default_factory=list)
+
+    def place(self, *keys: str) -> str:
+        """File and line of the first of the dotted keys that has a line of its own."""
+        line = next((self.lines[key] for key in keys if key in self.lines), None)
+        return self.label if line is None else f"{self.label}, line {line}"
 
 
 def find(study: str | Path) -> Path:
@@ -83,41 +90,43 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     return _merged(load(target, chain), document)
 
 
-def unknown(where: str, what: str, name: str, known: Iterable[str], cure: str = "") -> InputError:
-    """Refusal of a name that is not known, with the nearest one that is."""
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
     choices = list(known)
-    near = get_close_matches(name[:80], choices, 1, 0.6)
-    hint = f"Did you mean {near[0]}?" if near else cure or f"Known: {', '.join(choices)}."
-    return InputError(where, f"is no {what}", cure=hint)
+    near = get_close_matches(name[:80].casefold(), {c.casefold(): c for c in choices}, 1, 0.6)
+    listed = f"Known: {', '.join(choices)}."
+    if len(listed) > 200:
+        listed = listed[: listed.rindex(",", 0, 200)] + ", ..."
+    by_case = {c.casefold(): c for c in choices}
+    return f"Did you mean {by_case[near[0]]}?" if near else listed
 
 
 def _own(path: Path) -> Document:
-    label = label_of(path)
     data, lines = read_toml(path)
-    document = Document(label, lines=lines)
+    document = Document(label_of(path), lines=lines)
     for name, value in data.items():
-        place = _place(label, lines.get(name))
+        place = document.place(name)
+        plain = printable(name)[:60]
         if name in ("title", "extends"):
             document.top[name] = Entry(value, place)
-        elif name not in SECTIONS:
-            kind = "section" if isinstance(value, dict) else "key here"
-            known = [f"[{s}]" for s in SECTIONS] if isinstance(value, dict) else ["title", "extends"]
-            shown_name = f"[{printable(name)[:60]}]" if isinstance(value, dict) else printable(name)[:60]
-            document.problems.append(unknown(f"{place}: {shown_name}", kind, shown_name, known))
-        elif not isinstance(value, dict):
-            document.problems.append(
-                InputError(f"{place}: {name}", f"must be one section, [{name}]", "", shown(value))
-            )
+        elif name in SECTIONS and isinstance(value, dict):
+            document.sections[name] = {key: _entry(document, f"{name}.{key}", v) for key, v in value.items()}
+        elif name in SECTIONS:
+            rule = f"must be one section, headed [{name}]"
+            document.problems.append(InputError(f"{place}: {name}", rule, "", shown(value)))
+        elif isinstance(value, dict):
+            cure = nearest(name, SECTIONS)
+            document.problems.append(InputError(f"{place}: [{plain}]", "is no section of a study", cure=cure))
         else:
-            document.sections[name] = {
-                key: Entry(v, _place(label, lines.get(f"{name}.{key}", lines.get(f"{name}.{key}.0"))))
-                for key, v in value.items()
-            }
+            cure = "Before the first section there are only title and extends."
+            document.problems.append(InputError(f"{place}: {plain}", "stands outside a section", cure=cure))
     return document
 
 
-def _place(label: str, line: int | None) -> str:
-    return label if line is None else f"{label}, line {line}"
+def _entry(document: Document, key: str, value: Any) -> Entry:
+    items = value if isinstance(value, list) else []
+    places = tuple(document.place(f"{key}.{i}", key) for i in range(len(items)))
+    return Entry(value, document.place(key, f"{key}.0"), places)
 
 
 def _base(path: Path, text: str, where: str) -> Path:
@@ -130,7 +139,7 @@ def _base(path: Path, text: str, where: str) -> Path:
 
 
 def _merged(base: Document, document: Document) -> Document:
-    merged = Document(document.label, document.top, {}, document.lines, base.problems + document.problems)
+    merged = Document(document.label, document.top, {}, {}, base.problems + document.problems)
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)
         if below is not None or above is not None:

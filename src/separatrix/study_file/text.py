@@ -69,7 +69,9 @@ def lines_of_keys(text: str) -> dict[str, int]:
             prefix = name + "."
             lines.setdefault(name, number)
         elif key := _KEY_LINE.match(line):
-            lines.setdefault(prefix + _plain(key.group(1)), number)
+            parts = _plain(key.group(1)).split(".")
+            for depth in range(1, min(len(parts), 4) + 1):
+                lines.setdefault(prefix + ".".join(parts[:depth]), number)
     return lines
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from separatrix import library, study
 from separatrix.errors import InputError, together
 from separatrix.study import Friction, Material
-from separatrix.study_file.document import unknown
+from separatrix.study_file.document import nearest
 from separatrix.units import parse, printable, shown
 
 Record = TypeVar("Record")
@@ -111,9 +111,9 @@ def material(kind: str) -> Reader:
 def named_material(name: str, kind: str, where: str) -> Material:
     """Material of the library, or a refusal that lists what there is."""
     if name not in library.names(kind):
-        names = ", ".join(library.names(kind))
-        near = unknown(where, kind, name, library.names(kind)).cure
-        cure = f"{near} The library has {names}." if near.startswith("Did") else f"The library has {names}."
+        listed = f"The library has {', '.join(library.names(kind))}."
+        near = nearest(name, library.names(kind))
+        cure = f"{near} {listed}" if near.startswith("Did") else listed
         raise InputError(where, f"is no {kind} of the library", "", shown(name), cure)
     return library.material(kind, name)
 
@@ -151,7 +151,8 @@ def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[st
         raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", "", shown(value))
     for key in value:
         if key not in readers:
-            raise unknown(f"{where}.{printable(key)[:60]}", "key of this table", key, readers)
+            at = f"{where}.{printable(key)[:60]}"
+            raise InputError(at, "is no key of this table", cure=nearest(key, readers))
     if missing := [key for key in required if key not in value]:
         raise InputError(where, f"lacks: {', '.join(missing)}")
     return {key: readers[key](item, f"{where}.{key}") for key, item in value.items()}

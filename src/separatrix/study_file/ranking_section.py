@@ -1,0 +1,96 @@
+"""The section [ranking]: a friction table of the library, or candidates in place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from separatrix import library
+from separatrix.errors import InputError, together
+from separatrix.study import Candidate, Friction, RankingQuestion
+from separatrix.study_file import values
+from separatrix.study_file.document import Document, nearest
+from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, where
+from separatrix.study_file.values import Reader
+from separatrix.units import shown
+
+MOST_CANDIDATES = 1000
+
+
+def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
+    """Build the question of a ranking from the converted keys of its section."""
+    for key in ("friction", "materials"):
+        refuse_both(document, "ranking", "candidates", key)
+    written = document.sections["ranking"]
+    if any(key not in given for key in written):
+        raise Unfinished
+    if "candidates" in written:
+        question = _in_place(document, given["candidates"])
+    elif "friction" in written:
+        question = _from_table(document, given)
+    else:
+        raise InputError(f"{document.label}: [ranking]", "lacks: friction (or candidates)")
+    return record_of(document, RankingQuestion, question)
+
+
+def _from_table(document: Document, given: dict[str, Any]) -> dict[str, Any]:
+    name = given["friction"]
+    if name not in library.FRICTION_TABLES:
+        rule, known = "is no friction table of the library", library.FRICTION_TABLES
+        raise InputError(where(document, "ranking", "friction"), rule, "", shown(name), nearest(name, known))
+    table = library.friction_table(name)
+    chosen = given.get("materials", tuple(table.friction))
+    for material in chosen:
+        if material not in table.friction:
+            rule, cure = f"names a material that {name} lacks", nearest(material, table.friction)
+            raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
+    return {"environments": table.environments, "candidates": tuple(table.candidate(m) for m in chosen)}
+
+
+def _in_place(document: Document, items: Any) -> dict[str, Any]:
+    place = where(document, "ranking", "candidates")
+    if not isinstance(items, list) or not 0 < len(items) <= MOST_CANDIDATES:
+        rule = f"must be 1 to {MOST_CANDIDATES} tables, each under [[ranking.candidates]]"
+        raise InputError(place, rule, "", shown(items))
+    before = len(document.problems)
+    found = [attempt(document, lambda i=i: _candidate(document, items[i], i)) for i in range(len(items))]  # type: ignore[misc]
+    candidates = [item for item in found if item is not None]
+    if len(document.problems) > before:
+        raise Unfinished
+    environments = tuple(dict.fromkeys(env for item in candidates for env in item.friction))
+    complete = (_with_gaps(candidate, environments) for candidate in candidates)
+    return {"environments": environments, "candidates": tuple(complete)}
+
+
+def _candidate(document: Document, item: Any, number: int) -> Candidate:
+    place = document.sections["ranking"]["candidates"].item_places[number]
+    at = f"{place}: [[ranking.candidates]] number {number + 1}"
+    return values.build(Candidate, values.table(item, at, _CANDIDATE, ("name", "friction")), at)
+
+
+def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate:
+    """The candidate with None where others were measured and it was not."""
+    friction = {env: candidate.friction.get(env) for env in environments}
+    return Candidate(name=candidate.name, friction=friction, material=candidate.material)
+
+
+def _frictions(value: Any, at: str) -> dict[str, Friction]:
+    if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
+        cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
+        raise InputError(at, "must be a table from environment to friction", "", shown(value), cure)
+    frictions, problems = {}, []
+    for name, item in value.items():
+        try:
+            environment = values.text(name, f"{at}, name of an environment,")
+            frictions[environment] = values.friction(item, f'{at} in "{environment[:60]}"')
+        except InputError as error:
+            problems.append(error)
+    if problems:
+        raise together(problems)
+    return frictions
+
+
+_CANDIDATE: dict[str, Reader] = {
+    "name": values.text,
+    "friction": _frictions,
+    "material": values.material("cage material"),
+}

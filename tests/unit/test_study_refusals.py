@@ -1,0 +1,491 @@
+"""Every wrong study file is refused with one line: place, rule, value, cure."""
+
+import os
+import pickle
+from pathlib import Path
+
+import pytest
+
+from separatrix.errors import InputError
+from separatrix.study_file import read_study, require
+
+VALID = """\
+title = "A valid study"
+
+[bearing]
+ball_diameter = "11.1125 mm"
+pitch_diameter = "65 mm"
+ball_count = 13
+contact_angle = "25 deg"
+inner_conformity = 0.52
+outer_conformity = 0.52
+bore = "50 mm"
+ball_material = "440C"
+ring_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3" }
+
+[operation]
+inner_speed = "15000 rpm"
+axial_load = "300 daN"
+
+[kinematics]
+model = "free"
+
+[film]
+race_friction = 0.1
+material = "PTFE transfer film"
+thickness = "0.5 um"
+
+[cage]
+mass = "25 g"
+ball_cage_stiffness = "3e6 N/m"
+pocket_clearance = "0.6 mm"
+guidance = "outer"
+land_clearance = "1 mm"
+
+[stability]
+kicks = ["0.1 m/s", "0.5 m/s", "2 m/s"]
+runs = 64
+restitution_factors = { from = 0.05, to = 0.95, count = 19 }
+
+[ranking]
+friction = "pin-on-disk-77K"
+materials = ["Armalon", "Vespel SP 211"]
+"""
+
+IN_PLACE = """\
+[[ranking.candidates]]
+name = "Mine"
+friction = { "liquid nitrogen, 440C" = 0.11 }
+"""
+TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n'
+
+
+def candidates(text: str) -> tuple[str, str]:
+    """Edit that replaces the whole [ranking] section."""
+    return "[ranking]\n" + TABLE, text
+
+
+# what is wrong: ((old, new) edit of VALID, words the message must have)
+EDITS = {
+    "unknown key": (('bore = "50 mm"', 'bor = "50 mm"'), ["line 10", "[bearing] bor", "Did you mean bore?"]),
+    "key of another section": (
+        ('bore = "50 mm"', 'axial_load = "3 N"'),
+        ["line 10", "[bearing] axial_load", "belongs in [operation]"],
+    ),
+    "unknown section": (
+        ("[kinematics]", "[kinematic]"),
+        ["line 18", "[kinematic]", "Did you mean kinematics?"],
+    ),
+    "key outside a section": (
+        ('title = "A valid study"', "runs = 3"),
+        ["line 1", "runs", "outside a section"],
+    ),
+    "section twice over": (
+        ("[operation]", "[[operation]]"),
+        ["operation", "one section, headed [operation]"],
+    ),
+    "bare number": (
+        ('"11.1125 mm"', "11.1"),
+        ["line 4", "[bearing] ball_diameter needs a unit of length; got 11.1", 'Write "11.1 mm".'],
+    ),
+    "number in quotes without unit": (
+        ('"11.1125 mm"', '"11.1"'),
+        ["needs a unit of length", 'Write "11.1 mm".'],
+    ),
+    "wrong dimension": (('"11.1125 mm"', '"3 N"'), ["needs a unit of length (m, ", 'got "3 N"', "a force"]),
+    "unknown unit": (('"205 GPa"', '"205 Gpa"'), ["ring_material.elastic_modulus", 'Did you mean "GPa"?']),
+    "decimal comma in quotes": (
+        ('"50 mm"', '"49,5 mm"'),
+        ["[bearing] bore", "decimal point", 'Write "49.5 mm".'],
+    ),
+    "decimal comma bare": (
+        ("inner_conformity = 0.52", "inner_conformity = 0,52"),
+        ["line 8", "not valid TOML", "Write a decimal point: 0.52."],
+    ),
+    "decimal comma in a ratio in quotes": (
+        ("inner_conformity = 0.52", 'inner_conformity = "0,52"'),
+        ["line 8", "[bearing] inner_conformity", "decimal point"],
+    ),
+    "quantity without quotes": (
+        ('pitch_diameter = "65 mm"', "pitch_diameter = 65 mm"),
+        ["line 5", 'Put quantities in quotes: "65 mm".'],
+    ),
+    "text without quotes": (('model = "free"', "model = free"), ["line 19", "Put text in quotes."]),
+    "nan": (
+        ("inner_conformity = 0.52", "inner_conformity = nan"),
+        ["[bearing] inner_conformity", "finite", "nan"],
+    ),
+    "inf": (("race_friction = 0.1", "race_friction = inf"), ["[film] race_friction", "finite", "inf"]),
+    "nan with a unit": (('"11.1125 mm"', '"nan mm"'), ["[bearing] ball_diameter", "finite", '"nan mm"']),
+    "inf with a unit": (('"300 daN"', '"inf daN"'), ["[operation] axial_load", "finite"]),
+    "overflow": (('"300 daN"', '"1e999 N"'), ["[operation] axial_load", "1e999 N"]),
+    "overflow of a ratio": (
+        ("race_friction = 0.1", "race_friction = 1e999"),
+        ["[film] race_friction", "finite"],
+    ),
+    "an expression": (('"11.1125 mm"', '"9**9**9 m"'), ["ball_diameter", "one number and one unit"]),
+    "negative size": (
+        ('"11.1125 mm"', '"-11 mm"'),
+        ["line 4", "[bearing] ball_diameter must", 'got "-11 mm"'],
+    ),
+    "zero size": (('"65 mm"', '"0 mm"'), ["line 5", "[bearing] pitch_diameter must", 'got "0 mm"']),
+    "conformity below 0.5": (
+        ("inner_conformity = 0.52", "inner_conformity = 0.45"),
+        ["line 8", "[bearing] inner_conformity must be > 0.5 and <= 0.6; got 0.45", "groove radius"],
+    ),
+    "groove radius for conformity": (
+        ("outer_conformity = 0.52", "outer_conformity = 5.78"),
+        ["groove radius"],
+    ),
+    "more balls than fit": (
+        ("ball_count = 13", "ball_count = 19"),
+        ["line 6", "[bearing] ball_count must be at most 18", "got 19"],
+    ),
+    "balls larger than the pitch circle": (
+        ('"65 mm"', '"10 mm"'),
+        ["ball_count", "too large for the pitch circle"],
+    ),
+    "no balls": (("ball_count = 13", "ball_count = 0"), ["[bearing] ball_count", "whole number from 3"]),
+    "ball count as a float": (("ball_count = 13", "ball_count = 13.0"), ["whole number", "Write 13."]),
+    "ball count as text": (("ball_count = 13", 'ball_count = "13"'), ["ball_count", "whole number", '"13"']),
+    "ball count as a bool": (
+        ("ball_count = 13", "ball_count = true"),
+        ["ball_count", "whole number", "got true"],
+    ),
+    "ball count of 5000 digits": (("ball_count = 13", "ball_count = " + "9" * 4900), ["study.toml"]),
+    "friction as a bool": (
+        ("race_friction = 0.1", "race_friction = true"),
+        ["race_friction", "plain number", "true"],
+    ),
+    "friction as text": (
+        ("race_friction = 0.1", 'race_friction = "0.1"'),
+        ["plain number", "without quotes"],
+    ),
+    "friction with a unit": (
+        ("race_friction = 0.1", 'race_friction = "10 %"'),
+        ["plain number", "without a unit"],
+    ),
+    "negative friction": (
+        ("race_friction = 0.1", "race_friction = -0.1"),
+        ["[film] race_friction must lie between 0"],
+    ),
+    "friction of 50": (
+        ("race_friction = 0.1", "race_friction = 50"),
+        ["[film] race_friction must lie between 0 and 2"],
+    ),
+    "no friction in free kinematics": (
+        ("race_friction = 0.1", "race_friction = 0"),
+        ["[film] race_friction must be > 0", "race control"],
+    ),
+    "contact angle of 90 deg": (
+        ('"25 deg"', '"90 deg"'),
+        ["[bearing] contact_angle", "< 90 deg", 'got "90 deg"'],
+    ),
+    "negative contact angle": (('"25 deg"', '"-5 deg"'), ["[bearing] contact_angle", ">= 0"]),
+    "angle and clearance": (
+        ('contact_angle = "25 deg"', 'contact_angle = "25 deg"\nradial_clearance = "10 um"'),
+        ["radial_clearance and contact_angle exclude each other"],
+    ),
+    "neither angle nor clearance": (
+        ('contact_angle = "25 deg"\n', ""),
+        ["lacks: contact_angle (or radial_clearance)"],
+    ),
+    "clearance too large": (
+        ('contact_angle = "25 deg"', 'radial_clearance = "1 mm"'),
+        ["[bearing] radial_clearance", "889 um", 'got "1 mm"'],
+    ),
+    "negative clearance": (
+        ('contact_angle = "25 deg"', 'radial_clearance = "-1 um"'),
+        ["[bearing] radial_clearance"],
+    ),
+    "bore too wide": (('"50 mm"', '"60 mm"'), ["[bearing] bore must be smaller", "53.89 mm"]),
+    "all missing keys": (
+        ('ball_diameter = "11.1125 mm"\npitch_diameter = "65 mm"\nball_count = 13\n', ""),
+        ["[bearing] lacks: ball_diameter, pitch_diameter, ball_count"],
+    ),
+    "unknown material": (
+        ('ball_material = "440C"', 'ball_material = "440 C"'),
+        ["line 11", "[bearing] ball_material", "Did you mean 440C?", "52100"],
+    ),
+    "unknown film": (('"PTFE transfer film"', '"Teflon"'), ["[film] material", "PTFE transfer film", "MoS2"]),
+    "material as a number": (
+        ('ball_material = "440C"', "ball_material = 440"),
+        ["[bearing] ball_material", "440"],
+    ),
+    "material without modulus": (
+        ('elastic_modulus = "205 GPa", ', ""),
+        ["ring_material", "lacks: elastic_modulus"],
+    ),
+    "material with an unknown key": (
+        ("poisson_ratio = 0.285", "poison_ratio = 0.285"),
+        ["Did you mean poisson_ratio?"],
+    ),
+    "material with Poisson's ratio of a half": (
+        ("0.285", "0.5"),
+        ["ring_material.poisson_ratio", "< 0.5", "got 0.5"],
+    ),
+    "material with a negative modulus": (('"205 GPa"', '"-205 GPa"'), ["ring_material.elastic_modulus"]),
+    "ball without density": (
+        ('ball_material = "440C"', 'ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.3 }'),
+        ["[bearing] ball_material", "density"],
+    ),
+    "speed in plain 1/s": (('"15000 rpm"', '"250 1/s"'), ["[operation] inner_speed", "rotational speed"]),
+    "speed of 1e9 rpm": (('"15000 rpm"', '"1e9 rpm"'), ["[operation] inner_speed", 'got "1e9 rpm"']),
+    "axial load that lifts the ring off": (
+        ('"300 daN"', '"-300 daN"'),
+        ["[operation] axial_load", "lifts the inner ring"],
+    ),
+    "no load at all": (('"300 daN"', '"0 N"'), ["[operation] axial_load", "nothing presses the balls"]),
+    "moment and tilt": (
+        ('axial_load = "300 daN"', 'axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"'),
+        ["[operation] tilt and moment exclude each other"],
+    ),
+    "negative radial load": (
+        ('axial_load = "300 daN"', 'axial_load = "300 daN"\nradial_load = "-1 N"'),
+        ["[operation] radial_load"],
+    ),
+    "temperature below absolute zero": (
+        ('axial_load = "300 daN"', 'axial_load = "300 daN"\ntemperature = "-300 degC"'),
+        ["[operation] temperature must be > 0", '"-300 degC"'],
+    ),
+    "unknown kinematics": (('model = "free"', 'model = "jones"'), ['"outer race control"', 'got "jones"']),
+    "film without thickness": (('thickness = "0.5 um"\n', ""), ["[film] thickness is missing"]),
+    "film without material": (('material = "PTFE transfer film"\n', ""), ["[film] material is missing"]),
+    "film with half its elasticity": (
+        ('material = "PTFE transfer film"', 'elastic_modulus = "4 GPa"'),
+        ["[film] lacks: poisson_ratio"],
+    ),
+    "film of zero thickness": (('"0.5 um"', '"0 um"'), ["[film] thickness must be > 0", "bare"]),
+    "pocket play larger than the gap": (
+        ('"0.6 mm"', '"5 mm"'),
+        ["[cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm", 'got "5 mm"'],
+    ),
+    "cage without mass": (('mass = "25 g"', 'mass = "0 g"'), ["[cage] mass must be > 0"]),
+    "land without clearance": (
+        ('land_clearance = "1 mm"\n', ""),
+        ["[cage] land_clearance is missing", "outer"],
+    ),
+    "land of a ball-guided cage": (
+        ('guidance = "outer"\n', ""),
+        ["[cage] land_clearance has no meaning", "guidance"],
+    ),
+    "unknown guidance": (('guidance = "outer"', 'guidance = "both"'), ['"inner" or "ball"', 'got "both"']),
+    "nothing to compute the stiffness from": (
+        ('ball_cage_stiffness = "3e6 N/m"\n', ""),
+        ["[cage] ball_cage_stiffness is missing", "Vespel"],
+    ),
+    "runs zero": (("runs = 64", "runs = 0"), ["[stability] runs must be a whole number from 1", "got 0"]),
+    "runs half": (("runs = 64", "runs = 0.5"), ["[stability] runs must be a whole number", "got 0.5"]),
+    "kicks empty": (('["0.1 m/s", "0.5 m/s", "2 m/s"]', "[]"), ["[stability] kicks must hold 1 to 20"]),
+    "kicks not a list": (
+        ('["0.1 m/s", "0.5 m/s", "2 m/s"]', '"0.5 m/s"'),
+        ["[stability] kicks must be a list"],
+    ),
+    "kick of zero": (('"0.1 m/s"', '"0 m/s"'), ["[stability] kicks", "> 0"]),
+    "kick twice": (('"0.1 m/s"', '"0.5 m/s"'), ["[stability] kicks", "twice"]),
+    "kick with wrong unit": (('"0.1 m/s"', '"0.1 m"'), ["[stability] kicks, item 1, needs a unit of speed"]),
+    "restitution factor of 1": (("to = 0.95", "to = 1.0"), ["[stability] restitution_factors", "< 1"]),
+    "restitution factors falling": (
+        ("from = 0.05", "from = 0.99"),
+        ["[stability] restitution_factors must increase"],
+    ),
+    "one restitution factor": (("count = 19", "count = 1"), ["restitution_factors", "count from 2", "got 1"]),
+    "restitution factors without count": ((", count = 19", ""), ["restitution_factors lacks: count"]),
+    "duration negative": (("runs = 64", 'duration = "-1 s"'), ["[stability] duration must be > 0"]),
+    "scatter above one": (
+        ("runs = 64", "ball_scatter = 1.5"),
+        ["[stability] ball_scatter must lie between 0 and 1"],
+    ),
+    "negative seed": (("runs = 64", "seed = -1"), ["[stability] seed"]),
+    "unknown friction table": (
+        ('"pin-on-disk-77K"', '"pin-on-disk"'),
+        ["[ranking] friction", "pin-on-disk-77K"],
+    ),
+    "material not in the table": (
+        ('"Vespel SP 211"', '"Vespel SP-211"'),
+        ["[ranking] materials", "Did you mean Vespel SP 211?"],
+    ),
+    "material twice": (('"Vespel SP 211"', '"Armalon"'), ["[ranking] candidates", '"Armalon" twice']),
+    "table and candidates": (
+        ("[ranking]\n" + TABLE, "[ranking]\n" + TABLE + IN_PLACE),
+        ["exclude each other"],
+    ),
+    "candidate without friction": (
+        candidates('[[ranking.candidates]]\nname = "Mine"\n'),
+        ["number 1", "lacks: friction"],
+    ),
+    "candidate with an empty friction": (
+        candidates(IN_PLACE.replace('"liquid nitrogen, 440C" = 0.11', "")),
+        ["number 1"],
+    ),
+    "candidate with a negative friction": (
+        candidates(IN_PLACE.replace("0.11", "-0.11")),
+        ["number 1", "liquid nitrogen"],
+    ),
+    "candidate with text for friction": (
+        candidates(IN_PLACE.replace("0.11", '"low"')),
+        ["number 1", "plain number"],
+    ),
+    "second candidate misspelt": (
+        candidates(IN_PLACE + IN_PLACE.replace("name =", "nam =")),
+        ["line 41", "number 2.nam ", "Did you mean name?"],
+    ),
+    "ranking without anything": (candidates("[ranking]\n"), ["[ranking] lacks: friction (or candidates)"]),
+    "duplicate key": (
+        ('bore = "50 mm"', 'bore = "50 mm"\nbore = "51 mm"'),
+        ["line 11", "bore a second time"],
+    ),
+    "duplicate section": (("[kinematics]", "[bearing]\n[kinematics]"), ["line 18", "a second time"]),
+    "date for a number": (
+        ("race_friction = 0.1", "race_friction = 2024-01-01"),
+        ["[film] race_friction", "2024-01-01"],
+    ),
+    "control character in the title": (
+        ('"A valid study"', '"A\\u001b[31m study"'),
+        ["line 1: title", "printable"],
+    ),
+    "two-line title": (('"A valid study"', '"A valid\\nstudy"'), ["line 1: title", "printable"]),
+    "title too long": (('"A valid study"', '"' + "a" * 201 + '"'), ["line 1: title", "200"]),
+    "title as a number": (('"A valid study"', "3"), ["line 1: title", "text in quotes"]),
+    "deep array": (("bore =", "x = " + "[" * 2000 + "]" * 2000 + "\nbore ="), ["line 10", "nests brackets"]),
+    "deep table": (
+        ("bore =", "x = " + "{a=" * 1200 + "1" + "}" * 1200 + "\nbore ="),
+        ["line 10", "nests brackets"],
+    ),
+    "deep dotted key": (("bore =", ".".join("a" * 2000) + " = 1\nbore ="), ["line 10", "[bearing] a"]),
+    "long line": (("bore =", "# " + "x" * 6000 + "\nbore ="), ["line 10", "longer than 5000"]),
+    "NUL byte": (('"A valid study"', '"A\0"'), ["line 1", "NUL"]),
+    "extends itself": (
+        ('title = "A valid study"', 'extends = "study.toml"'),
+        ["line 1: extends", "leads back"],
+    ),
+    "extends nothing": (
+        ('title = "A valid study"', 'extends = "le77"'),
+        ["line 1: extends", "Did you mean le7?"],
+    ),
+    "extends a number": (('title = "A valid study"', "extends = 7"), ["line 1: extends", "path"]),
+}
+
+
+def refusal(path: str | Path) -> str:
+    """Text of the refusal of a study file; a single short line, whatever is wrong."""
+    with pytest.raises(InputError) as caught:
+        read_study(path)
+    message = str(caught.value)
+    assert message.isprintable()
+    assert len(message) < 400
+    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
+    return message
+
+
+@pytest.mark.parametrize(("edit", "words"), EDITS.values(), ids=EDITS.keys())
+def test_a_wrong_file_is_refused_with_place_rule_and_cure(edit, words, tmp_path):
+    """One change to a valid study; the one line names the file, the place, and what to do."""
+    old, new = edit
+    assert VALID.count(old) >= 1
+    path = tmp_path / "study.toml"
+    path.write_text(VALID.replace(old, new, 1), encoding="utf-8")
+    message = refusal(path)
+    assert "study.toml" in message
+    for word in words:
+        assert word in message, message
+
+
+def test_the_valid_study_is_read(tmp_path):
+    """What the wrong files are edits of is itself right."""
+    path = tmp_path / "study.toml"
+    path.write_text(VALID, encoding="utf-8")
+    assert read_study(path).bearing.ball_count == 13
+
+
+BYTES = {
+    "an empty file": (b"", "is empty"),
+    "only a comment": (b"# nothing yet\n", "is empty"),
+    "a file of 5 MB": (b"# " + b"x" * 5_000_000, "larger than"),
+    "Latin-1": ('title = "Käfig"'.encode("latin-1"), "not UTF-8"),
+    "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
+    "random bytes": (bytes(range(256)), "not UTF-8"),
+    "only a title": (b'title = "Cage"\n', "lacks the sections [bearing], [operation], [film]"),
+    "no TOML at all": (b"ball diameter: 11 mm\n", "line 1 is not valid TOML"),
+    "an open string": (b'title = """Cage\n', "not valid TOML"),
+    "an open bracket": (b"[bearing\n", "line 1 is not valid TOML"),
+    "a script": (b"#!/bin/sh\necho $(true)\n", "line 2 is not valid TOML"),
+}
+
+
+@pytest.mark.parametrize(("content", "words"), BYTES.values(), ids=BYTES.keys())
+def test_what_is_no_study_is_refused(content, words, tmp_path):
+    """Whatever the bytes, the answer is one line."""
+    path = tmp_path / "study.toml"
+    path.write_bytes(content)
+    assert words in refusal(path)
+
+
+def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
+    """Nothing but a regular file is opened, so that a pipe without a writer does not hang."""
+    assert "is a folder" in refusal(tmp_path)
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    assert "not a regular file" in refusal(pipe)
+    assert "not a regular file" in refusal("/dev/null")
+    assert "does not exist. Shipped examples: ball-218" in refusal(tmp_path / "none.toml")
+    assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
+
+
+@pytest.mark.parametrize(
+    "path", ["", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"]
+)
+def test_a_strange_path_is_refused_in_one_line(path):
+    """Empty, with a NUL, too long, or with control characters."""
+    refusal(path)
+
+
+def test_everything_wrong_is_reported_at_once(tmp_path):
+    """Three mistakes in three sections, one line."""
+    text = VALID.replace("0.52", "0.42", 1).replace('"300 daN"', "3000").replace("runs = 64", "runs = 0")
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    message = refusal(path)
+    assert "line 8: [bearing] inner_conformity" in message
+    assert "line 16: [operation] axial_load" in message
+    assert "line 35: [stability] runs" in message
+
+
+def test_a_hundred_mistakes_are_counted_not_listed(tmp_path):
+    """The line stays short; the error object still holds the problems."""
+    path = tmp_path / "study.toml"
+    path.write_text(VALID.replace("[film]", "[film]\n" + "".join(f"x{i} = 1\n" for i in range(100))))
+    assert " more" in refusal(path)
+    with pytest.raises(InputError) as caught:
+        read_study(path)
+    assert len(caught.value.problems) > 5
+
+
+def test_extends_in_a_circle_is_refused(tmp_path):
+    """Two files that extend each other."""
+    (tmp_path / "a.toml").write_text('extends = "b.toml"\n')
+    (tmp_path / "b.toml").write_text('extends = "a.toml"\n')
+    assert "b.toml, line 1: extends leads back" in refusal(tmp_path / "a.toml")
+
+
+def test_a_long_chain_of_extends_is_refused(tmp_path):
+    """More files than anyone can follow."""
+    for i in range(40):
+        (tmp_path / f"{i}.toml").write_text(f'extends = "{i + 1}.toml"\n')
+    (tmp_path / "40.toml").write_text(VALID)
+    assert "chain of more than" in refusal(tmp_path / "0.toml")
+
+
+def test_a_mistake_in_the_base_names_the_base(tmp_path):
+    """A variant of a wrong file is refused where the mistake stands."""
+    (tmp_path / "base.toml").write_text(VALID.replace('"300 daN"', "3000"))
+    (tmp_path / "variant.toml").write_text('extends = "base.toml"\n')
+    assert "base.toml, line 16: [operation] axial_load" in refusal(tmp_path / "variant.toml")
+
+
+def test_a_verb_that_needs_a_section_says_which():
+    """`simulate` without a cage."""
+    with pytest.raises(InputError, match=r"\[cage\] is missing; `simulate` needs it\. See `separatrix new`"):
+        require(read_study("le7"), "simulate", "bearing", "cage")
+    with pytest.raises(InputError, match=r"\[cage\] and \[ranking\] are missing; `rank` needs them"):
+        require(read_study("le7"), "rank", "cage", "ranking")
