@@ -78,6 +78,7 @@ def run_ensemble(
     *,
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
+    first_run: int = 0,
     jobs: int = 1,
 ) -> Ensemble:
     """Run the cage from every kick and seed.
@@ -90,6 +91,8 @@ def run_ensemble(
         Kicks, runs, duration, scatter and seed.
     kicks, runs
         Instead of those of the settings.
+    first_run : int
+        Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
     jobs : int
         Threads. The result is the same to the last bit for any number.
 
@@ -102,7 +105,12 @@ def run_ensemble(
     runs = settings.runs if runs is None else runs
     _check(kicks, runs, settings.duration)
     p, fifth = _steps(cage, settings.duration)
-    starts = np.array([single.random_start(settings.seed, run, cage.ball_count) for run in range(runs)])
+    starts = np.array(
+        [
+            single.random_start(settings.seed, run, cage.ball_count)
+            for run in range(first_run, first_run + runs)
+        ]
+    )
     evidence = np.zeros((len(kicks), runs, single.EVIDENCE))
     size = max(1, CHUNK_STEPS // (5 * fifth))
     chunks = [(i, slice(first, first + size)) for i in range(len(kicks)) for first in range(0, runs, size)]
