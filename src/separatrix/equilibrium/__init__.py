@@ -1,0 +1,7 @@
+"""Quasi-static equilibrium: loads, contact angles, spin and orbit of every ball (paper, 2.2 and its reference 3)."""
+
+from separatrix.equilibrium.contacts import contact
+from separatrix.equilibrium.record import Equilibrium
+from separatrix.equilibrium.solve import equilibrium
+
+__all__ = ["Equilibrium", "contact", "equilibrium"]

@@ -1,0 +1,141 @@
+"""Ball kinematics under outer or inner race control (Jones), and the ball equilibrium that follows.
+
+Speeds are in units of (inner - outer) ring speed, relative to the outer ring: `orbit` m is
+(w_m - w_o)/(w_i - w_o), and `spin` is the ball's spin in the frame that turns with its orbit.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from separatrix.equilibrium.groove import Touch, touch
+from separatrix.equilibrium.problem import Problem, solve_linear
+from separatrix.units import Array
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def controlled_kinematics(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float, float]:
+    """Orbit m and spin (axial, radial) for rolling at both races without spin at the controlling one."""
+    ratio = p.ball_diameter / p.pitch_diameter
+    if p.inner_share < 1.0:
+        pitch = math.atan2(math.sin(angle_o), math.cos(angle_o) + ratio)
+    else:
+        pitch = math.atan2(math.sin(angle_i), math.cos(angle_i) - ratio)
+    roll_o = (1.0 / ratio + math.cos(angle_o)) / math.cos(pitch - angle_o)
+    roll_i = (1.0 / ratio - math.cos(angle_i)) / math.cos(pitch - angle_i)
+    m = roll_i / (roll_i + roll_o)
+    return m, -m * roll_o * math.cos(pitch), m * roll_o * math.sin(pitch)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def inertia_loads(p: Problem, m: float, spin_radial: float) -> tuple[float, float]:
+    """Centrifugal force [N], and the gyroscopic term J w_m W_r along the orbit [N m]."""
+    orbit = p.outer_speed + p.speed * m
+    centrifugal = 0.5 * p.ball_mass * p.pitch_diameter * orbit * orbit
+    return p.inertia_factor * centrifugal, p.inertia_factor * p.ball_inertia * orbit * p.speed * spin_radial
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _inertia_at(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float]:
+    m, _, spin_radial = controlled_kinematics(p, angle_i, angle_o)
+    return inertia_loads(p, m, spin_radial)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _inertia_slopes(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float, float, float]:
+    """Slopes of centrifugal force and gyroscopic term with the inner, then the outer angle."""
+    step = 1e-5
+    Fi, Gi = _inertia_at(p, angle_i + step, angle_o)
+    fi, gi = _inertia_at(p, angle_i - step, angle_o)
+    Fo, Go = _inertia_at(p, angle_i, angle_o + step)
+    fo, go = _inertia_at(p, angle_i, angle_o - step)
+    return (Fi - fi) / (2 * step), (Gi - gi) / (2 * step), (Fo - fo) / (2 * step), (Go - go) / (2 * step)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def normal_slopes(t: Touch, slopes: Array) -> None:
+    """d(Q s, Q c)/d(axial, radial) of one contact, shape (2, 2) [N/m]."""
+    s, c, side = t.sine, t.cosine, t.load / t.length
+    slopes[0, 0] = t.load_slope * s * s + side * c * c
+    slopes[0, 1] = slopes[1, 0] = (t.load_slope - side) * s * c
+    slopes[1, 1] = t.load_slope * c * c + side * s * s
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def inner_share(p: Problem, load: float) -> tuple[float, float]:
+    """Share lambda_i of the gyroscopic friction and its slope with the inner load.
+
+    A ball that leaves the inner race cannot be controlled by it: below a tenth of the centrifugal force (taken
+    at half the ring speed) the share falls smoothly to 0.
+    """
+    full = 0.1 * inertia_loads(p, 0.45, 0.0)[0]
+    if p.inner_share == 0.0 or load >= full:
+        return p.inner_share, 0.0
+    t = load / full
+    return p.inner_share * t * t * (3.0 - 2.0 * t), p.inner_share * 6.0 * t * (1.0 - t) / full
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def controlled_ball(
+    p: Problem, A: Array, state: Array, residual: Array, by_state: Array, push: Array, push_by: Array
+) -> tuple[float, float]:
+    """Force balance of one ball, shape (2,) [N], and what the inner race gives the ball; returns the loads.
+
+    `by_state`, shape (2, 4), holds the slopes of the balance with V and with A. `push`, shape (5,), is (axial,
+    outward, orbital force, outward couple, orbital couple); `push_by`, shape (5, 4), its slopes.
+    """
+    D = p.ball_diameter
+    i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
+    o = touch(p, 1.0, state[0], state[1], 0.0)
+    angle_i, angle_o = math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine)
+    F, G = _inertia_at(p, angle_i, angle_o)
+    F_i, G_i, F_o, G_o = _inertia_slopes(p, angle_i, angle_o)
+    share, share_slope = inner_share(p, i.load)
+    T_i, T_o = share * G / D, (2.0 - share) * G / D  # friction across the grooves carries the gyroscopic moment
+    push[:] = 0.0
+    push[0] = i.load * i.sine + T_i * i.cosine
+    push[1] = i.load * i.cosine - T_i * i.sine
+    push[4] = 0.5 * D * T_i
+    residual[0] = push[0] - o.load * o.sine - T_o * o.cosine
+    residual[1] = push[1] - o.load * o.cosine + T_o * o.sine + F
+    H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
+    normal_slopes(i, H_i)
+    normal_slopes(o, H_o)
+    for k in range(2):
+        # slopes with w = A - V (inner) and with V (outer); V enters as outer - inner, A as inner
+        a_i = (i.cosine if k == 0 else -i.sine) / i.length
+        a_o = (o.cosine if k == 0 else -o.sine) / o.length
+        moved = share_slope * i.load_slope * (i.sine if k == 0 else i.cosine) * G / D
+        Ti_w, Ti_v = share * G_i * a_i / D + moved, share * G_o * a_o / D
+        To_w, To_v = (2.0 - share) * G_i * a_i / D - moved, (2.0 - share) * G_o * a_o / D
+        push_by[:, k], push_by[:, 2 + k] = 0.0, 0.0
+        push_by[0, 2 + k] = H_i[0, k] + Ti_w * i.cosine - T_i * i.sine * a_i
+        push_by[1, 2 + k] = H_i[1, k] - Ti_w * i.sine - T_i * i.cosine * a_i
+        push_by[4, 2 + k] = 0.5 * D * Ti_w
+        push_by[0, k] = Ti_v * i.cosine - push_by[0, 2 + k]
+        push_by[1, k] = -Ti_v * i.sine - push_by[1, 2 + k]
+        push_by[4, k] = 0.5 * D * Ti_v - push_by[4, 2 + k]
+        by_state[0, 2 + k] = push_by[0, 2 + k] - To_w * o.cosine
+        by_state[1, 2 + k] = push_by[1, 2 + k] + To_w * o.sine + F_i * a_i
+        outer_x = H_o[0, k] + To_v * o.cosine - T_o * o.sine * a_o
+        outer_r = H_o[1, k] - To_v * o.sine - T_o * o.cosine * a_o - F_o * a_o
+        by_state[0, k] = push_by[0, k] - outer_x + To_w * o.cosine
+        by_state[1, k] = push_by[1, k] - outer_r - To_w * o.sine - F_i * a_i
+    return i.load, o.load
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rest_on_outer(p: Problem, A: Array, state: Array) -> bool:
+    """Put the ball at the bottom of the outer groove by its centrifugal force; True if it misses the inner."""
+    bottom = (p.outer_conformity - 0.5) * p.ball_diameter
+    trial = 0.01 * bottom
+    load = touch(p, 1.0, 0.0, bottom + trial, 0.0).load
+    state[0], state[1] = 0.0, bottom
+    for _ in range(3):  # the orbit depends on the inner angle, that on the approach: a weak loop
+        i = touch(p, -1.0, A[0], A[1] - state[1], 0.0)
+        F, _ = _inertia_at(p, math.atan2(i.sine, i.cosine), 0.0)
+        state[1] = bottom + trial * (F / load) ** (2.0 / 3.0)
+    return math.hypot(A[0], A[1] - state[1]) <= (p.inner_conformity - 0.5) * p.ball_diameter

@@ -1,0 +1,60 @@
+"""What the equilibrium returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.study import KinematicModel, Race
+from separatrix.units import Array, Metre, Newton, NewtonMetre, Radian
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Equilibrium:
+    """Loads, angles and speeds of every ball, and where the inner ring stands; arrays have shape (ball,).
+
+    `azimuth` is counted from the radial load, turning as the +x axis says; x is the bearing axis along positive
+    axial load. Angles [rad], loads [N], speeds [rad/s] or [m/s]. `ball_spin`, shape (ball, 3), is the spin in the
+    frame that turns with the ball's orbit: along x, outward, and along the orbit [rad/s]. `pitch_angle` leans the
+    spin axis in the plane of the ball, positive as a contact angle is; `yaw_angle` out of it, along the orbit.
+    `gyroscopic_moment` is a magnitude [N m]. A ball that does not touch the inner race has `inner_contact` False
+    and `load_inner` 0; its inner angle, orbit and spin are those it would have at the first touch.
+    `moment` is what the balls carry: the load, or the reaction to a held tilt. `cross_tilt` and
+    `transverse_displacement` lie across the plane of the radial load. `residual` is the largest unbalanced force of
+    the ring [N]. `race_control` says which race Jones's criterion would let control the ball.
+    """
+
+    model: KinematicModel
+    azimuth: Array
+    contact_angle_inner: Array
+    contact_angle_outer: Array
+    load_inner: Array
+    load_outer: Array
+    inner_contact: NDArray[np.bool_]
+    orbital_speed: Array
+    pitch_angle: Array
+    yaw_angle: Array
+    ball_spin: Array
+    spin_roll_ratio_inner: Array
+    spin_roll_ratio_outer: Array
+    rolling_speed_inner: Array
+    rolling_speed_outer: Array
+    centrifugal_force: Array
+    gyroscopic_moment: Array
+    race_control: tuple[Race, ...]
+    axial_displacement: Metre
+    radial_displacement: Metre
+    transverse_displacement: Metre
+    tilt: Radian
+    cross_tilt: Radian
+    moment: NewtonMetre
+    iterations: int
+    residual: Newton
+
+    @property
+    def most_loaded(self) -> int:
+        """Number of the ball with the largest inner load, the outer load deciding where none touches."""
+        largest = self.load_inner if self.load_inner.any() else self.load_outer
+        return int(np.argmax(np.round(largest / largest.max(), 9)))

@@ -1,0 +1,252 @@
+"""From bearing and operation to the equilibrium: checks, starting points, and the three models in turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.equilibrium.problem import Problem, problem
+from separatrix.equilibrium.race_control import inertia_loads
+from separatrix.equilibrium.record import Equilibrium
+from separatrix.equilibrium.ring import FREE, STATIC, solve_ring
+from separatrix.equilibrium.slip import chebyshev_nodes
+from separatrix.equilibrium.speeds import ball_table, controlled_states, settle_free_states
+from separatrix.errors import ConvergenceError, InputError
+from separatrix.study import BallBearing, KinematicModel, Operation, Race
+from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio
+
+CELLS, NODES, COARSE_NODES = 48, chebyshev_nodes(24), chebyshev_nodes(8)
+"""Quadrature over an ellipse: strips across the groove, places along rolling, and those of the first approach."""
+
+LIMIT = 60
+"""Newton steps of the ring; a usual case takes 3 to 8."""
+
+
+def equilibrium(
+    bearing: BallBearing,
+    operation: Operation,
+    model: KinematicModel,
+    race_friction: Ratio,
+    *,
+    cross_moment: NewtonMetre = 0.0,
+) -> Equilibrium:
+    r"""Quasi-static equilibrium of the balls and of the inner ring.
+
+    Each ball balances its two Hertz contacts, its centrifugal force and its gyroscopic moment; the inner ring
+    balances axial load, radial load and moment, or is held at `operation.tilt`.
+
+    Parameters
+    ----------
+    bearing : BallBearing
+        Geometry and materials; the ball material needs a density unless the speeds are 0.
+    operation : Operation
+        Speeds and loads on the inner ring.
+    model : KinematicModel
+        How the spin axis of a ball is found.
+    race_friction : float
+        Coulomb friction of ball on race, > 0 in the free model and unused in the others [-].
+    cross_moment : float
+        Moment about the direction of the radial load [N m].
+
+    Returns
+    -------
+    Equilibrium
+        Per ball, shape (ball,), and for the ring.
+
+    Raises
+    ------
+    InputError
+        A load that lifts the inner ring off, no load at all, no friction in the free model, no density.
+    ConvergenceError
+        The forces on a ball or on the ring did not balance.
+
+    Notes
+    -----
+    Jones and Harris for race control, the gyroscopic friction split 0 to 2; without it the slip fields over both
+    ellipses decide (docs/theory/equilibrium.md). Rigid rings, steady speeds, dry Coulomb friction, no cage force.
+    """
+    _check(bearing, operation, model, race_friction, cross_moment)
+    share = 2.0 if model is KinematicModel.INNER_RACE_CONTROL else 0.0
+    p = problem(bearing, operation, share, race_friction)
+    setup = _setup(bearing, operation, p, cross_moment)
+    q, iterations, rest, states = _static(p, setup)
+    if p.inertia_factor > 0.0:
+        q, iterations, rest, states = _controlled(p, setup, q, states[:, :2].copy(), iterations)
+        if model is KinematicModel.FREE:
+            q, iterations, rest, states = _free(p, setup, q, states, iterations)
+    if states.shape[1] != FREE:
+        states = controlled_states(p, q, setup.azimuths, states)
+        if model is KinematicModel.FREE:
+            ball = settle_free_states(p, q, setup.azimuths, states, CELLS, NODES)
+            if ball >= 0:
+                raise ConvergenceError(_not_free(math.inf, ball), iterations, rest)
+    return _finished(p, setup, model, q, states, iterations, rest)
+
+
+@dataclass(frozen=True, slots=True)
+class _Setup:
+    """Loads, degrees of freedom and the balls to solve: one for all where load and ring make them alike."""
+
+    loads: Array
+    held_tilt: Radian
+    dofs: NDArray[np.int64]
+    azimuths: Array
+    weight: float
+    ball_count: int
+    force: Newton
+    tolerance: Newton
+
+
+def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Setup:
+    Z, arm = bearing.ball_count, 0.5 * bearing.pitch_diameter
+    moment = 0.0 if operation.tilt is not None else operation.moment
+    loads = np.array([operation.axial_load, operation.radial_load, 0.0, cross_moment, -moment])
+    tilt = operation.tilt or 0.0
+    alike = not loads[1:].any() and tilt == 0.0
+    dofs = [0] if alike else [0, 1, 2] if operation.tilt is not None else [0, 1, 2, 3, 4]
+    carried = max(abs(operation.axial_load), abs(operation.radial_load), abs(moment) / arm, abs(cross_moment) / arm)
+    return _Setup(
+        loads=loads,
+        held_tilt=tilt,
+        dofs=np.array(dofs, dtype=np.int64),
+        azimuths=2.0 * np.pi * np.arange(1 if alike else Z) / Z,
+        weight=float(Z) if alike else 1.0,
+        ball_count=Z,
+        force=carried / Z + inertia_loads(p, 0.45, 0.0)[0],
+        tolerance=1e-9 * carried,
+    )
+
+
+def _solve(p: Problem, setup: _Setup, q: Array, states: Array) -> tuple[float, int, float, int]:
+    answer: tuple[float, int, float, int] = solve_ring(
+        p,
+        q,
+        setup.loads,
+        setup.dofs,
+        setup.azimuths,
+        setup.weight,
+        states,
+        setup.force,
+        CELLS,
+        NODES,
+        COARSE_NODES,
+        setup.tolerance,
+        LIMIT,
+    )
+    return answer
+
+
+def _static(p: Problem, setup: _Setup) -> tuple[Array, int, Newton, Array]:
+    """Ring and balls without inertia: a convex problem, solved from a ring pressed along its load."""
+    q, states = np.zeros(5), np.zeros((setup.azimuths.size, STATIC + 3))
+    q[4] = -setup.held_tilt
+    rest, iterations, _, _ = _solve(p, setup, q, states)
+    if rest > 1e3 * setup.tolerance:
+        raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
+    return q, iterations, rest, states
+
+
+def _controlled(
+    p: Problem, setup: _Setup, q: Array, states: Array, iterations: int
+) -> tuple[Array, int, Newton, Array]:
+    """Ring and balls under race control: at once, or by raising the inertia in steps from the static answer."""
+    start_q, start_states = q.copy(), states.copy()
+    rest, count, failed, _ = _solve(p, setup, q, states)
+    iterations += count
+    factor, step = 0.0, 0.2
+    good_q, good_states = start_q, start_states
+    while rest > 1e3 * setup.tolerance:
+        if step < 1e-3 or factor >= 1.0:
+            raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
+        trial = min(factor + step, 1.0)
+        q, states = good_q.copy(), good_states.copy()
+        rest, count, failed, _ = _solve(p._replace(inertia_factor=trial), setup, q, states)
+        iterations += count
+        if rest <= 1e3 * setup.tolerance:
+            factor, good_q, good_states = trial, q.copy(), states.copy()
+            step *= 1.5
+            rest = rest if factor >= 1.0 else math.inf
+        else:
+            step *= 0.4
+    return q, iterations, rest, states
+
+
+def _free(p: Problem, setup: _Setup, q: Array, states: Array, iterations: int) -> tuple[Array, int, Newton, Array]:
+    """Ring and balls without race control, from the answer under outer race control."""
+    full = controlled_states(p, q, setup.azimuths, states)
+    rest, count, failed, ball = _solve(p, setup, q, full)
+    iterations += count
+    if failed > 0.0:
+        raise ConvergenceError(_not_free(failed, ball), iterations, rest)
+    if rest > 1e3 * setup.tolerance:
+        raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
+    return q, iterations, rest, full
+
+
+def _unbalanced(rest: Newton, iterations: int, setup: _Setup) -> str:
+    return (
+        f"Inner ring: loads did not balance in {iterations} iterations (residual {rest:.3g} N, limit "
+        f"{1e3 * setup.tolerance:.3g} N). Start from a lower speed or a larger axial load."
+    )
+
+
+def _not_free(reached: float, ball: int) -> str:
+    where = f"stopped at {reached:.2g}" if math.isfinite(reached) else "found no start"
+    return (
+        f"Ball {ball}: sliding friction without race control did not settle (smoothing of the slip speed {where} of "
+        "w d_m/4, limit 0.0001). Lower the speed, raise race_friction or the axial load, or use race control."
+    )
+
+
+def _check(
+    bearing: BallBearing, operation: Operation, model: KinematicModel, race_friction: Ratio, cross_moment: NewtonMetre
+) -> None:
+    if operation.axial_load < 0.0 and bearing.contact_angle > 0.0:
+        cure = "Positive axial load presses the inner ring on; give its magnitude."
+        raise InputError("[operation] axial_load", "lifts the inner ring off", "N", f"{operation.axial_load:g}", cure)
+    if not any((operation.axial_load, operation.radial_load, operation.moment, operation.tilt, cross_moment)):
+        cure = "Without load the inner ring floats; give an axial load."
+        raise InputError("[operation] axial_load", "must not be 0 with no other load", "N", "0", cure)
+    if model is KinematicModel.FREE and not 0.0 < race_friction < math.inf:
+        cure = "Without friction nothing turns the balls; give a small value, or use race control."
+        raise InputError("[film] race_friction", "must be > 0 without race control", "-", f"{race_friction:g}", cure)
+
+
+def _finished(
+    p: Problem, setup: _Setup, model: KinematicModel, q: Array, states: Array, iterations: int, rest: Newton
+) -> Equilibrium:
+    table = ball_table(p, q, setup.azimuths, states)
+    Z = setup.ball_count
+    rows = np.broadcast_to(table, (Z, table.shape[1])) if table.shape[0] == 1 else table
+    column = [np.ascontiguousarray(rows[:, k]) for k in range(rows.shape[1])]
+    return Equilibrium(
+        model=model,
+        azimuth=2.0 * np.pi * np.arange(Z) / Z,
+        contact_angle_inner=column[0],
+        contact_angle_outer=column[1],
+        load_inner=column[2],
+        load_outer=column[3],
+        inner_contact=column[17] > 0.0,
+        orbital_speed=column[4],
+        pitch_angle=column[8],
+        yaw_angle=column[9],
+        ball_spin=np.stack(column[5:8], axis=1),
+        spin_roll_ratio_inner=column[10],
+        spin_roll_ratio_outer=column[11],
+        rolling_speed_inner=column[12],
+        rolling_speed_outer=column[13],
+        centrifugal_force=column[14],
+        gyroscopic_moment=column[15],
+        race_control=tuple(Race.OUTER if grip > 0.0 else Race.INNER for grip in column[16]),
+        axial_displacement=float(q[0]),
+        radial_displacement=float(q[1]),
+        transverse_displacement=float(q[2]),
+        tilt=float(-q[4]),
+        cross_tilt=float(q[3]),
+        moment=float(-setup.loads[4]),
+        iterations=iterations,
+        residual=float(rest),
+    )
