@@ -24,7 +24,9 @@ Out = Annotated[
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
 Jobs = Annotated[int | None, typer.Option(metavar="N", help="Threads [default: one for each processor].")]
-StudyArgument = Annotated[str, typer.Argument(help="A study file, or the name of a shipped study.")]
+StudyArgument = Annotated[
+    str, typer.Argument(metavar="STUDY", help="A study file, or the name of a shipped study.")
+]
 MOST_JOBS = 1024
 
 HELP = """Will the cage of this dry-lubricated ball bearing run stably, and which cage material is best?
@@ -70,7 +72,7 @@ def _command(verb: Verb) -> Callable[..., int]:
 
 
 def _new(
-    path: Annotated[Path, typer.Argument(help="The file to make; it must not exist yet.")],
+    path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing.")] = False,
 ) -> int:

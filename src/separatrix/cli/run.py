@@ -11,13 +11,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, progress_bar
 from separatrix.cli.files import writable_folder, write_new, write_whole
-from separatrix.cli.verbs import Verb, Work
+from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
 if TYPE_CHECKING:
-    from separatrix.study_file import ResolvedStudy
+    from separatrix.study import Study
 
 ANSWERED, INTERRUPTED = 0, 130
 
@@ -49,12 +50,13 @@ def run(verb: Verb, name: str, options: Options) -> int:
     SeparatrixError
         Wrong input, found before anything is computed where it can be.
     """
-    from separatrix.study_file import read_study
+    from separatrix.study_file import read_study, require
 
     with noted_warnings() as notes:
-        asked = read_study(name)
-        with _folder(verb, asked, options) as folder:
-            document = _document(verb, asked, options, notes)
+        study = read_study(name)
+        require(study, verb.name, *verb.needs)
+        with _folder(verb, study, options) as folder:
+            document = _document(verb, study, options, notes)
             _deliver(verb, document, folder, as_json=options.json)
     return _status(document)
 
@@ -67,24 +69,22 @@ def _status(document: Mapping[str, Any]) -> int:
     return INTERRUPTED
 
 
-def _folder(
-    verb: Verb, asked: ResolvedStudy, options: Options
-) -> contextlib.AbstractContextManager[Path | None]:
+def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:
     """Return the folder for the files, made and tried; None where no file is to be written."""
     if options.out is not None:
         return writable_folder(options.out)
     if options.json or not verb.writes_files:
         return contextlib.nullcontext(None)
-    return writable_folder(Path(asked.study.name))
+    return writable_folder(Path(study.name))
 
 
-def _document(verb: Verb, asked: ResolvedStudy, options: Options, notes: list[str]) -> dict[str, Any]:
+def _document(verb: Verb, study: Study, options: Options, notes: list[str]) -> dict[str, Any]:
     """Compute the answer and return it as plain data with its provenance."""
     from separatrix.results import document
 
-    with progress_bar(f"{verb.name} {asked.study.name}", quiet=options.quiet) as progress:
-        record = verb.compute(asked.study, Work(jobs=options.jobs, progress=progress))
-    return document(verb.name, record, asked, notes)
+    with progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress:
+        record = verb.compute(study, Work(jobs=options.jobs, progress=progress))
+    return document(verb.name, record, study, notes)
 
 
 def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, *, as_json: bool) -> None:

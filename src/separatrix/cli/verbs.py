@@ -6,41 +6,60 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from separatrix.cli import answers
+
 if TYPE_CHECKING:
     from separatrix.study import Study
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Work:
-    """How the computing is to be done: threads, and whom to tell how far it is."""
-
-    jobs: int
-    progress: Callable[[int, int], None] | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verb:
     """A question: its name, its line of help, and what computes its record.
 
-    `compute` imports what it needs when it is called, so that the help is quick. A name in
-    `separatrix.results`, `separatrix.report` and `separatrix.figures` tells how the record is shown.
+    `needs` are the sections of a study that may be left out but not for this question. How the record is
+    shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
     """
 
     name: str
     help: str
-    compute: Callable[[Study, Work], Any]
+    compute: Callable[[Study, answers.Work], Any]
+    needs: tuple[str, ...] = ()
     writes_files: bool = True
-
-
-def _check(study: Study, work: Work) -> Any:  # noqa: ARG001 - every verb has this signature
-    return {}
 
 
 VERBS: tuple[Verb, ...] = (
     Verb(
         name="check",
-        help="Read a study and show what was understood, with the source of each number.",
-        compute=_check,
+        help="Read a study; show what was understood and from where.",
+        compute=answers.nothing,
         writes_files=False,
+    ),
+    Verb(
+        name="bearing",
+        help="Ball loads, contact angles, speeds and contacts.",
+        compute=answers.bearing,
+    ),
+    Verb(
+        name="traction",
+        help="Traction curves of ball on race, and their slopes.",
+        compute=answers.traction,
+    ),
+    Verb(
+        name="restitution",
+        help="Restitution factor of a ball/cage impact.",
+        compute=answers.restitution,
+        needs=("cage",),
+    ),
+    Verb(
+        name="stability",
+        help="Critical friction against restitution factor.",
+        compute=answers.stability,
+        needs=("cage",),
+    ),
+    Verb(
+        name="rank",
+        help="Rank the cage materials: verdict, margin, reason.",
+        compute=answers.rank,
+        needs=("cage", "ranking"),
     ),
 )

@@ -33,7 +33,9 @@ def contact(data: xr.Dataset) -> Figure:
     """The contacts of the most loaded ball: ellipses to scale, pressure, creep across the groove."""
     figure, (plan, pressure, creep) = canvas(PAGE, 2.5, ncols=3)
     for race, colour, _ in RACES:
-        _draw_contact(data.sel(race=race), colour, (plan, pressure, creep), place=1 if race == "inner" else -1)
+        _draw_contact(
+            data.sel(race=race), colour, (plan, pressure, creep), place=1 if race == "inner" else -1
+        )
     widest = 1e3 * float(data["contact_semi_major"].max())
     for axes in (plan, pressure, creep):
         axes.set(xlabel="y across the groove [mm]", xlim=(-1.12 * widest, 1.12 * widest))
@@ -57,7 +59,7 @@ def _draw_contact(data: xr.Dataset, colour: str, axes: tuple, *, place: int) -> 
     plan.annotate(race, (0, 1e3 * centre), ha="center", va="center", color=colour)
     y = np.linspace(-a, a, 201)
     pressure.plot(1e3 * y, 1e-6 * p0 * np.sqrt(np.maximum(0.0, 1 - (y / a) ** 2)), color=colour)
-    xi = float(data["contact_spin"]) * y + float(data["contact_curvature"]) * y**2
+    xi = float(data["contact_creep_spin"]) * y + float(data["contact_creep_curvature"]) * y**2
     creep.plot(1e3 * y, 100 * xi, color=colour)
 
 

@@ -5,10 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from separatrix.report.chain import bearing, check
+from separatrix.report.cage import stability
+from separatrix.report.chain import bearing, restitution, traction
+from separatrix.report.study import check
 from separatrix.report.tables import heading, paragraph
 
-REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {"check": check, "bearing": bearing}
+REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
+    "check": check,
+    "bearing": bearing,
+    "traction": traction,
+    "restitution": restitution,
+    "stability": stability,
+}
 
 
 def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:

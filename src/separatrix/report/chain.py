@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import degrees
 from typing import Any
 
 from separatrix.report.tables import facts, number, quantity, section, significant, table
 
 Document = Mapping[str, Any]
+ENDS = ("", "_free_spin")
 
 
 def bearing(document: Document) -> list[str]:
@@ -16,7 +17,7 @@ def bearing(document: Document) -> list[str]:
     return [
         section("Inner ring", facts(_ring(document))),
         section("Balls", table(BALL_HEADERS, [_ball(ball) for ball in document["balls"]])),
-        section("Contacts of the most loaded ball", contact_table(document["contacts"])),
+        section("Contacts of the most loaded ball", by_race(document["contacts"], CONTACT_ROWS)),
     ]
 
 
@@ -28,6 +29,15 @@ def _ring(document: Document) -> list[tuple[str, str]]:
         ("Tilt", quantity(document["tilt"], "rad")),
     ]
 
+
+CONTACT_ROWS = (
+    ("Load", "load", "N"),
+    ("Semi-major axis a, across the groove", "semi_major", "m"),
+    ("Semi-minor axis b, along rolling", "semi_minor", "m"),
+    ("Largest pressure", "max_pressure", "Pa"),
+    ("Approach", "approach", "m"),
+    ("Rolling speed", "rolling_speed", "m/s"),
+)
 
 BALL_HEADERS = (
     "ball",
@@ -58,35 +68,59 @@ def _ball(ball: Document) -> list[str]:
     ]
 
 
-def contact_table(contacts: Document) -> str:
-    """Return ellipse and rolling speed of both races side by side."""
+def traction(document: Document) -> list[str]:
+    """Slopes of the traction curves, and how they change with the pivoting-to-rolling ratio."""
     rows = [
         ("Load", "load", "N"),
-        ("Semi-major axis a, across the groove", "semi_major", "m"),
-        ("Semi-minor axis b, along rolling", "semi_minor", "m"),
-        ("Largest pressure", "max_pressure", "Pa"),
-        ("Approach", "approach", "m"),
+        ("Contact angle", "contact_angle", "rad"),
+        ("Pivoting to rolling ratio", "spin_roll_ratio", "-"),
         ("Rolling speed", "rolling_speed", "m/s"),
+        ("Slope alpha at the origin", "slope", "-"),
+        ("Error of the slope", "slope_error", "-"),
+        ("Free-rolling offset of the creep", "free_rolling_offset", "-"),
     ]
+    others = zip(
+        document["inner"]["by_spin_roll_ratio"], document["outer"]["by_spin_roll_ratio"], strict=True
+    )
+    ratios = [
+        [f"{inner['spin_roll_ratio']:.2g}", significant(inner["slope"]), significant(outer["slope"])]
+        for inner, outer in others
+    ]
+    return [
+        section("Contacts of the most loaded ball", by_race(document, rows)),
+        section(
+            "Slope at other pivoting-to-rolling ratios",
+            table(("ratio", "inner race", "outer race"), ratios),
+        ),
+    ]
+
+
+def by_race(document: Document, rows: Sequence[tuple[str, str, str]]) -> str:
+    """Return a table of quantities, inner and outer race side by side; a row is (label, key, unit)."""
     cells = [
-        [label, *(quantity(contacts[race][key], unit) for race in ("inner", "outer"))]
+        [label, *(quantity(document[race][key], unit) for race in ("inner", "outer"))]
         for label, key, unit in rows
     ]
     return table(("", "inner race", "outer race"), cells)
 
 
-def check(document: Document) -> list[str]:
-    """Return every resolved input, a section each, with its source."""
-    return [
-        section(f"[{name}]", facts(_flat(part))) for name, part in document["study"].items() if isinstance(part, Mapping)
+def restitution(document: Document) -> list[str]:
+    """Both restitution factors and what they are made of."""
+    rows = [
+        ("Race damping C_mu", "race_damping", "N s/m"),
+        ("Damping ratio zeta", "damping_ratio", "-"),
+        ("Restitution factor eta", "restitution_factor", "-"),
     ]
-
-
-def _flat(part: Document, prefix: str = "") -> list[tuple[str, str]]:
-    pairs: list[tuple[str, str]] = []
-    for key, value in part.items():
-        if isinstance(value, Mapping):
-            pairs += _flat(value, f"{prefix}{key}.")
-        else:
-            pairs.append((prefix + key, significant(value) if isinstance(value, float) else str(value)))
-    return pairs
+    cells = [[label, *(quantity(document[f"{key}{end}"], unit) for end in ENDS)] for label, key, unit in rows]
+    parts = [
+        ("Load", "load", "N"),
+        ("Slope alpha", "slope", "-"),
+        ("Rolling speed", "rolling_speed", "m/s"),
+    ]
+    stiffness = f"{quantity(document['ball_cage_stiffness'], 'N/m')} ({document['stiffness_source']})"
+    pocket = [("Ball/cage stiffness", stiffness), ("Cage mass", quantity(document["cage_mass"], "kg"))]
+    return [
+        section("Restitution factor", table(("", "as printed (Eq. 18)", "ball free to spin"), cells)),
+        section("From the contacts of the most loaded ball", by_race(document, parts)),
+        section("And the pocket", facts(pocket)),
+    ]

@@ -31,7 +31,11 @@ def facts(pairs: Sequence[tuple[str, str]]) -> str:
 def _fact(label: str, value: str, width: int) -> str:
     hanging = " " * (width + 4)
     return textwrap.fill(
-        value, WIDTH, initial_indent=f"  {label:<{width}}  ", subsequent_indent=hanging, break_on_hyphens=False
+        value,
+        WIDTH,
+        initial_indent=f"  {label:<{width}}  ",
+        subsequent_indent=hanging,
+        break_on_hyphens=False,
     )
 
 

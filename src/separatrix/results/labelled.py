@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from separatrix.errors import InputError
-from separatrix.results.labels import COORDINATES, LISTS, PROVENANCE, RACES, RECORDS, unit_of
+from separatrix.results.labels import GROUPS, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
-type_ = tuple[tuple[str, ...], Any]
+Columns = dict[str, tuple[tuple[str, ...], Any]]
+"""Name of a variable: its dimensions and its nested values."""
 
 
 def dataset(document: Mapping[str, Any]) -> xr.Dataset:
@@ -29,10 +30,7 @@ def dataset(document: Mapping[str, Any]) -> xr.Dataset:
     """
     body = {key: value for key, value in document.items() if key not in PROVENANCE}
     variables = {name: _variable(name, dims, values) for name, (dims, values) in _flatten(body).items()}
-    coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
-    if any("race" in variable.dims for variable in variables.values()):
-        coordinates["race"] = xr.Variable(("race",), np.array(RACES, dtype=object))
-    return xr.Dataset(variables, coordinates, attrs=_provenance(document))
+    return xr.Dataset(variables, attrs=_provenance(document))
 
 
 def save(data: xr.Dataset, path: Path) -> None:
@@ -90,44 +88,47 @@ def _fill(values: Any, missing: Any) -> Any:
     return missing if values is None else values
 
 
-def _flatten(node: Mapping[str, Any]) -> dict[str, type_]:
+def _flatten(node: Mapping[str, Any]) -> Columns:
     """Return each variable of a nested dictionary with its dimensions; lists of records become columns."""
-    columns: dict[str, type_] = {}
-    node = dict(node)
-    if all(isinstance(node.get(race), Mapping) for race in RACES):
-        columns |= _stack("race", [node.pop(race) for race in RACES])
-    for key, value in node.items():
+    columns: Columns = {}
+    rest = dict(node)
+    if all(isinstance(rest.get(race), Mapping) for race in RACES):
+        columns |= _stack(Group("race"), [rest.pop(race) for race in RACES])
+        columns["race"] = (("race",), list(RACES))
+    for key, value in rest.items():
         columns |= _flatten_one(key, value)
     return columns
 
 
-def _flatten_one(key: str, value: Any) -> dict[str, type_]:
+def _flatten_one(key: str, value: Any) -> Columns:
+    group = GROUPS.get(key, Group(prefix=f"{key}_"))
     if isinstance(value, Mapping):
-        prefix = RECORDS.get(key, ("", f"{key}_"))[1]
-        return _prefixed(prefix, _flatten(value))
+        return _prefixed(group.prefix, _flatten(value))
     if isinstance(value, list) and value and isinstance(value[0], Mapping):
-        dimension, prefix = RECORDS[key]
-        return _prefixed(prefix, _stack(dimension, value))
+        return _prefixed(group.prefix, _stack(group, value))
     if isinstance(value, list):
         return {key: (LISTS.get(key, (key,)), value)}
-    return {key: ((), value)}
+    return {RENAMED.get(key, key): ((), value)}
 
 
-def _prefixed(prefix: str, columns: dict[str, type_]) -> dict[str, type_]:
-    return {(name if name in COORDINATES else prefix + name): column for name, column in columns.items()}
+def _prefixed(prefix: str, columns: Columns) -> Columns:
+    """Put a prefix before every name that is not that of a dimension."""
+    return {(name if (name,) == dims else prefix + name): (dims, v) for name, (dims, v) in columns.items()}
 
 
-def _stack(dimension: str, records: list[Mapping[str, Any]]) -> dict[str, type_]:
-    """Return the columns of records that have the same keys, with one more dimension in front."""
-    rows = [_flatten(record) for record in records]
-    columns: dict[str, type_] = {}
+def _stack(group: Group, records: Sequence[Mapping[str, Any]]) -> Columns:
+    """Return the columns of records that have the same keys, with one more dimension in front.
+
+    Records with a name are sorted by it, so that those of one material stand in one place everywhere.
+    """
+    ordered = sorted(records, key=lambda r: str(r["name"])) if group.dimension == "material" else records
+    bare = [{key: value for key, value in record.items() if key != group.label} for record in ordered]
+    rows = [_flatten(record) for record in bare]
+    columns: Columns = {}
     for name, (dims, first) in rows[0].items():
-        if name in COORDINATES:
-            columns[name] = (dims, first)
-        elif name == "name":
-            columns[dimension] = ((dimension,), [row[name][1] for row in rows])
-        elif name == dimension:
-            columns[name] = ((dimension,), [row[name][1] for row in rows])
-        else:
-            columns[name] = ((dimension, *dims), [row[name][1] for row in rows])
+        is_label = (name,) == dims
+        stacked = ((group.dimension, *dims), [row[name][1] for row in rows])
+        columns[name] = (dims, first) if is_label else stacked
+    if group.label:
+        columns[group.dimension] = ((group.dimension,), [record[group.label] for record in ordered])
     return columns

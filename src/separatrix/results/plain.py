@@ -6,11 +6,15 @@ import functools
 import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from enum import Enum, IntEnum
+from enum import Enum
 from math import isfinite
 from typing import Any, get_type_hints
 
 import numpy as np
+
+from separatrix.study import Guidance, KinematicModel, Race
+
+SPELLED = (Guidance, KinematicModel, Race)
 
 
 class NotFiniteError(ArithmeticError):
@@ -20,8 +24,8 @@ class NotFiniteError(ArithmeticError):
 def plain(value: object, path: str = "result") -> Any:
     """Return a record, however nested, as what JSON can hold.
 
-    Dataclasses become dictionaries, enumerations their value (integer ones their name in lower case),
-    arrays nested lists.
+    Dataclasses become dictionaries, arrays nested lists, enumerations their name; those that a study file
+    spells keep that spelling.
 
     Parameters
     ----------
@@ -38,9 +42,9 @@ def plain(value: object, path: str = "result") -> Any:
         Something that has no plain form.
     """
     if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name), f"{path}.{f.name}") for f in fields(value)}
+        return plain_record(value, path)
     if isinstance(value, Enum):
-        return value.name.lower() if isinstance(value, IntEnum) else value.value
+        return value.value if type(value) in SPELLED else value.name
     if isinstance(value, np.ndarray | np.generic):
         return plain(value.tolist(), path)
     if isinstance(value, Mapping):
@@ -48,6 +52,11 @@ def plain(value: object, path: str = "result") -> Any:
     if isinstance(value, Sequence) and not isinstance(value, str | bytes):
         return [plain(v, f"{path}[{i}]") for i, v in enumerate(value)]
     return _scalar(value, path)
+
+
+def plain_record(record: Any, path: str = "result") -> dict[str, Any]:
+    """Return the fields of a record as plain data."""
+    return {f.name: plain(getattr(record, f.name), f"{path}.{f.name}") for f in fields(record)}
 
 
 def _scalar(value: object, path: str) -> object:

@@ -1,0 +1,38 @@
+"""Figures for journals, drawn from a dataset alone, so that a saved result can be drawn again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from separatrix.figures import bearing, stability, traction
+from separatrix.figures.style import journal, save
+
+__all__ = ["FIGURES", "figures", "save"]
+
+Draw = Callable[[xr.Dataset], Figure]
+
+FIGURES: Mapping[str, Mapping[str, Draw]] = {
+    "bearing": {"bearing-balls": bearing.balls, "bearing-contacts": bearing.contact},
+    "traction": {"traction-curves": traction.curves},
+    "stability": {"stability-curve": stability.stability},
+}
+"""Verb -> name of the file -> what draws it."""
+
+
+def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the name and the figure of every picture of an answer.
+
+    Parameters
+    ----------
+    verb : str
+        The question.
+    data : Dataset
+        From `results.dataset` or `results.load`.
+    """
+    for name, draw in FIGURES.get(verb, {}).items():
+        with journal():
+            figure = draw(data)
+        yield name, figure

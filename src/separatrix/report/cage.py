@@ -1,0 +1,68 @@
+"""Text for the moving cage: stability curve, one run, ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from separatrix.report.tables import facts, number, paragraph, quantity, section, table
+
+Document = Mapping[str, Any]
+
+
+def stability(document: Document) -> list[str]:
+    """Critical friction with its band and the linear limit, and the ensemble they hold for."""
+    limits = {row["restitution_factor"]: row["critical_friction"] for row in document["linear_limit"]}
+    rows = [
+        [
+            number(row["restitution_factor"], 2),
+            *(number(row[key]) for key in CURVE_KEYS),
+            number(limits.get(row["restitution_factor"])),
+        ]
+        for row in document["curve"]
+    ]
+    reasons = dict.fromkeys(row["reason"] for row in document["curve"] if row["reason"])
+    blocks = [
+        section("What it holds for", facts([*chain_facts(document["chain"]), *ensemble_facts(document)])),
+        section("Stability curve", table(CURVE_HEADERS, rows)),
+    ]
+    return blocks + [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
+
+
+CURVE_KEYS = ("critical_friction", "critical_friction_low", "critical_friction_high")
+CURVE_HEADERS = ("restitution\nfactor", "critical\nfriction", "band\nlow", "band\nhigh", "linear\nlimit")
+
+
+def chain_facts(chain: Document) -> list[tuple[str, str]]:
+    """Return the chain's numbers on a few lines: angles, loads, slopes, damping, both restitution factors."""
+    inner, outer = chain["inner"], chain["outer"]
+
+    def both(key: str, unit: str) -> str:
+        return f"{quantity(inner[key], unit)} inner, {quantity(outer[key], unit)} outer"
+
+    return [
+        ("Contact angles", both("contact_angle", "rad")),
+        ("Loads of the ball", both("load", "N")),
+        ("Traction slopes", both("slope", "-")),
+        ("Race damping C_mu", quantity(chain["race_damping"], "N s/m")),
+        ("Restitution factor", restitution_text(chain)),
+        (
+            "Ball/cage stiffness",
+            f"{quantity(chain['ball_cage_stiffness'], 'N/m')}, {chain['stiffness_source']}",
+        ),
+    ]
+
+
+def restitution_text(chain: Document) -> str:
+    """Return both restitution factors in a few words."""
+    printed, free = chain["restitution_factor"], chain["restitution_factor_free_spin"]
+    return f"{number(printed)} as printed (Eq. 18); {number(free)} with the ball free to spin"
+
+
+def ensemble_facts(settings: Document) -> list[tuple[str, str]]:
+    """Return the ensemble in a few words."""
+    kicks = ", ".join(f"{kick:g}" for kick in settings["kicks"])
+    return [
+        ("Kicks", f"{kicks} m/s; the curve is drawn for {settings['middle_kick']:g} m/s"),
+        ("Runs", f"{settings['runs']} at each point, of {quantity(settings['duration'], 's')}"),
+    ]

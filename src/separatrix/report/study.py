@@ -1,0 +1,87 @@
+"""Text of a resolved study: every value with where it came from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.units import format_quantity
+
+Entry = Mapping[str, Any]
+SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability")
+
+
+def check(document: Entry) -> list[str]:
+    """Every resolved input, its origin, and the sources of the materials."""
+    study = document["study"]
+    given = [name for name in SECTIONS if study[name] is not None]
+    blocks = [section(f"[{name}]", _values(study[name])) for name in given]
+    if study["ranking"] is not None:
+        blocks.append(section("[ranking] ball/cage friction", _frictions(study["ranking"])))
+    blocks.append(section("Sources of the materials", *_sources(study)))
+    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if study[name] is None]
+    blocks.append("The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else ""))
+    return blocks
+
+
+def _values(part: Entry) -> str:
+    rows = [
+        [name, shown(entry), entry["origin"]] for name, entry in part.items() if isinstance(entry, Mapping)
+    ]
+    return table(("", "value", "from"), rows, left=3)
+
+
+def shown(entry: Entry) -> str:
+    """Return the value of a resolved input as a reader likes it."""
+    if "name" in entry:
+        return str(entry["name"])
+    value, unit = entry["value"], entry.get("unit", "")
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return _several(value, unit)
+    if value is None or isinstance(value, bool | str):
+        return ABSENT if value is None else str(value)
+    return format_quantity(value, unit, 7) if unit not in ("", "-") else f"{value:g}"
+
+
+def _several(values: Sequence[float], unit: str) -> str:
+    if len(values) > 4:
+        return f"{values[0]:g} ... {values[-1]:g} ({len(values)})"
+    return ", ".join(f"{value:g}" for value in values) + ("" if unit in ("", "-") else f" {unit}")
+
+
+def _frictions(ranking: Entry) -> str:
+    """Return the friction table; what each column is stands below it."""
+    environments = ranking["environments"]
+    letters = [chr(ord("A") + i) for i in range(len(environments))]
+    rows = [
+        [candidate["name"], *(_friction(candidate["friction"].get(name)) for name in environments)]
+        for candidate in ranking["candidates"]
+    ]
+    meaning = [(letter, name) for letter, name in zip(letters, environments, strict=True)]
+    return "\n".join([table(("", *letters), rows), facts([*meaning, ("from", ranking["origin"])])])
+
+
+def _friction(friction: Entry | None) -> str:
+    if friction is None:
+        return "not measured"
+    spread = friction["standard_deviation"]
+    return number(friction["mean"]) + ("" if spread is None else f" +/- {spread:.2g}")
+
+
+def _sources(study: Entry) -> list[str]:
+    """Return each material once, with its numbers, its sources and how sure they are."""
+    materials: dict[str, Entry] = {}
+    for name in SECTIONS:
+        for entry in (study[name] or {}).values():
+            if isinstance(entry, Mapping) and "elastic_modulus" in entry:
+                materials[entry["name"]] = entry
+    for candidate in (study["ranking"] or {}).get("candidates", ()):
+        if candidate["material"] is not None:
+            materials[candidate["name"]] = candidate["material"]
+    return [paragraph(_source(entry), first="  ", indent="    ") for entry in materials.values()]
+
+
+def _source(entry: Entry) -> str:
+    numbers = f"E {quantity(entry['elastic_modulus']['value'], 'Pa')}, nu {entry['poisson_ratio']['value']:g}"
+    return f"{entry['name']}: {numbers}. {entry['source']} (confidence: {entry['confidence']})"

@@ -1,0 +1,190 @@
+"""Wrong input: one line on standard error, exit status 2, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from separatrix.cli import main
+
+VALID = """
+[bearing]
+ball_diameter = "11.1125 mm"
+pitch_diameter = "65 mm"
+ball_count = 13
+contact_angle = "25 deg"
+inner_conformity = 0.52
+outer_conformity = 0.52
+ball_material = "440C"
+ring_material = "440C"
+
+[operation]
+inner_speed = "15000 rpm"
+axial_load = "300 daN"
+
+[film]
+race_friction = 0.1
+material = "PTFE transfer film"
+thickness = "0.5 um"
+
+[cage]
+mass = "25 g"
+ball_cage_stiffness = "3e6 N/m"
+pocket_clearance = "0.6 mm"
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 4
+duration = "10 ms"
+
+[ranking]
+friction = "pin-on-disk-77K"
+"""
+
+WRONG_STUDIES = {
+    "unknown key": ("ball_count = 13", "ball_cuont = 13", "ball_count"),
+    "unknown section": ("[film]", "[flim]", "film"),
+    "bare number": ('"11.1125 mm"', "11.1125", "mm"),
+    "wrong dimension": ('"300 daN"', '"300 mm"', "force"),
+    "decimal comma": ('"11.1125 mm"', '"11,1125 mm"', "decimal point"),
+    "nan": ('"300 daN"', '"nan N"', "axial_load"),
+    "inf": ('"300 daN"', '"inf N"', "axial_load"),
+    "nan ratio": ("race_friction = 0.1", "race_friction = nan", "race_friction"),
+    "negative diameter": ('"11.1125 mm"', '"-11.1125 mm"', "ball_diameter"),
+    "zero diameter": ('"11.1125 mm"', '"0 mm"', "ball_diameter"),
+    "conformity below one half": ("inner_conformity = 0.52", "inner_conformity = 0.49", "inner_conformity"),
+    "conformity of a radius": ("outer_conformity = 0.52", "outer_conformity = 5.88", "outer_conformity"),
+    "more balls than fit": ("ball_count = 13", "ball_count = 30", "ball"),
+    "lifted off": ('"300 daN"', '"-300 daN"', "axial_load"),
+    "pocket wider than the gap": ('"0.6 mm"', '"6 mm"', "pocket_clearance"),
+    "no runs": ("runs = 4", "runs = 0", "runs"),
+    "no kicks": ('kicks = ["0.5 m/s"]', "kicks = []", "kicks"),
+    "missing section": ("[operation]", "[operations]", "operation"),
+    "duplicate key": ("ball_count = 13", "ball_count = 13\nball_count = 13", "line"),
+    "unknown material": ('ball_material = "440C"', 'ball_material = "440D"', "440C"),
+    "unknown friction table": ('"pin-on-disk-77K"', '"pin-on-disk-78K"', "pin-on-disk-77K"),
+    "broken TOML": ("[bearing]", "[bearing", "line"),
+    "deeply nested": ("ball_count = 13", "ball_count = " + "[" * 3000 + "]" * 3000, ""),
+    "film without thickness": ('thickness = "0.5 um"', "", "thickness"),
+    "text for a count": ("ball_count = 13", 'ball_count = "thirteen"', "ball_count"),
+    "boolean for a count": ("ball_count = 13", "ball_count = true", "ball_count"),
+    "unknown guidance": ('mass = "25 g"', 'mass = "25 g"\nguidance = "outside"', "guidance"),
+    "huge unit": ('"300 daN"', '"9**9**9 m"', "axial_load"),
+    "negative seed": ("runs = 4", "runs = 4\nseed = -1", "seed"),
+    "zero duration": ('"10 ms"', '"0 s"', "duration"),
+}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def refused(capsys, *arguments: str) -> str:
+    """Run a command that must be refused; return its line."""
+    before = sorted(Path().rglob("*"))
+    status = main(list(arguments))
+    out, err = capsys.readouterr()
+    assert status == 2, err
+    assert out == ""
+    assert err.startswith("separatrix: ")
+    assert err.count("\n") == 1, err
+    assert err.endswith("\n")
+    assert "Traceback" not in err
+    assert len(err) < 1200, err
+    assert sorted(Path().rglob("*")) == before
+    return err
+
+
+@pytest.mark.parametrize("verb", ["rank", "check"])
+@pytest.mark.parametrize("case", WRONG_STUDIES)
+def test_a_wrong_study_is_refused_in_one_line(case, verb, capsys):
+    """Each wrong study: exit status 2, one line with what it is about, nothing written."""
+    old, new, said = WRONG_STUDIES[case]
+    assert old in VALID
+    Path("study.toml").write_text(VALID.replace(old, new))
+    assert said in refused(capsys, verb, "study.toml")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [(b"", "bearing"), (b"\xff\xfe\x00", "UTF-8"), (b"# x\n" * 1_400_000, "")],
+    ids=["empty", "not UTF-8", "5 MB"],
+)
+def test_a_file_that_is_no_study_is_refused(content, said, capsys):
+    """An empty file, one that is not text, and one of 5 MB."""
+    Path("study.toml").write_bytes(content)
+    assert said in refused(capsys, "check", "study.toml")
+
+
+def test_a_folder_is_no_study(capsys):
+    """A folder in place of a file."""
+    Path("folder.toml").mkdir()
+    assert "folder" in refused(capsys, "check", "folder.toml")
+
+
+def test_a_missing_study_names_the_shipped_ones(capsys):
+    """An unknown name is answered with the nearest shipped study."""
+    assert "cryogenic-turbopump" in refused(capsys, "rank", "cryogenic-turbopmp")
+
+
+USAGE = {
+    "no verb": ([], "verb"),
+    "unknown verb": (["rnak", "le7"], "rnak"),
+    "no study": (["bearing"], "STUDY"),
+    "two studies": (["bearing", "le7", "le7"], "le7"),
+    "unknown option": (["bearing", "le7", "--jsn"], "--jsn"),
+    "no jobs": (["bearing", "le7", "--jobs", "0"], "--jobs"),
+    "negative jobs": (["bearing", "le7", "--jobs", "-2"], "--jobs"),
+    "too many jobs": (["bearing", "le7", "--jobs", "1000000"], "--jobs"),
+    "jobs in words": (["bearing", "le7", "--jobs", "two"], "--jobs"),
+    "out without a folder": (["bearing", "le7", "--out"], "--out"),
+    "new without a path": (["new"], "PATH"),
+    "study with control characters": (["bearing", "a\x1b[31m\nb"], ""),
+}
+
+
+@pytest.mark.parametrize("case", USAGE)
+def test_wrong_usage_is_refused_in_one_line(case, capsys):
+    """Each misuse of the command line itself."""
+    arguments, said = USAGE[case]
+    assert said in refused(capsys, *arguments)
+
+
+def test_out_that_is_a_file_is_refused_before_the_work(capsys):
+    """`--out` names a file: refused, and the file is as it was."""
+    Path("taken").write_text("mine")
+    assert "--out" in refused(capsys, "rank", "cryogenic-turbopump", "--out", "taken")
+    assert "--out" in refused(capsys, "rank", "cryogenic-turbopump", "--out", "taken/below")
+    assert Path("taken").read_text() == "mine"
+
+
+def test_a_default_folder_that_is_a_file_is_refused(capsys):
+    """Without `--out` the folder is named after the study; a file of that name is not touched."""
+    Path("le7").write_text("mine")
+    assert "--out" in refused(capsys, "bearing", "le7")
+
+
+def test_a_wrong_study_does_not_make_the_folder(capsys):
+    """The study is read before the folder is made."""
+    Path("study.toml").write_text("")
+    refused(capsys, "bearing", "study.toml", "--out", "deep/folder")
+
+
+def test_new_does_not_overwrite(capsys):
+    """`new` refuses what exists: a file, a folder, a path without a folder."""
+    Path("mine.toml").write_text("mine")
+    Path("folder").mkdir()
+    assert "exists" in refused(capsys, "new", "mine.toml")
+    assert "folder" in refused(capsys, "new", "folder")
+    assert "nowhere" in refused(capsys, "new", "nowhere/mine.toml")
+    assert Path("mine.toml").read_text() == "mine"
+
+
+@pytest.mark.parametrize("verb", ["restitution", "stability", "simulate", "rank"])
+def test_a_verb_that_needs_a_missing_section_says_so(verb, capsys):
+    """The cage verbs refuse a study without [cage]; `rank` one without [ranking]."""
+    start = "[ranking]" if verb == "rank" else "[cage]"
+    Path("study.toml").write_text(VALID[: VALID.index(start)])
+    assert start in refused(capsys, verb, "study.toml")
