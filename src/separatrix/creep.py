@@ -1,4 +1,4 @@
-"""Creep across the contact ellipse: spin, rolling (Heathcote) and a uniform part (paper, Eqs 3-5, 14 and 16)."""
+"""Creep across the contact ellipse: spin, rolling (Heathcote), uniform part (paper, Eqs 3-5, 14 and 16)."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def contact_creep(bearing: BallBearing, race: Race, contact_angle: Radian, spin_
 
     Notes
     -----
-    xi = (V_ball - V_race)/V_roul (paper, Eq. 3). 1/R_x is the gap curvature along rolling, R_d = 2 f D/(2 f + 1)
-    the radius of the pressed surface across the groove (docs/theory/creep.md).
+    xi = (V_ball - V_race)/V_roul (paper, Eq. 3). 1/R_x is the gap curvature along rolling, R_d = 2 f D/(2 f
+    + 1) the radius of the pressed surface across the groove (docs/theory/creep.md).
     """
     D = bearing.ball_diameter
     per_rx = race_curvatures(bearing, race, contact_angle)[0]

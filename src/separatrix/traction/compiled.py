@@ -1,4 +1,4 @@
-"""The one way kernels of this package are compiled: strict floating point, cached, free of the interpreter lock."""
+"""How kernels of this package are compiled: strict floating point, cached, without the interpreter lock."""
 
 from __future__ import annotations
 

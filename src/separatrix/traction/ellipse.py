@@ -1,8 +1,9 @@
 r"""Ellipse of strips: their placement and resultant (paper, 4.3.1 and Eq. 15).
 
-In units of the contact: y = a sin(theta); creep X = xi/xi_s with xi_s = 2 mu p0/E*, X = d + sigma sin + eta sin^2; the strip at theta has
-c = X/cos(theta) and lam = lam0/cos(theta), and carries (3/4) cos^3(theta) d(theta) of mu N. Strips are Gauss points of panels
-that end where |X| passes 0 and a geometric series of levels, so that they crowd at the zero-creep lines however strong the spin.
+In units of the contact: y = a sin(theta); creep X = xi/xi_s with xi_s = 2 mu p0/E*, X = d + sigma sin + eta
+sin^2; the strip at theta has c = X/cos(theta) and lam = lam0/cos(theta), and carries (3/4) cos^3(theta)
+d(theta) of mu N. Strips are Gauss points of panels that end where |X| passes 0 and a geometric series of
+levels, so that they crowd at the zero-creep lines however strong the spin.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) 
 
 @kernel
 def _with_saturation(edges: Array, d: float, sigma: float, eta: float) -> Array:
-    """Edges with the places added, between them, where a bare strip starts to slip throughout: |X| = cos(theta)."""
+    """Edges, and between them the places where a bare strip starts to slip throughout: |X| = cos(theta)."""
     refined = np.empty(2 * edges.size)
     refined[0], count = edges[0], 1
     for k in range(edges.size - 1):
@@ -152,7 +153,7 @@ def free_rolling(
     gauss: tuple[Array, Array],
     table: Table,
 ) -> float:
-    """Offset d at which the ellipse carries no net traction: Newton's steps inside a shrinking bracket [-]."""
+    """Offset d without net traction: Newton's steps inside a shrinking bracket [-]."""
     if eta == 0.0:
         return 0.0  # spin alone is odd in y
     low, high = -highest(sigma, eta), highest(sigma, -eta)

@@ -1,11 +1,12 @@
 r"""Influence of traction elements on one strip: half-plane with a film in series (paper, Eqs 7-11).
 
-Units of the strip: x in half lengths b, traction in mu p0, displacement in mu p0 b/E*. Nodes run from the leading
-edge x = +1, where particles enter, to x = -1. In stick
+Units of the strip: x in half lengths b, traction in mu p0, displacement in mu p0 b/E*. Nodes run from the
+leading edge x = +1, where particles enter, to x = -1. In stick
 
     sum_j [A(x_i - x_j) - A(x_i + dx - x_j)] Q_j + lam (Q_i - Q_(i-1)) = 2 c dx,   Q_(-1) = 0,
 
-c = xi/xi_s being the creep over the strip's saturation creep 2 mu p0/E* and lam = L E*/b the film's compliance.
+c = xi/xi_s being the creep over the strip's saturation creep 2 mu p0/E* and lam = L E*/b the film's
+compliance.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Master curve of a strip: traction against creep for every film, all stick lengths in one recursion.
 
-A strip knows two numbers: c, its creep over its saturation creep, and lam, its film compliance. With the slipping tractions at
-their bound the stick zone reaches from the leading edge over m elements, and its equations are the leading m rows of one Toeplitz matrix.
-Levinson's recursion solves all m = 1..n in turn, in n^2 operations: the whole traction curve of `solve_strip`, not
-an approximation of it. A table over lam is then interpolated.
+A strip knows two numbers: c, its creep over its saturation creep, and lam, its film compliance. With the
+slipping tractions at their bound the stick zone reaches from the leading edge over m elements, and its
+equations are the leading m rows of one Toeplitz matrix. Levinson's recursion solves all m = 1..n in turn, in
+n^2 operations: the whole traction curve of `solve_strip`, not an approximation of it. A table over lam is
+then interpolated.
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ CREEP_COUNT = 257
 class MasterTable:
     """Traction over its bound, F, on a grid of v = s c/(1 + s c) and log lam, with s = F'(0)/2.
 
-    values : shape (film, creep, 2): F and dF/dv [-]; log_scale : shape (film,), ln[s (1 + gamma lam)]; axis : (lam_min, lam_max,
-    first log, step, gamma) of the film axis, uniform in ln[(lam + lam_min)/(1 + lam/lam_max)].
+    values : shape (film, creep, 2): F and dF/dv [-]; log_scale : shape (film,), ln[s (1 + gamma lam)]; axis
+    : (lam_min, lam_max, first log, step, gamma) of the film axis, uniform in ln[(lam + lam_min)/(1 +
+    lam/lam_max)].
     """
 
     values: Array
@@ -52,8 +54,8 @@ def nested_sticks(t: Array, p: Array) -> tuple[Array, Array, Array]:
 
     Notes
     -----
-    Traction is p - r with r = 0 in slip; the stick rows are T_m r = (T p)_m - 2 c dx. f and b are Levinson's forward and
-    backward vectors, x and z the solutions for the right sides T p and 1.
+    Traction is p - r with r = 0 in slip; the stick rows are T_m r = (T p)_m - 2 c dx. f and b are Levinson's
+    forward and backward vectors, x and z the solutions for the right sides T p and 1.
     """
     n = p.size
     dx = 2.0 / n
@@ -84,7 +86,7 @@ def nested_sticks(t: Array, p: Array) -> tuple[Array, Array, Array]:
 
 @kernel
 def _grow(f: Array, b: Array, m: int, ef: float, eb: float, diagonal: float) -> float:
-    """Levinson's step of the forward and backward vectors from m to m + 1 elements, in place; the sum of b."""
+    """Levinson's step of forward and backward vectors from m to m + 1 elements, in place; the sum of b."""
     if m == 0:
         f[0] = b[0] = 1.0 / diagonal
         return float(b[0])
@@ -105,8 +107,9 @@ Knots = tuple[Array, Array, Array]
 def matched_knots(coarse: Array, fine: Array) -> tuple[Knots, Knots]:
     """Knots (c, F, dF/dc) of a strip from its influences with n and 2 n elements, at equal stick lengths.
 
-    At equal stick length all three are first order in 1/n and smooth, so that Richardson's 2 (fine) - (coarse) holds up to
-    saturation, where the curve at equal creep has a kink that moves with n. Returns the extrapolated knots, and the fine ones.
+    At equal stick length all three are first order in 1/n and smooth, so that Richardson's 2 (fine) -
+    (coarse) holds up to saturation, where the curve at equal creep has a kink that moves with n. Returns the
+    extrapolated knots, and the fine ones.
     """
     n = (coarse.size + 1) // 2
     first = nested_sticks(coarse, node_pressure(n))
@@ -116,10 +119,11 @@ def matched_knots(coarse: Array, fine: Array) -> tuple[Knots, Knots]:
 
 
 def _ordered(c: Array, F: Array, S: Array) -> Knots:
-    """Knots from the origin to saturation, without those whose stick or slip zone is too short to be resolved.
+    """Knots from the origin to saturation, without those of unresolved stick or slip zones.
 
-    A stick zone of one element is no zone. Slip zones under a thirty-second of the strip at the trailing edge, where the curve is all but
-    straight, are bridged by the cubic between the tangents, which is exact for Carter's curve.
+    A stick zone of one element is no zone. Slip zones under a thirty-second of the strip at the trailing
+    edge, where the curve is all but straight, are bridged by the cubic between the tangents, which is exact
+    for Carter's curve.
     """
     c, F, tangents = c[: -c.size // 32], F[: -c.size // 32], S[: -c.size // 32]
     top = 1 + int(np.argmax(c[1:]))
@@ -169,7 +173,7 @@ def master_tables(
 
 @lru_cache(maxsize=4)
 def film_tables(nodes: int) -> tuple[MasterTable, MasterTable]:
-    """Master tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter alone."""
+    """Tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter."""
     axis, lams = film_axis()
     influences = [(strip_influence(nodes, lam), strip_influence(2 * nodes, lam)) for lam in lams]
     return master_tables(influences, 1.0 + axis[4] * lams, axis)
@@ -198,7 +202,7 @@ def film_place(lam: float, axis: tuple[float, float, float, float, float], count
 def master_traction(
     c: float, lam: float, values: Array, log_scale: Array, axis: tuple[float, float, float, float, float]
 ) -> tuple[float, float]:
-    """Traction over its bound, F, and dF/dc of one strip, for c of either sign (cubic in v and in log lam)."""
+    """Traction over its bound, F, and dF/dc of one strip, for c of either sign (cubic in v and log lam)."""
     start, w = film_place(lam, axis, log_scale.size)
     weights = (
         -(w - 1.0) * (w - 2.0) * (w - 3.0) / 6.0,
