@@ -1,6 +1,7 @@
 """Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
 
 from separatrix.cage.ensemble import Ensemble, run_ensemble
+from separatrix.cage.history import History, simulate
 from separatrix.cage.linear import (
     drift_law,
     linear_critical_friction,
@@ -13,6 +14,7 @@ from separatrix.cage.verdict import Judgement, growth_probability, judge, wilson
 
 __all__ = [
     "Ensemble",
+    "History",
     "Judgement",
     "PlanarCage",
     "RunOutcome",
@@ -24,6 +26,7 @@ __all__ = [
     "linear_roots",
     "linear_whirl_frequency",
     "run_ensemble",
+    "simulate",
     "turning_critical_friction",
     "wilson_interval",
 ]

@@ -9,24 +9,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.cage import run as single
-from separatrix.cage.motion import ball_directions, coefficients, step_counts, unit_step
+from separatrix.cage import slots
+from separatrix.cage.coefficients import Coefficients, ball_directions, coefficients, step_counts, unit_step
 from separatrix.cage.planar import PlanarCage, RunOutcome
+from separatrix.cage.run import FIFTHS, random_start, run_chunk
 from separatrix.errors import InputError
-from separatrix.units import Array, MetrePerSecond, Ratio, Second
+from separatrix.units import Array, Joule, Metre, MetrePerSecond, Second
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from separatrix.cage.motion import Coefficients
     from separatrix.study import StabilitySettings
 
-CHUNK_STEPS = 2_000_000
-MOST_STEPS = 2_000_000_000
-GROWN = 100.0
-DEAD = 1e-4
+CHUNK_UNITS = 10_000_000
+"""Time of the runs that one call of the kernel takes, in units: some tenths of a second of work."""
+
+MOST_UNITS = 1_000_000_000
+"""Longest run, in units."""
+
+GROWN, DEAD = 100.0, 1e-4
+"""A run ends early, as growing or dying, at these multiples of the energy scale; it changes no outcome."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,8 +50,8 @@ class Ensemble:
     drift_rate : ndarray
         Growth rate of the mean offset between the last two fifths; 0 if the run ended early [1/s].
     whirl_frequency, whirl_direction : ndarray
-        Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and its
-        sense: 1 forward (as the ball set turns), -1 backward, 0 none.
+        Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
+        its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
     largest_contact_force : ndarray
         Largest force between a ball and its pocket [N].
     energy_imbalance : ndarray
@@ -58,7 +62,7 @@ class Ensemble:
 
     kicks: Array
     outcome: NDArray[np.int64]
-    energy_growth: Ratio | Array
+    energy_growth: Array
     largest_offset: Array
     drift_rate: Array
     whirl_frequency: Array
@@ -101,90 +105,128 @@ def run_ensemble(
     InputError
         No kick or no run, or a run would need more steps than can be waited for.
     """
-    kicks = tuple(settings.kicks if kicks is None else kicks)
-    runs = settings.runs if runs is None else runs
-    _check(kicks, runs, settings.duration)
-    p, fifth = _steps(cage, settings.duration)
-    starts = np.array(
-        [
-            single.random_start(settings.seed, run, cage.ball_count)
-            for run in range(first_run, first_run + runs)
-        ]
-    )
-    evidence = np.zeros((len(kicks), runs, single.EVIDENCE))
-    size = max(1, CHUNK_STEPS // (5 * fifth))
-    chunks = [(i, slice(first, first + size)) for i in range(len(kicks)) for first in range(0, runs, size)]
-    cos, sin = ball_directions(cage.ball_count)
-    counts = step_counts(cage, p.unit)
-    scatter = settings.ball_scatter * cage.half_play
+    speeds, runs = chosen(settings, kicks, runs)
+    engine = prepare(cage, settings.duration)
+    starts = random_starts(cage, settings, first_run, runs)
+    evidence = np.zeros((len(speeds), runs, slots.EVIDENCE))
+    nothing = np.zeros((0, slots.BALLS))
 
-    def work(chunk: tuple[int, slice]) -> None:
-        i, rows = chunk
-        single.run_chunk(
-            p, cos, sin, counts, starts[rows], scatter, kicks[i], fifth, _limits(cage, kicks[i]), cage.rotation_sense,
-            evidence[i, rows],
-        )  # fmt: skip
+    def work(i: int, rows: slice) -> None:
+        limits = run_limits(cage, speeds[i])
+        run_chunk(*engine.kernel_arguments, starts[rows], speeds[i], engine.fifth, limits,
+        cage.rotation_sense,
+                  nothing, evidence[i, rows])  # fmt: skip
 
-    _each(work, chunks, jobs)
-    return _ensemble(np.asarray(kicks, dtype=np.float64), evidence, settings.duration)
+    spread(work, len(speeds), runs, max(1, CHUNK_UNITS // (FIFTHS * engine.fifth)), jobs)
+    return gathered(speeds, evidence, settings.duration)
 
 
-def _check(kicks: Sequence[float], runs: int, duration: float) -> None:
-    if not kicks:
-        raise InputError("[stability] kicks", "must hold at least one speed", "m/s")
-    if any(not (math.isfinite(kick) and kick >= 0) for kick in kicks):
-        raise InputError("[stability] kicks", "must be finite and >= 0", "m/s", str(list(kicks)))
-    if runs < 1:
-        raise InputError("[stability] runs", "must be at least 1", "-", str(runs))
-    if not (math.isfinite(duration) and duration > 0):
-        raise InputError("[stability] duration", "must be finite and > 0", "s", str(duration))
+@dataclass(frozen=True, slots=True)
+class Engine:
+    """One cage made ready for the kernel: its numbers, and the units in a fifth of a run."""
+
+    coefficients: Coefficients
+    fifth: int
+    cos: Array
+    sin: Array
+    counts: NDArray[np.int64]
+
+    @property
+    def kernel_arguments(self) -> tuple[Coefficients, Array, Array, NDArray[np.int64]]:
+        """The first arguments of every kernel."""
+        return self.coefficients, self.cos, self.sin, self.counts
 
 
-def _steps(cage: PlanarCage, duration: Second) -> tuple[Coefficients, int]:
-    """Kernel's numbers at the step that divides a fifth of the duration, and the steps in it."""
-    count = duration / single.FIFTHS / unit_step(cage)
-    if not count <= MOST_STEPS:
-        cure = "Shorten [stability] duration, or check the cage's stiffnesses and inertia."
-        raise InputError("[stability] duration", "needs too many steps", "s", f"{duration}", cure)
-    fifth = max(1, math.ceil(count))
-    return coefficients(cage, duration / single.FIFTHS / fifth), fifth
+def prepare(cage: PlanarCage, duration: Second) -> Engine:
+    """Choose the unit of time from the cage, so that it divides a fifth of the duration."""
+    unit = unit_step(cage)
+    if not duration / unit <= MOST_UNITS:
+        cure = "Shorten the run, or check the cage's stiffnesses, mass and moment of inertia."
+        longest = f"must be at most {MOST_UNITS * unit:.3g} for this cage"
+        raise InputError("[stability] duration", longest, "s", f"{duration:g}", cure)
+    fifth = max(1, math.ceil(duration / FIFTHS / unit))
+    p = coefficients(cage, duration / FIFTHS / fifth)
+    return Engine(p, fifth, *ball_directions(cage.ball_count), step_counts(cage, p.unit))
 
 
-def _limits(cage: PlanarCage, kick: float) -> tuple[float, float, float]:
-    """Offset of drift, and the energies that decide a run early."""
+def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
+    """Direction of the kick [rad] and lead of each ball [m] of every run, shape (run, 1 + ball)."""
+    numbers = range(first_run, first_run + runs)
+    starts = np.array([random_start(settings.seed, run, cage.ball_count) for run in numbers])
+    starts[:, 1:] *= settings.ball_scatter * cage.half_play
+    return starts
+
+
+def chosen(
+    settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
+) -> tuple[Array, int]:
+    """Kicks, shape (kick,), and runs: those given, else those of the settings; refuse what is no ensemble."""
+    speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
+    count = settings.runs if runs is None else runs
+    if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > 0)):
+        cure = "A kick of zero starts nothing that could grow or die."
+        raise InputError(
+            "[stability] kicks", "must be one or more speeds > 0", "m/s", str(speeds.tolist()), cure
+        )
+    if count < 1:
+        raise InputError("[stability] runs", "must be at least 1", "-", str(count))
+    return speeds, count
+
+
+def run_limits(cage: PlanarCage, kick: MetrePerSecond) -> tuple[Metre, Joule, Joule]:
+    """Offset that is drift, and the energies above and below which a run's end is known.
+
+    The land holds a guided cage, so its offset is no drift. Only a cage that nothing drives can be known to
+    die.
+    """
     landless = math.isinf(cage.land_gap)
-    unforced = landless and cage.cage_speed == 0 and cage.gravity == 0
-    dead = DEAD * 0.5 * cage.mass * kick**2 if unforced else -1.0
+    driven = not landless or cage.cage_speed != 0 or cage.gravity > 0
+    scale = energy_scale(cage, kick)
     drift = 2.0 * cage.half_play if landless and cage.half_play > 0 else math.inf
-    return drift, GROWN * single.energy_scale(cage, kick), dead
+    return drift, GROWN * scale, -1.0 if driven else DEAD * scale
 
 
-def _each(work, chunks, jobs):  # type: ignore[no-untyped-def]
+def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> Joule:
+    """Energy beside which growth is judged early [J].
+
+    The kick's, and what the frame and gravity do over the way that the cage has.
+    """
+    way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
+    return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
+
+
+def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int, jobs: int) -> None:
+    """Do the work on chunks of `size` runs of every kick, by threads; an interrupt waits for these only."""
+    chunks = [
+        (i, slice(first, min(first + size, runs))) for i in range(kicks) for first in range(0, runs, size)
+    ]
     if jobs <= 1 or len(chunks) == 1:
         for chunk in chunks:
-            work(chunk)
+            work(*chunk)
         return
     pool = ThreadPoolExecutor(max_workers=jobs)
     try:
-        for _ in pool.map(work, chunks):
-            pass
+        for done in [pool.submit(work, *chunk) for chunk in chunks]:
+            done.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _ensemble(kicks: Array, evidence: Array, duration: Second) -> Ensemble:
+def gathered(kicks: Array, evidence: Array, duration: Second) -> Ensemble:
+    """Record of the evidence of all runs, shape (kick, run, evidence)."""
+
     def column(slot: int) -> Array:
         return np.ascontiguousarray(evidence[..., slot])
 
     return Ensemble(
         kicks=kicks,
-        outcome=column(single.OUTCOME).astype(np.int64),
-        energy_growth=column(single.GROWTH),
-        largest_offset=column(single.OFFSET),
-        drift_rate=column(single.DRIFT_RATE),
-        whirl_frequency=column(single.WHIRL),
-        whirl_direction=column(single.DIRECTION).astype(np.int64),
-        largest_contact_force=column(single.FORCE),
-        energy_imbalance=column(single.IMBALANCE),
+        outcome=column(slots.OUTCOME).astype(np.int64),
+        energy_growth=column(slots.GROWTH),
+        largest_offset=column(slots.OFFSET),
+        drift_rate=column(slots.DRIFT_RATE),
+        whirl_frequency=column(slots.WHIRL),
+        whirl_direction=column(slots.DIRECTION).astype(np.int64),
+        largest_contact_force=column(slots.FORCE),
+        energy_imbalance=column(slots.IMBALANCE),
         duration=duration,
     )

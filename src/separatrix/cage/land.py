@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from separatrix.cage.pocket import kernel
+from separatrix.cage.compiled import kernel
 
 if TYPE_CHECKING:
     from separatrix.units import Ratio
@@ -20,7 +20,8 @@ def rebound(damping_ratio: Ratio) -> Ratio:
     r"""Restitution of a mass on a spring and a parallel damper that can push but not pull [-].
 
     The blow ends when the force is back at zero, before the spring is. With :math:`\beta = \zeta\omega` and
-    :math:`\Omega = \omega\sqrt{|1-\zeta^2|}` (Schwager and Poeschel 2007, with their :math:`\omega_0` as unit of time).
+    :math:`\Omega = \omega\sqrt{|1-\zeta^2|}` (Schwager and Poeschel 2007, with their :math:`\omega_0` as unit
+    of time).
     """
     zeta = damping_ratio
     if zeta == 0.0:
@@ -36,7 +37,7 @@ def rebound(damping_ratio: Ratio) -> Ratio:
 
 
 def rebound_damping(restitution: Ratio) -> Ratio:
-    """Damping ratio of the land whose `rebound` is this [-]; below 1e-4 that of 1e-4, which nothing can tell from 0."""
+    """Damping ratio of the land whose `rebound` is this [-]; below 1e-4 that of 1e-4, hardly other than 0."""
     if restitution >= 1.0:
         return 0.0
     target = max(restitution, LOWEST_RESTITUTION)
@@ -47,9 +48,9 @@ def rebound_damping(restitution: Ratio) -> Ratio:
 def land_impulse(p, x, y, vx, vy, spin, dt):  # type: ignore[no-untyped-def]
     r"""Impulse of the land on the cage over one step, from the state at its middle.
 
-    Normal: :math:`F = \max(0, K\delta + c\dot\delta)`, implicit in the damper, with the part of the step in touch.
-    Friction: opposite to the sliding of the cage's surface on the ring's, at most mu times the normal impulse and
-    no more than what stops the sliding (exact stick).
+    Normal: :math:`F = \max(0, K\delta + c\dot\delta)`, implicit in the damper, with the part of the step in
+    touch. Friction: opposite to the sliding of the cage's surface on the ring's, at most mu times the normal
+    impulse and no more than what stops the sliding (exact stick).
 
     Returns
     -------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def linear_whirl_frequency(cage: PlanarCage) -> Hertz:
-    r"""Whirl of a cage without play at its stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
+    r"""Whirl without play at the stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
     return whirl_rate(cage) / (2.0 * math.pi)
 
 
@@ -38,9 +38,10 @@ def linear_critical_friction(cage: PlanarCage) -> Ratio:
 def turning_critical_friction(cage: PlanarCage) -> Ratio:
     r"""The same with the ball set turning: :math:`f_c/(1 - \sigma\Omega/\omega_0)`, exact [-].
 
-    The root :math:`\lambda = i\omega` of the polynomial above has :math:`\omega = \sigma\omega_0 - \Omega`, whence
-    :math:`f = \kappa/|\omega|`: about :math:`1 + \Omega/\omega_0` times the limit at rest for forward whirl.
-    Infinite where the ball set turns faster than the whirl, or where the balls do not spin (sigma = 0).
+    The root :math:`\lambda = i\omega` of the polynomial above has :math:`\omega = \sigma\omega_0 - \Omega`,
+    whence :math:`f = \kappa/|\omega|`: about :math:`1 + \Omega/\omega_0` times the limit at rest for forward
+    whirl. Infinite where the ball set turns faster than the whirl, or where the balls do not spin (sigma =
+    0).
     """
     apparent = whirl_rate(cage) - cage.friction_sense * cage.cage_speed
     if apparent <= 0.0 or cage.friction_sense == 0:
@@ -49,7 +50,7 @@ def turning_critical_friction(cage: PlanarCage) -> Ratio:
 
 
 def drift_law(cage: PlanarCage) -> float:
-    r"""Rate at which the offset of a landless cage grows in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
+    r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
 
     The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction.
     """
@@ -59,7 +60,8 @@ def drift_law(cage: PlanarCage) -> float:
 def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
     """Exact rates of the translation without play, fastest growing first, shape (3,) [rad/s].
 
-    The real part is the growth, the imaginary part the whirl in the turning frame, positive in the positive sense.
+    The real part is the growth, the imaginary part the whirl in the turning frame, positive in the positive
+    sense.
     """
     W, w0 = cage.cage_speed, whirl_rate(cage)
     kappa = cage.ball_cage_stiffness / cage.race_damping
@@ -70,4 +72,4 @@ def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
     cubic = np.polymul(square, np.array([1.0, kappa / scale]))
     cubic = np.polyadd(cubic, np.array([drive / scale**2, 0.0]))
     roots = np.roots(cubic) * scale
-    return roots[np.argsort(-roots.real)]
+    return np.asarray(roots[np.argsort(-roots.real)], dtype=np.complex128)

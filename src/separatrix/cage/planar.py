@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from typing import TYPE_CHECKING
 
-from separatrix.errors import InputError
+from separatrix import _check
 from separatrix.study import Guidance
 from separatrix.units import (
     Kilogram,
@@ -19,6 +20,11 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from separatrix.errors import InputError
 
 
 class RunOutcome(IntEnum):
@@ -98,26 +104,15 @@ class PlanarCage:
     gravity: MetrePerSecond2 = 0.0
 
     def __post_init__(self) -> None:
-        for name, unit in _POSITIVE.items():
-            _require(math.isfinite(getattr(self, name)) and getattr(self, name) > 0, self, name, "> 0", unit)
-        for name, unit in _NOT_NEGATIVE.items():
-            _require(
-                math.isfinite(getattr(self, name)) and getattr(self, name) >= 0, self, name, ">= 0", unit
-            )
-        for name, unit in _ANY.items():
-            _require(math.isfinite(getattr(self, name)), self, name, "a number", unit)
-        _require(self.race_damping > 0, self, "race_damping", "> 0", "N s/m")
-        _require(self.ball_count >= 1, self, "ball_count", "at least 1", "-")
-        _require(self.land_restitution <= 1, self, "land_restitution", "at most 1", "-")
-        self._check_land()
-
-    def _check_land(self) -> None:
-        if self.guidance is Guidance.BALL:
-            return
-        clearance = self.land_clearance
-        if clearance is None or not (math.isfinite(clearance) and clearance > 0):
-            cure = 'Give the diametral clearance, or guidance = "ball" for a cage without a land.'
-            raise InputError("[cage] land_clearance", "must be finite and > 0", "m", str(clearance), cure)
+        _check.settle(
+            *(_check.positive(self, name, 1e-30, 1e12) for name in _POSITIVE),
+            *(_check.between(self, name, 0.0, 1e6) for name in _NOT_NEGATIVE),
+            *(_check.between(self, name, -1e7, 1e7) for name in ("cage_speed", "inner_speed", "outer_speed")),
+            _check.whole(self, "ball_count", 1, 1000),
+            _check.between(self, "land_restitution", 0.0, 1.0),
+            _refused_damping(self),
+            _refused_land(self),
+        )
 
     @property
     def half_play(self) -> Metre:
@@ -133,7 +128,7 @@ class PlanarCage:
 
     @property
     def friction_sense(self) -> int:
-        """Sigma of the pocket friction: 1 for inner-race rotation, -1 for outer, 0 if the balls do not spin."""
+        """Sigma of the friction: 1 for inner-race rotation, -1 for outer, 0 if the balls do not spin."""
         return _sign(self.inner_speed - self.outer_speed)
 
     @property
@@ -148,27 +143,25 @@ class PlanarCage:
         return speeds.get(self.guidance, self.cage_speed)
 
 
-_POSITIVE = {
-    "mass": "kg",
-    "moment_of_inertia": "kg m2",
-    "pitch_radius": "m",
-    "ball_cage_stiffness": "N/m",
-    "land_stiffness": "N/m",
-}
-_NOT_NEGATIVE = {
-    "pocket_clearance": "m",
-    "ball_cage_friction": "-",
-    "land_friction": "-",
-    "land_restitution": "-",
-    "unbalance": "kg m",
-    "gravity": "m/s2",
-}
-_ANY = {"cage_speed": "rad/s", "inner_speed": "rad/s", "outer_speed": "rad/s"}
+_POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")
+_NOT_NEGATIVE = ("pocket_clearance", "ball_cage_friction", "land_friction", "unbalance", "gravity")
 
 
-def _require(holds: bool, cage: PlanarCage, name: str, rule: str, unit: str) -> None:
-    if not holds:
-        raise InputError(f"[cage] {name}", f"must be finite and {rule}", unit, f"{getattr(cage, name)}")
+def _refused_damping(cage: PlanarCage) -> Iterator[InputError]:
+    """C_mu must be above zero; it may be infinite, where the races grip the balls (eta = 1)."""
+    if cage.race_damping != math.inf:
+        yield from _check.positive(cage, "race_damping", 1e-12, 1e12)
+
+
+def _refused_land(cage: PlanarCage) -> Iterator[InputError]:
+    """A guided cage needs a clearance on its land."""
+    if cage.guidance is Guidance.BALL:
+        return
+    cure = 'Give the diametral clearance, or guidance = "ball" for a cage without a land.'
+    if cage.land_clearance is None:
+        yield _check.problem(cage, "land_clearance", "is missing", cure)
+    else:
+        yield from _check.positive(cage, "land_clearance", 1e-9, 10.0, hint=cure)
 
 
 def _sign(value: float) -> int:

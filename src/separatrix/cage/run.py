@@ -1,49 +1,54 @@
-"""One run, or a chunk of runs, from a kick to its outcome."""
+"""One run from a kick to its outcome and its evidence, and a chunk of such runs."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.random import Generator, Philox
 
-from separatrix.cage.motion import (
+from separatrix.cage import coefficients, compiled, flight, land, motion, pocket, slots
+from separatrix.cage.compiled import kernel
+from separatrix.cage.motion import advance, kinetic_energy, record
+from separatrix.cage.planar import RunOutcome
+from separatrix.cage.slots import (
+    DIRECTION,
+    DRIFT_RATE,
+    FORCE,
     FORCE_MAX,
-    GRAVITY,
     GROSS,
+    GROWTH,
+    IMBALANCE,
     KINETIC,
-    LAND,
     LEDGER,
-    MOVING_FRAME,
+    OFFSET,
     OFFSET_MAX,
     OFFSET_X,
     OFFSET_Y,
-    POCKET_FRICTION,
-    RACE_DAMPERS,
+    OUTCOME,
+    ROWS,
+    SOURCES,
     SPEED_SQUARED,
-    SPIN,
     STATE,
     STORED,
     TALLY,
     TURNING,
-    UNBALANCE,
     VX,
     VY,
-    advance,
+    WHIRL,
+    X,
 )
-from separatrix.cage.planar import RunOutcome
-from separatrix.cage.pocket import kernel
 
 if TYPE_CHECKING:
-    from separatrix.cage.planar import PlanarCage
-    from separatrix.units import Array, Joule
+    from collections.abc import Callable
+
+    from separatrix.units import Array
 
 FIFTHS = 5
 LOOKS = 10  # looks at the energy in each fifth
-EVIDENCE = 8
-OUTCOME, GROWTH, OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE, IMBALANCE = range(EVIDENCE)
-_DIES, _GROWS, _DRIFT = int(RunOutcome.DIES), int(RunOutcome.GROWS), int(RunOutcome.DRIFT)
+UNKNOWN = -1
+DIES, GROWS, DRIFT = int(RunOutcome.DIES), int(RunOutcome.GROWS), int(RunOutcome.DRIFT)
 
 
 def random_start(seed: int, run: int, ball_count: int) -> Array:
@@ -57,81 +62,86 @@ def random_start(seed: int, run: int, ball_count: int) -> Array:
     return start
 
 
-def energy_scale(cage: PlanarCage, kick: float) -> Joule:
-    """Energy beside which growth is judged early: the kick's, or of a cage at rest in space as the frame sees it [J]."""
-    reach = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
-    return 0.5 * cage.mass * (kick**2 + (cage.cage_speed * reach) ** 2)
+@kernel
+def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # type: ignore[no-untyped-def]
+    """Run until the outcome is known or the time is over.
+
+    Returns
+    -------
+    tuple
+        Outcome or `UNKNOWN`, the last window looked at, its length [s], and the rows of history filled.
+    """
+    seat, load = np.zeros(cos.size), np.zeros(cos.size)
+    filled = record(p, s, ledger, lead, load, 0.0, rows, 0)
+    _, grows_above, dies_below = limits
+    step = (fifth + LOOKS - 1) // LOOKS
+    for window in range(FIFTHS):
+        done = 0
+        while done < fifth:
+            units = min(fifth - done, step)
+            filled = advance(
+                p, cos, sin, counts, s, seat, lead, load, ledger, tally[window], units, rows, filled
+            )
+            done += units
+            energy = kinetic_energy(p, s) + ledger[STORED]
+            if energy > grows_above:
+                return GROWS, window, done * p.unit, filled
+            if energy < dies_below:
+                return DIES, window, done * p.unit, filled
+    return UNKNOWN, FIFTHS - 1, fifth * p.unit, filled
 
 
 @kernel
-def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
-    """Run from the kick; write the outcome and its evidence into `out`, shape (evidence,).
+def drift_rate(tally, length):  # type: ignore[no-untyped-def]
+    """Growth rate of the mean offset between the last two fifths [1/s]; 0 where there is no offset."""
+    last = np.hypot(tally[FIFTHS - 1, OFFSET_X], tally[FIFTHS - 1, OFFSET_Y])
+    before = np.hypot(tally[FIFTHS - 2, OFFSET_X], tally[FIFTHS - 2, OFFSET_Y])
+    return np.log(last / before) / length if last > 0.0 and before > 0.0 else 0.0
 
-    `limits`: offset of drift [m], and the energies above which the run is known to grow and below which to die [J].
+
+@kernel
+def imbalance(p, s, ledger, start):  # type: ignore[no-untyped-def]
+    """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
+    unexplained = kinetic_energy(p, s) + ledger[STORED] - start - np.sum(ledger[:SOURCES])
+    return abs(unexplained) / (ledger[GROSS] + start)
+
+
+@kernel
+def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
+    """Run from one kick; write outcome and evidence into `out`, shape (evidence,).
+
+    `limits`: offset of drift [m], and the energies above which a run is known to grow, and below which to die
+    [J].
     """
-    state, ledger = np.zeros(STATE), np.zeros(LEDGER)
-    tally = np.zeros((FIFTHS, TALLY))
-    seat, load = np.zeros(cos.size), np.zeros(cos.size)
-    state[VX], state[VY] = kick * np.cos(direction), kick * np.sin(direction)
-    start = 0.5 * p.mass * kick * kick
-    if p.eccentricity != 0.0:
-        state[0] = p.eccentricity
-    drift_limit, grows_above, dies_below = limits
-    decided = -1
-    look = tally[0]
-    for window in range(FIFTHS):
-        look = tally[window]
-        left = fifth
-        while left > 0 and decided < 0:
-            steps = min(left, (fifth + LOOKS - 1) // LOOKS)
-            advance(p, cos, sin, counts, state, seat, lead, load, ledger, look, steps)
-            left -= steps
-            energy = 0.5 * (p.mass * (state[VX] ** 2 + state[VY] ** 2) + p.inertia * state[SPIN] ** 2)
-            energy += ledger[STORED]
-            if energy > grows_above:
-                decided = _GROWS
-            elif energy < dies_below:
-                decided = _DIES
-        if decided >= 0:
-            elapsed = (fifth - left) * p.unit
-            break
-        elapsed = fifth * p.unit
-    largest = 0.0
-    force = 0.0
-    for window in range(FIFTHS):
-        largest = max(largest, tally[window, OFFSET_MAX])
-        force = max(force, tally[window, FORCE_MAX])
-    largest = np.sqrt(largest)
-    energy = 0.5 * (p.mass * (state[VX] ** 2 + state[VY] ** 2) + p.inertia * state[SPIN] ** 2)
-    mean = look[KINETIC] / elapsed
-    grew = mean / start if start > 0.0 else (0.0 if mean == 0.0 else grows_above)
-    if decided < 0:
-        decided = _GROWS if mean > start else (_DRIFT if largest > drift_limit else _DIES)
-        last = np.hypot(tally[4, OFFSET_X], tally[4, OFFSET_Y])
-        before = np.hypot(tally[3, OFFSET_X], tally[3, OFFSET_Y])
-        out[DRIFT_RATE] = np.log(last / before) / elapsed if last > 0.0 and before > 0.0 else 0.0
-    whirl = look[TURNING] / look[SPEED_SQUARED] if look[SPEED_SQUARED] > 0.0 else 0.0
-    work = (
-        ledger[POCKET_FRICTION]
-        + ledger[RACE_DAMPERS]
-        + ledger[LAND]
-        + ledger[GRAVITY]
-        + ledger[MOVING_FRAME]
-        + ledger[UNBALANCE]
-    )
-    gross = ledger[GROSS] + start
-    out[OUTCOME] = decided
-    out[GROWTH] = grew
-    out[OFFSET] = largest
+    s, ledger, tally = np.zeros(STATE), np.zeros(LEDGER), np.zeros((FIFTHS, TALLY))
+    s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
+    start = kinetic_energy(p, s)
+    outcome, window, length, filled = watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows)
+    end = tally[window]
+    out[OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
+    out[GROWTH] = end[KINETIC] / length / start
+    if outcome == UNKNOWN:
+        out[DRIFT_RATE] = drift_rate(tally, length)
+        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits[0] else DIES)
+    whirl = end[TURNING] / end[SPEED_SQUARED] if end[SPEED_SQUARED] > 0.0 else 0.0
+    out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
     out[DIRECTION] = np.sign(whirl) * sense
-    out[FORCE] = force
-    out[IMBALANCE] = abs(energy + ledger[STORED] - start - work) / gross if gross > 0.0 else 0.0
+    out[FORCE] = np.max(tally[:, FORCE_MAX])
+    out[IMBALANCE] = imbalance(p, s, ledger, start)
+    out[ROWS] = filled
 
 
-@kernel
-def run_chunk(p, cos, sin, counts, starts, scatter, kick, fifth, limits, sense, out):  # type: ignore[no-untyped-def]
-    """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
-    for i in range(starts.shape[0]):
-        lead = starts[i, 1:] * scatter
-        run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, out[i])
+def _run_chunk(stamp: int) -> Callable[..., Any]:
+    def run_chunk(p, cos, sin, counts, starts, kick, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
+        if stamp < 0:
+            return
+        for i in range(starts.shape[0]):
+            lead = starts[i, 1:].copy()
+            run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, rows, out[i])
+
+    return run_chunk
+
+
+run_chunk: Any = compiled.entry(_run_chunk, coefficients, flight, land, motion, pocket, slots)
+"""Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from separatrix.cage.linear import drift_law
 from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
@@ -14,6 +15,8 @@ from separatrix.units import Array, Hertz, Metre, Newton, Ratio, Second
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
+
+Counts = NDArray[np.int64]
 
 CLEAR = 0.9
 FEW = 0.5
@@ -76,14 +79,15 @@ def wilson_interval(successes: int, count: int) -> tuple[Ratio, Ratio]:
 
 def growth_probability(ensemble: Ensemble) -> Array:
     """Share of the runs that grow at each kick, shape (kick,) [-]."""
-    return ensemble.count(RunOutcome.GROWS) / ensemble.outcome.shape[1]
+    return np.asarray(ensemble.count(RunOutcome.GROWS) / ensemble.outcome.shape[1], dtype=np.float64)
 
 
 def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     """Judge a cage by its ensemble.
 
-    STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above one half,
-    and the cage cannot drift. UNSTABLE: the same with runs that grow. UNDECIDED otherwise. The rule is ours.
+    STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above
+    one half, and the cage cannot drift. UNSTABLE: the same with runs that grow. UNDECIDED otherwise. The rule
+    is ours.
     """
     runs = ensemble.outcome.shape[1]
     verdict, reason = _decide(cage, ensemble, runs)
@@ -128,11 +132,11 @@ def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, s
     return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
 
 
-def _clear(counts: Array, runs: int) -> bool:
+def _clear(counts: Counts, runs: int) -> bool:
     return all(n / runs >= CLEAR and wilson_interval(int(n), runs)[0] > FEW for n in counts)
 
 
-def _percent(counts: Array, runs: int) -> str:
+def _percent(counts: Counts, runs: int) -> str:
     return f"at least {100 * int(counts.min()) // runs} %"
 
 
@@ -146,7 +150,7 @@ def _drift_reason(ensemble: Ensemble, drifted: int, rate: float) -> str:
     )
 
 
-def _mixed_reason(kicks: Array, dies: Array, grows: Array, runs: int) -> str:
+def _mixed_reason(kicks: Array, dies: Counts, grows: Counts, runs: int) -> str:
     order = np.argsort(kicks)
     calm = [kicks[i] for i in order if dies[i] / runs >= CLEAR]
     wild = [kicks[i] for i in order if grows[i] / runs >= CLEAR]
