@@ -44,9 +44,31 @@ def between(
         )
 
 
-def positive(record: object, field: str, high: float, *, hint: str = "") -> Problems:
-    """Refuse a value that is not above zero and at most `high`."""
-    return between(record, field, 0.0, high, hint=hint, open_low=True)
+def positive(record: object, field: str, low: float, high: float, *, hint: str = "") -> Problems:
+    """Refuse what is not above zero, or outside [low, high], where nothing real lies. None passes."""
+    yield from _one_sided(record, field, low, high, "> 0", hint)
+
+
+def not_negative(record: object, field: str, high: float, *, hint: str = "") -> Problems:
+    """Refuse what is below zero, or above `high`, where nothing real lies. None passes."""
+    yield from _one_sided(record, field, 0.0, high, ">= 0", hint)
+
+
+def _one_sided(record: object, field: str, low: float, high: float, sign: str, hint: str) -> Problems:
+    """Like `between`, but says only which side is wrong: the other one would not help."""
+    value = getattr(record, field)
+    if value is None or (is_number(value) and low <= value <= high):
+        return
+    unit = unit_of(type(record), field)
+    if not is_number(value) or not math.isfinite(value):
+        rule = f"must be a finite number {sign}"
+    elif value < 0.0 or (value == 0.0 and sign == "> 0"):
+        rule = f"must be {sign}"
+    else:
+        rule = (
+            f"must be {'>=' if value < low else '<='} {format_quantity(low if value < low else high, unit)}"
+        )
+    yield problem(record, field, rule, hint)
 
 
 def whole(record: object, field: str, low: int, high: int, *, hint: str = "") -> Problems:

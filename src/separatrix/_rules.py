@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.units import format_quantity
+from separatrix.units import format_quantity, unit_of
 
 if TYPE_CHECKING:
     from separatrix.study import BallBearing, CageDesign, Candidate, Operation, RankingQuestion, Study
@@ -62,21 +62,18 @@ def land(cage: CageDesign) -> _check.Problems:
 
 
 def rising(record: object, field: str, low: float, high: float, most: int) -> _check.Problems:
-    """Refuse a tuple that is empty, too long, not strictly between the limits, or not strictly increasing."""
-    values = getattr(record, field)
+    """Refuse a tuple that is empty, too long, not strictly inside the limits, or not strictly increasing."""
+    values, where = getattr(record, field), f"{type(record).__name__}.{field}"
+    unit = unit_of(type(record), field)
     if not 0 < len(values) <= most:
-        yield InputError(
-            f"{type(record).__name__}.{field}", f"must hold 1 to {most} values", "", str(len(values))
-        )
-    for value in values:
-        if not _check.is_number(value) or not low < value < high:
-            rule = f"must each be a finite number > {low:g} and < {high:g}"
-            yield InputError(f"{type(record).__name__}.{field}", rule, "", str(value))
-            return
-    if any(a >= b for a, b in pairwise(values)):
-        yield InputError(
-            f"{type(record).__name__}.{field}", "must increase, none twice", "", str(list(values))
-        )
+        yield InputError(where, f"must hold 1 to {most} values", "", str(len(values)))
+    outside = [value for value in values if not _check.is_number(value) or not low < value < high]
+    if outside:
+        rule = f"must each be a finite number > {low:g} and < {high:g}"
+        yield InputError(where, rule, unit.replace("-", ""), str(outside[0]))
+    falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
+    if falls:
+        yield InputError(where, "must increase, none twice", unit.replace("-", ""), falls[0])
 
 
 def nothing_measured(candidate: Candidate) -> _check.Problems:

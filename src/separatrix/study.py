@@ -72,9 +72,11 @@ class Material:
     def __post_init__(self) -> None:
         _check.settle(
             _check.printable_text(self, "name"),
-            _check.between(self, "elastic_modulus", 1e5, 5e12, hint="Steel has about 200 GPa, PTFE 0.5 GPa."),
+            _check.positive(
+                self, "elastic_modulus", 1e5, 5e12, hint="Steel has about 200 GPa, PTFE 0.5 GPa."
+            ),
             _check.between(self, "poisson_ratio", 0.0, 0.5, open_high=True),
-            _check.between(self, "density", 1.0, 1e5),
+            _check.positive(self, "density", 1.0, 1e5),
         )
 
 
@@ -95,15 +97,16 @@ class BallBearing:
     def __post_init__(self) -> None:
         groove = "If you have the groove radius, divide it by the ball diameter."
         _check.settle(
-            _check.between(self, "ball_diameter", 1e-5, 10.0),
-            _check.between(self, "pitch_diameter", 1e-5, 100.0),
+            _check.positive(self, "ball_diameter", 1e-5, 10.0),
+            _check.positive(self, "pitch_diameter", 1e-5, 100.0),
             _check.whole(self, "ball_count", 3, MOST_BALLS),
             _check.between(self, "contact_angle", 0.0, math.pi / 2, open_high=True),
             _check.between(self, "inner_conformity", 0.5, 0.6, open_low=True, hint=groove),
             _check.between(self, "outer_conformity", 0.5, 0.6, open_low=True, hint=groove),
-            _check.positive(self, "bore", 100.0),
+            _check.positive(self, "bore", 1e-6, 100.0),
         )
-        _check.settle(_rules.balls_that_do_not_fit(self), _rules.bore_too_wide(self))
+        _check.settle(_rules.balls_that_do_not_fit(self))
+        _check.settle(_rules.bore_too_wide(self))
 
     @property
     def ball_gap(self) -> Metre:
@@ -129,11 +132,11 @@ class Operation:
         _check.settle(
             _check.between(self, "inner_speed", -1e6, 1e6),
             _check.between(self, "outer_speed", -1e6, 1e6),
-            _check.between(self, "axial_load", 0.0, 1e9, hint=lifts),
-            _check.between(self, "radial_load", 0.0, 1e9, hint="Its direction is the x axis: give its size."),
+            _check.not_negative(self, "axial_load", 1e9, hint=lifts),
+            _check.not_negative(self, "radial_load", 1e9, hint="Its direction is the x axis: give its size."),
             _check.between(self, "moment", -1e9, 1e9),
             _check.between(self, "tilt", -0.1, 0.1),
-            _check.positive(self, "temperature", 5000.0),
+            _check.positive(self, "temperature", 1e-3, 5000.0),
             _check.printable_text(self, "fluid"),
         )
         _check.settle(_rules.moment_and_tilt(self), _rules.nothing_presses(self))
@@ -150,7 +153,9 @@ class Film:
     def __post_init__(self) -> None:
         _check.settle(
             _check.between(self, "race_friction", 0.0, FRICTION_LIMIT),
-            _check.positive(self, "thickness", 1e-2, hint="For bare races leave material and thickness out."),
+            _check.positive(
+                self, "thickness", 1e-10, 1e-2, hint="For bare races leave material and thickness out."
+            ),
         )
         if (self.material is None) != (self.thickness is None):
             missing = "material" if self.material is None else "thickness"
@@ -180,17 +185,17 @@ class CageDesign:
 
     def __post_init__(self) -> None:
         _check.settle(
-            _check.positive(self, "mass", 1e4),
-            _check.positive(self, "pocket_clearance", 1.0),
-            _check.positive(self, "ball_cage_stiffness", 1e15),
+            _check.positive(self, "mass", 1e-9, 1e4),
+            _check.positive(self, "pocket_clearance", 1e-9, 1.0),
+            _check.positive(self, "ball_cage_stiffness", 1.0, 1e12),
             _check.between(self, "ball_cage_friction", 0.0, FRICTION_LIMIT),
-            _check.positive(self, "land_clearance", 1.0),
+            _check.positive(self, "land_clearance", 1e-9, 1.0),
             _check.between(self, "land_friction", 0.0, FRICTION_LIMIT),
-            _check.positive(self, "land_stiffness", 1e15),
+            _check.positive(self, "land_stiffness", 1.0, 1e12),
             _check.between(self, "land_restitution", 0.0, 1.0),
-            _check.positive(self, "moment_of_inertia", 1e4),
-            _check.between(self, "unbalance", 0.0, 1e2),
-            _check.between(self, "gravity", 0.0, 1e4),
+            _check.positive(self, "moment_of_inertia", 1e-18, 1e4),
+            _check.not_negative(self, "unbalance", 1e2),
+            _check.not_negative(self, "gravity", 1e4),
             _rules.land(self),
         )
 
@@ -216,7 +221,7 @@ class StabilitySettings:
         _check.settle(
             _rules.rising(self, "kicks", 0.0, 1e4, most=20),
             _check.whole(self, "runs", 1, 1_000_000),
-            _check.positive(self, "duration", 1e4),
+            _check.positive(self, "duration", 1e-9, 1e4),
             _check.between(self, "ball_scatter", 0.0, 1.0),
             _rules.rising(self, "restitution_factors", 0.0, 1.0, most=1000),
             _check.whole(self, "seed", 0, 2**63 - 1),
@@ -236,11 +241,12 @@ class Friction:
     standard_deviation: Ratio | None = None
     count: int | None = None
     source: str = "given in the study"
+    confidence: str = "given in the study"
 
     def __post_init__(self) -> None:
         _check.settle(
             _check.between(self, "mean", 0.0, FRICTION_LIMIT),
-            _check.between(self, "standard_deviation", 0.0, FRICTION_LIMIT),
+            _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
             () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
         )
 

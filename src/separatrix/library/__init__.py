@@ -106,7 +106,7 @@ def friction_table(name: str) -> FrictionTable:
     data = _data(f"{name}.toml")
     environments = tuple(data["environments"])
     friction = {
-        material: {env: _friction(row.get(env), data["source"]) for env in environments}
+        material: {env: _friction(row.get(env), data) for env in environments}
         for material, row in data["friction"].items()
     }
     return FrictionTable(
@@ -119,8 +119,10 @@ def friction_table(name: str) -> FrictionTable:
     )
 
 
-def _friction(value: float | None, source: str) -> Friction | None:
-    return None if value is None else Friction(mean=value, source=source)
+def _friction(value: float | None, data: dict[str, Any]) -> Friction | None:
+    return (
+        None if value is None else Friction(mean=value, source=data["source"], confidence=data["confidence"])
+    )
 
 
 def _value(key: str, value: str | float) -> float:

@@ -24,6 +24,7 @@ _ALTERNATIVES = {
 }
 """Keys that exclude each other: a variant that gives one side drops the other side of its base."""
 
+_OUTSIDE = "Before the first [section] there are only title and extends; move it into its section."
 _LAND_KEYS = ("land_clearance", "land_friction", "land_stiffness", "land_restitution")
 
 
@@ -105,7 +106,7 @@ def _own(path: Path) -> Document:
     data, lines = read_toml(path)
     document = Document(label_of(path), lines=lines)
     for name, value in data.items():
-        place = document.place(name)
+        place = document.place(name, f"{name}.0")
         plain = printable(name)[:60]
         if name in ("title", "extends"):
             document.top[name] = Entry(value, place)
@@ -113,13 +114,15 @@ def _own(path: Path) -> Document:
             document.sections[name] = {key: _entry(document, f"{name}.{key}", v) for key, v in value.items()}
         elif name in SECTIONS:
             rule = f"must be one section, headed [{name}]"
+            document.sections[name] = {}
             document.problems.append(InputError(f"{place}: {name}", rule, "", shown(value)))
         elif isinstance(value, dict):
             cure = nearest(name, SECTIONS)
             document.problems.append(InputError(f"{place}: [{plain}]", "is no section of a study", cure=cure))
         else:
-            cure = "Before the first section there are only title and extends."
-            document.problems.append(InputError(f"{place}: {plain}", "stands outside a section", cure=cure))
+            document.problems.append(
+                InputError(f"{place}: {plain}", "stands outside a section", cure=_OUTSIDE)
+            )
     return document
 
 

@@ -9,6 +9,21 @@ from typing import Any
 from separatrix.study import Candidate, Film, Friction, Material, Study
 from separatrix.units import unit_of
 
+_WITHOUT = {
+    "bearing.bore": "not given; only the DN figure needs it",
+    "operation.tilt": "default: the inner ring tilts until the moment balances",
+    "operation.temperature": "not given",
+    "operation.fluid": "not given",
+    "film.material": "default: bare races",
+    "film.thickness": "default: bare races",
+    "cage.material": "not given",
+    "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the middle kick",
+    "cage.ball_cage_friction": "default: that of the first candidate",
+    "cage.land_clearance": "not given: no land",
+    "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
+}
+"""What the absence of a value means."""
+
 _PARTS = ("bearing", "operation", "film", "cage", "stability")
 
 
@@ -50,7 +65,11 @@ def _value(study: Study, record: object, section: str, name: str) -> dict[str, A
 
 def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
     """The item with where it was given; without any origins the study was built in Python."""
-    return {**item, "origin": study.origins.get(key, "default" if study.origins else "given in Python")}
+    origin = study.origins.get(key)
+    if origin is None:
+        origin = "default" if study.origins else "given in Python"
+        origin = _WITHOUT.get(key, origin) if item.get("value", 0) is None else origin
+    return {**item, "origin": origin}
 
 
 def _material(material: Material) -> dict[str, Any]:
@@ -82,4 +101,7 @@ def _candidate(candidate: Candidate) -> dict[str, Any]:
 
 
 def _friction(friction: Friction) -> dict[str, Any]:
-    return {name: getattr(friction, name) for name in ("mean", "standard_deviation", "count", "source")}
+    return {
+        name: getattr(friction, name)
+        for name in ("mean", "standard_deviation", "count", "source", "confidence")
+    }

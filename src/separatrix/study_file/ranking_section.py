@@ -63,7 +63,7 @@ def _in_place(document: Document, items: Any) -> dict[str, Any]:
 
 def _candidate(document: Document, item: Any, number: int) -> Candidate:
     place = document.sections["ranking"]["candidates"].item_places[number]
-    at = f"{place}: [[ranking.candidates]] number {number + 1}"
+    at = f"{place}: [ranking] candidates[{number + 1}]"
     return values.build(Candidate, values.table(item, at, _CANDIDATE, ("name", "friction")), at)
 
 
@@ -81,7 +81,7 @@ def _frictions(value: Any, at: str) -> dict[str, Friction]:
     for name, item in value.items():
         try:
             environment = values.text(name, f"{at}, name of an environment,")
-            frictions[environment] = values.friction(item, f'{at} in "{environment[:60]}"')
+            frictions[environment] = values.friction(item, f'{at}."{environment[:60]}"')
         except InputError as error:
             problems.append(error)
     if problems:

@@ -13,7 +13,7 @@ from separatrix.errors import InputError
 from separatrix.units import printable, shown
 
 MOST_BYTES = 256 * 1024
-LONGEST_LINE = 5000
+LONGEST_LINE = 4000
 DEEPEST = 16
 """How deep brackets may nest; a study needs 3."""
 
@@ -48,7 +48,7 @@ def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
     _refuse_deep_nesting(text, label)
     try:
         data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # ValueError: bad TOML, or an integer of 5000 digits
+    except (ValueError, RecursionError) as error:
         raise _invalid_toml(error, text, label) from None
     if not data:
         raise InputError(label, "is empty", cure="`separatrix new PATH` writes a study to fill in.")
@@ -132,8 +132,8 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     message = printable(str(error))
     found = re.search(r" \(at line (\d+), column \d+\)", message)
     if not found:
-        message = "it ends too early" if "end of document" in message else "a number or text it cannot hold"
-        return InputError(label, f"is not valid TOML: {message}")
+        rule = "is not valid TOML: it ends inside a quotation or a bracket"
+        return InputError(label, rule if "end of document" in message else "is not valid TOML")
     number = int(found.group(1))
     line = text.split("\n")[number - 1].strip()
     where = f"{label}, line {number}"

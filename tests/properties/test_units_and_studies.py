@@ -1,0 +1,135 @@
+"""Whatever the text, the answer is a finite number or one line of refusal; units change nothing."""
+
+import math
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from separatrix.errors import InputError
+from separatrix.study_file import read_study, resolved, shipped_studies
+from separatrix.units import UNITS, format_quantity, parse
+
+seeded = settings(derandomize=True, deadline=None, max_examples=60)
+in_a_folder = settings(
+    derandomize=True,
+    deadline=None,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+units = st.sampled_from([(si, unit) for si, known in UNITS.items() for unit in known])
+EXAMPLE = shipped_studies()["cryogenic-turbopump"].read_text(encoding="utf-8")
+
+
+def refused_in_one_line(call):
+    """Result of a call, or None if it was refused properly."""
+    refusal = ""
+    try:
+        return call()
+    except InputError as error:
+        refusal = str(error)
+    assert refusal.isprintable()
+    assert len(refusal) < 400
+    return None
+
+
+@seeded
+@given(units, st.floats(-1e9, 1e9, allow_nan=False))
+def test_a_number_with_a_unit_is_read_back(unit, number):
+    """Scaling by the unit and back returns the number, to rounding; temperatures are shifted too."""
+    si, name = unit
+    if abs(number) < 1e-9:
+        number = 0.0
+    value = parse(f"{number!r} {name}", si)
+    zero, one = parse(f"0 {name}", si), parse(f"1 {name}", si)
+    assert value == pytest.approx(
+        zero + number * (one - zero), rel=1e-12, abs=1e-12 * abs(zero)
+    )  # cancellation of shifts
+
+
+@seeded
+@given(st.text(max_size=70), st.sampled_from(sorted(UNITS)))
+def test_any_text_is_a_finite_number_or_refused(text, si):
+    """No exception but ours, no hang, no NaN."""
+    value = refused_in_one_line(lambda: parse(text, si))
+    assert value is None or math.isfinite(value)
+
+
+@seeded
+@given(
+    st.from_regex(r"[-+]?[0-9.,_eE*/ ]{1,12} ?[A-Za-z0-9/* ]{0,6}", fullmatch=True),
+    st.sampled_from(sorted(UNITS)),
+)
+def test_text_that_is_nearly_a_quantity_is_a_finite_number_or_refused(text, si):
+    """The neighbourhood of the grammar."""
+    value = refused_in_one_line(lambda: parse(text, si))
+    assert value is None or math.isfinite(value)
+
+
+@seeded
+@given(st.floats(-1e12, 1e12, allow_nan=False), st.sampled_from([*sorted(UNITS), "-"]))
+def test_a_shown_value_reads_back_to_its_digits(value, si):
+    """format_quantity and parse speak the same units; four digits are kept, powers of ten aside."""
+    text = format_quantity(value, si)
+    number = float(text) if si == "-" else parse(text, si)
+    assert number == pytest.approx(value, rel=6e-4, abs=1e-300)  # half a unit of the fourth digit
+
+
+@in_a_folder
+@given(st.binary(max_size=400))
+def test_any_bytes_are_refused_in_one_line(tmp_path: Path, content: bytes):
+    """A file of noise."""
+    path = tmp_path / "noise.toml"
+    path.write_bytes(content)
+    assert refused_in_one_line(lambda: read_study(path)) is None
+
+
+@in_a_folder
+@given(st.integers(0, len(EXAMPLE) - 1), st.integers(1, 40), st.text(max_size=12))
+def test_a_damaged_study_is_read_or_refused_in_one_line(tmp_path: Path, start: int, length: int, insert: str):
+    """Some characters cut out of the example and others put in."""
+    path = tmp_path / "damaged.toml"
+    path.write_text(EXAMPLE[:start] + insert + EXAMPLE[start + length :], encoding="utf-8", errors="replace")
+    study = refused_in_one_line(lambda: read_study(path))
+    assert study is None or resolved(study)["bearing"]["ball_count"]["value"] >= 3
+
+
+values = st.one_of(
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=8),
+    st.sampled_from(["-1 mm", "0 N", "1e30 m", "nan K", "3 kg", "5 deg", "1e-30 N/m"]),
+    st.lists(st.integers(), max_size=2),
+    st.just({}),
+)
+
+
+def as_toml(value) -> str:
+    """A value as TOML text."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return '"' + "".join(c if c.isalnum() or c in " .-/" else f"\\u{ord(c):04x}"[:6] for c in value) + '"'
+    return "{}" if value == {} else str(value)
+
+
+@in_a_folder
+@given(st.data(), values)
+def test_any_value_for_any_key_is_taken_or_refused_in_one_line(tmp_path: Path, data, value):
+    """One key of the example gets a value of another kind."""
+    lines = EXAMPLE.splitlines()
+    chosen = data.draw(
+        st.sampled_from([i for i, line in enumerate(lines) if " = " in line and line[0] != "#"])
+    )
+    lines[chosen] = f"{lines[chosen].partition(' = ')[0]} = {as_toml(value)}"
+    text = "\n".join(lines)
+    try:
+        tomllib.loads(text)
+    except (ValueError, RecursionError):
+        return  # the damage above covers bad TOML
+    path = tmp_path / "changed.toml"
+    path.write_text(text, encoding="utf-8", errors="replace")
+    refused_in_one_line(lambda: read_study(path))

@@ -1,0 +1,504 @@
+"""Records of a study check themselves; files are read key by key, with defaults, variants and origins."""
+
+import json
+import math
+import pickle
+from dataclasses import replace
+
+import pytest
+
+from separatrix.errors import InputError
+from separatrix.study import (
+    BallBearing,
+    CageDesign,
+    Candidate,
+    Film,
+    Friction,
+    Guidance,
+    KinematicModel,
+    Material,
+    Operation,
+    RankingQuestion,
+    StabilitySettings,
+    Study,
+    evenly_spaced,
+)
+from separatrix.study_file import read_study, resolved, shipped_studies, template
+from separatrix.units import UNITS
+
+STEEL = Material(name="steel", elastic_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+
+BASE = """\
+title = "Base"
+[bearing]
+ball_diameter = "10 mm"
+pitch_diameter = "60 mm"
+ball_count = 12
+contact_angle = "20 deg"
+inner_conformity = 0.52
+outer_conformity = 0.53
+ball_material = "Si3N4"
+ring_material = "440C"
+[operation]
+inner_speed = "10000 rpm"
+axial_load = "1 kN"
+[film]
+race_friction = 0.1
+material = "PTFE"
+thickness = "1 um"
+[cage]
+mass = "20 g"
+pocket_clearance = "0.5 mm"
+material = "Armalon"
+guidance = "inner"
+land_clearance = "0.8 mm"
+"""
+
+
+def bearing(**changes):
+    """A valid bearing with some fields changed."""
+    fields = {
+        "ball_diameter": 0.01,
+        "pitch_diameter": 0.06,
+        "ball_count": 12,
+        "contact_angle": 0.4,
+        "inner_conformity": 0.52,
+        "outer_conformity": 0.53,
+        "ball_material": STEEL,
+        "ring_material": STEEL,
+    }
+    return BallBearing(**fields | changes)
+
+
+def study(**changes):
+    """A valid study with some parts changed."""
+    parts = {
+        "name": "test",
+        "title": "Test",
+        "bearing": bearing(),
+        "operation": Operation(inner_speed=1000.0, axial_load=1000.0),
+        "film": Film(race_friction=0.1),
+    }
+    return Study(**parts | changes)
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Read the text of a study, named case.toml."""
+
+    def read_text(text, name="case.toml"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return read_study(path)
+
+    return read_text
+
+
+WRONG_RECORDS = [
+    (
+        lambda: bearing(ball_diameter=math.nan),
+        "BallBearing.ball_diameter must be a finite number > 0; got nan",
+    ),
+    (lambda: bearing(ball_diameter=-1.0), "BallBearing.ball_diameter must be > 0; got -1 m"),
+    (lambda: bearing(ball_diameter=0.0), "BallBearing.ball_diameter must be > 0; got 0 mm"),
+    (
+        lambda: bearing(ball_diameter="1 mm"),
+        'BallBearing.ball_diameter must be a finite number > 0; got "1 mm"',
+    ),
+    (lambda: bearing(ball_diameter=True), "BallBearing.ball_diameter must be a finite number > 0; got true"),
+    (
+        lambda: bearing(ball_count=12.0),
+        "BallBearing.ball_count must be a whole number from 3 to 200; got 12.0",
+    ),
+    (lambda: bearing(ball_count=19), "BallBearing.ball_count must be at most 18"),
+    (
+        lambda: bearing(contact_angle=math.pi / 2),
+        "BallBearing.contact_angle must be >= 0 and < 90 deg; got 90 deg",
+    ),
+    (lambda: bearing(inner_conformity=0.5), "BallBearing.inner_conformity must be > 0.5 and <= 0.6; got 0.5"),
+    (
+        lambda: bearing(outer_conformity=0.61),
+        "BallBearing.outer_conformity must be > 0.5 and <= 0.6; got 0.61",
+    ),
+    (lambda: bearing(bore=0.05), "BallBearing.bore must be smaller than"),
+    (
+        lambda: replace(STEEL, elastic_modulus=math.inf),
+        "Material.elastic_modulus must be a finite number > 0",
+    ),
+    (lambda: replace(STEEL, poisson_ratio=0.5), "Material.poisson_ratio must be >= 0 and < 0.5; got 0.5"),
+    (lambda: replace(STEEL, density=0.0), "Material.density must be > 0"),
+    (lambda: replace(STEEL, name="a\nb"), "Material.name must be printable text"),
+    (
+        lambda: Operation(inner_speed=math.nan, axial_load=1.0),
+        "Operation.inner_speed must be a finite number",
+    ),
+    (lambda: Operation(inner_speed=1.0, axial_load=-1.0), "lifts the inner ring off its balls"),
+    (lambda: Operation(inner_speed=1.0, axial_load=0.0), "nothing presses the balls"),
+    (
+        lambda: Operation(inner_speed=1.0, axial_load=1.0, moment=1.0, tilt=0.0),
+        "tilt and moment exclude each other",
+    ),
+    (
+        lambda: Operation(inner_speed=1.0, axial_load=1.0, temperature=0.0),
+        "Operation.temperature must be > 0",
+    ),
+    (lambda: Film(race_friction=-0.1), "Film.race_friction must lie between 0 and 2"),
+    (lambda: Film(race_friction=0.1, material=STEEL), "Film.thickness is missing"),
+    (lambda: Film(race_friction=0.1, thickness=1e-6), "Film.material is missing"),
+    (lambda: CageDesign(mass=0.0, pocket_clearance=1e-3), "CageDesign.mass must be > 0"),
+    (lambda: CageDesign(mass=0.02, pocket_clearance=-1e-3), "CageDesign.pocket_clearance must be > 0"),
+    (
+        lambda: CageDesign(mass=0.02, pocket_clearance=1e-3, guidance=Guidance.OUTER),
+        "CageDesign.land_clearance is missing: a cage with outer guidance",
+    ),
+    (
+        lambda: CageDesign(mass=0.02, pocket_clearance=1e-3, land_clearance=1e-3),
+        "CageDesign.land_clearance has no meaning",
+    ),
+    (lambda: StabilitySettings(kicks=()), "StabilitySettings.kicks must hold 1 to 20 values; got 0"),
+    (
+        lambda: StabilitySettings(kicks=(0.5, 0.1)),
+        "StabilitySettings.kicks must increase, none twice [m/s]; got 0.1 after 0.5",
+    ),
+    (lambda: StabilitySettings(kicks=(math.nan,)), "StabilitySettings.kicks must each be a finite number"),
+    (lambda: StabilitySettings(runs=True), "StabilitySettings.runs must be a whole number"),
+    (lambda: StabilitySettings(restitution_factors=(0.5, 1.0)), "restitution_factors must each be"),
+    (lambda: StabilitySettings(seed=-1), "StabilitySettings.seed must be a whole number from 0"),
+    (lambda: Friction(mean=3.0), "Friction.mean must lie between 0 and 2"),
+    (lambda: Friction(mean=0.1, count=0), "Friction.count must be a whole number from 1"),
+    (
+        lambda: Candidate(name="A", friction={"air": None}),
+        'Candidate.friction of "A" holds no measured value',
+    ),
+    (
+        lambda: RankingQuestion(
+            environments=("air",), candidates=(Candidate(name="A", friction={"oil": Friction(mean=0.1)}),)
+        ),
+        "RankingQuestion.candidates",
+    ),
+    (lambda: RankingQuestion(environments=(), candidates=()), "must not be empty"),
+    (lambda: study(film=Film(race_friction=0.0)), 'must be > 0 for the "free" kinematics'),
+    (lambda: study(bearing=bearing(ball_material=replace(STEEL, density=None))), "needs a density"),
+    (
+        lambda: study(cage=CageDesign(mass=0.02, pocket_clearance=0.006, ball_cage_stiffness=1e6)),
+        "must be smaller than the gap between balls, 5.529 mm; got 6 mm",
+    ),
+    (
+        lambda: study(cage=CageDesign(mass=0.02, pocket_clearance=0.001)),
+        "ball_cage_stiffness is missing, and the cage has no material",
+    ),
+]
+
+
+@pytest.mark.parametrize(("make", "words"), WRONG_RECORDS)
+def test_a_wrong_record_is_refused_when_it_is_built(make, words):
+    """The field, the rule, the value in readable units; on one line."""
+    with pytest.raises(InputError) as caught:
+        make()
+    assert words in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_a_record_reports_everything_wrong_at_once():
+    """Two fields, one error that holds both."""
+    with pytest.raises(InputError) as caught:
+        bearing(ball_diameter=-1.0, inner_conformity=5.88)
+    assert [p.where for p in caught.value.problems] == [
+        "BallBearing.ball_diameter",
+        "BallBearing.inner_conformity",
+    ]
+    again = pickle.loads(pickle.dumps(caught.value))  # noqa: S301 - our own bytes
+    assert [str(p) for p in again.problems] == [str(p) for p in caught.value.problems]
+
+
+def test_balls_fit_up_to_touching():
+    """Balls of neighbouring places touch when D = d_m sin(pi/Z)."""
+    touching = 0.06 * math.sin(math.pi / 12)
+    assert bearing(ball_diameter=touching * (1 - 1e-9)).ball_gap == pytest.approx(
+        touching * 1e-9, rel=1e-6
+    )  # cancellation
+    with pytest.raises(InputError, match="at most 11"):
+        bearing(ball_diameter=touching * (1 + 1e-9))
+
+
+def test_no_speed_and_no_friction_are_allowed_where_they_mean_something():
+    """A static bearing; a frictionless one under race control."""
+    assert study(operation=Operation(inner_speed=0.0, axial_load=1.0)).operation.inner_speed == 0.0
+    controlled = study(film=Film(race_friction=0.0), kinematics=KinematicModel.OUTER_RACE_CONTROL)
+    assert controlled.film.race_friction == 0.0
+
+
+def test_evenly_spaced_numbers_are_round():
+    """0.15 is 0.15, not 0.15000000000000002; the default grid is the one of the study file."""
+    assert evenly_spaced(0.05, 0.95, 19)[2] == 0.15
+    assert StabilitySettings().restitution_factors == tuple(round(0.05 * i, 2) for i in range(1, 20))
+
+
+def test_the_paper_like_example_has_the_numbers_of_its_class():
+    """DN 0.75 million, 300 daN, 77 K, seven materials in four environments."""
+    example = read_study("cryogenic-turbopump")
+    speed_rpm = example.operation.inner_speed * 30 / math.pi
+    assert example.bearing.bore * 1000 * speed_rpm == pytest.approx(0.75e6, rel=1e-12)  # rounding
+    assert (example.operation.axial_load, example.operation.temperature) == (3000.0, 77.0)
+    assert (example.bearing.ball_diameter, example.bearing.pitch_diameter) == (0.0111125, 0.065)
+    assert example.kinematics is KinematicModel.FREE
+    assert len(example.ranking.candidates) == 7
+    assert example.ranking.environments == (
+        "gaseous nitrogen, Chromex 40",
+        "gaseous nitrogen, 440C",
+        "liquid nitrogen, Chromex 40",
+        "liquid nitrogen, 440C",
+    )
+
+
+def test_the_examples_of_the_literature_have_their_printed_numbers():
+    """LE-7 and the 218 bearing, under outer race control, without a cage."""
+    le7, ball_218 = read_study("le7"), read_study("ball-218")
+    assert (le7.bearing.ball_diameter, le7.bearing.ball_count, le7.operation.axial_load) == (
+        0.007938,
+        10,
+        2670.0,
+    )
+    assert (le7.bearing.inner_conformity, le7.bearing.outer_conformity) == (0.56, 0.52)
+    assert le7.bearing.ball_material.elastic_modulus == 199.948e9
+    assert (ball_218.bearing.ball_diameter, ball_218.bearing.ball_count) == (0.02223, 16)
+    assert {le7.kinematics, ball_218.kinematics} == {KinematicModel.OUTER_RACE_CONTROL}
+    assert le7.cage is None
+    assert le7.ranking is None
+
+
+def test_shipped_studies_are_found_by_name_even_beside_a_folder_of_that_name(tmp_path, monkeypatch):
+    """The default output folder has the name of the study; the next run must not stumble over it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "le7").mkdir()
+    assert read_study("le7").name == "le7"
+    assert set(shipped_studies()) == {"ball-218", "cryogenic-turbopump", "le7"}
+
+
+def test_a_file_of_that_very_name_comes_before_a_shipped_study(tmp_path, monkeypatch):
+    """What lies on the disk is what was meant."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "le7").write_text(BASE)
+    assert read_study("le7").title == "Base"
+
+
+def test_the_template_is_a_valid_study(read):
+    """What `separatrix new` writes can be ranked as it stands."""
+    filled = read(template())
+    assert filled.cage is not None
+    assert len(filled.ranking.candidates) == 7
+
+
+def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
+    """The commented alternatives are right too: each key is taken, alone, in place of what it excludes."""
+    excluded = {
+        "radial_clearance": "contact_angle",
+        "tilt": "moment",
+        "elastic_modulus": "material",
+        "materials": "",
+        "extends": "",
+    }
+    lines = template().splitlines()
+    for line in lines:
+        key = line.removeprefix("# ").partition(" = ")[0]
+        if (
+            not line.startswith("# ")
+            or not key.isidentifier()
+            or key in ("name", "friction", "poisson_ratio", "extends")
+        ):
+            continue
+        if key == "material" and "or a name of the library" in line:
+            continue
+        text = [other for other in lines if not (excluded.get(key) and other.startswith(excluded[key] + " "))]
+        text[text.index(line)] = line.removeprefix("# ") + (
+            "\npoisson_ratio = 0.38" if key == "elastic_modulus" else ""
+        )
+        assert read("\n".join(text)).title == "My bearing", line
+
+
+def test_absent_keys_have_the_documented_defaults(read):
+    """The defaults of the study file."""
+    given = read(BASE)
+    assert given.kinematics is KinematicModel.FREE
+    assert (given.operation.outer_speed, given.operation.radial_load, given.operation.moment) == (
+        0.0,
+        0.0,
+        0.0,
+    )
+    assert (given.cage.land_friction, given.cage.land_stiffness, given.cage.land_restitution) == (
+        0.1,
+        1e7,
+        0.5,
+    )
+    assert (given.cage.unbalance, given.cage.gravity, given.cage.moment_of_inertia) == (0.0, 0.0, None)
+    assert given.stability == StabilitySettings()
+    assert given.ranking is None
+
+
+def test_a_title_is_optional(read):
+    """The name of the file serves."""
+    assert read(BASE.replace('title = "Base"\n', "")).title == "case"
+
+
+def test_the_free_angle_follows_from_the_clearance(read):
+    """cos(angle) = 1 - P_d / (2 (f_i + f_o - 1) D)."""
+    given = read(BASE.replace('contact_angle = "20 deg"', 'radial_clearance = "20 um"'))
+    expected = math.acos(1 - 20e-6 / (2 * 0.05 * 0.01))
+    assert given.bearing.contact_angle == pytest.approx(expected, rel=1e-12)  # acos loses some digits near 1
+    assert "radial_clearance" in resolved(given)["bearing"]["contact_angle"]["origin"]
+
+
+def test_no_clearance_is_no_free_angle(read):
+    """A radial bearing without play."""
+    assert (
+        read(BASE.replace('contact_angle = "20 deg"', 'radial_clearance = "0 um"')).bearing.contact_angle
+        == 0.0
+    )
+
+
+def test_a_film_may_be_given_in_place_or_left_out(read):
+    """Modulus and Poisson's ratio in the section itself; nothing is bare."""
+    in_place = read(BASE.replace('material = "PTFE"', 'elastic_modulus = "2 GPa"\npoisson_ratio = 0.4'))
+    assert (in_place.film.material.elastic_modulus, in_place.film.material.poisson_ratio) == (2e9, 0.4)
+    bare = read(BASE.replace('material = "PTFE"\nthickness = "1 um"\n', ""))
+    assert bare.film == Film(race_friction=0.1)
+    assert resolved(bare)["film"]["is_bare"] is True
+
+
+def test_kicks_may_stand_in_any_order(read):
+    """They are a set that spans a band."""
+    given = read(BASE + '[stability]\nkicks = ["2 m/s", "100 mm/s", "0.5 m/s"]\n')
+    assert given.stability.kicks == (0.1, 0.5, 2.0)
+
+
+def test_candidates_in_place_keep_their_gaps_and_their_scatter(read):
+    """An environment where one was not measured is None, never 0."""
+    given = read(
+        BASE
+        + """
+[[ranking.candidates]]
+name = "Mine"
+friction = { "air" = 0.11, "liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.02, count = 8 } }
+material = { elastic_modulus = "5 GPa", poisson_ratio = 0.4 }
+[[ranking.candidates]]
+name = "Armalon"
+friction = { "air" = 0.07 }
+material = "Armalon"
+"""
+    )
+    mine, armalon = given.ranking.candidates
+    assert given.ranking.environments == ("air", "liquid nitrogen, 440C")
+    assert mine.friction["liquid nitrogen, 440C"] == Friction(mean=0.12, standard_deviation=0.02, count=8)
+    assert mine.material.elastic_modulus == 5e9
+    assert armalon.friction == {"air": Friction(mean=0.07), "liquid nitrogen, 440C": None}
+    assert armalon.material.source.startswith("Composition")
+
+
+def test_a_ranking_may_take_some_materials_of_a_table(read):
+    """In the order of the study."""
+    given = read(BASE + '[ranking]\nfriction = "pin-on-disk-77K"\nmaterials = ["Vespel SP 211", "Armalon"]\n')
+    assert [c.name for c in given.ranking.candidates] == ["Vespel SP 211", "Armalon"]
+
+
+VARIANTS = [
+    (
+        '[operation]\naxial_load = "2 kN"\n',
+        lambda s: s.operation.axial_load == 2000.0 and s.operation.inner_speed > 0,
+    ),
+    ('[bearing]\nradial_clearance = "20 um"\n', lambda s: s.bearing.contact_angle < 0.25),
+    ('[operation]\ntilt = "1 mrad"\n', lambda s: s.operation.tilt == 1e-3),
+    (
+        '[film]\nelastic_modulus = "2 GPa"\npoisson_ratio = 0.4\n',
+        lambda s: s.film.material.elastic_modulus == 2e9,
+    ),
+    ('[film]\nmaterial = "MoS2 sputtered dense"\n', lambda s: s.film.material.elastic_modulus == 136e9),
+    ('[cage]\nguidance = "ball"\n', lambda s: s.cage.land_clearance is None and s.cage.mass == 0.02),
+    (
+        '[kinematics]\nmodel = "inner race control"\n',
+        lambda s: s.kinematics is KinematicModel.INNER_RACE_CONTROL,
+    ),
+    ('[ranking]\nfriction = "pin-on-disk-77K"\n', lambda s: len(s.ranking.candidates) == 7),
+    ('title = "Variant"\n', lambda s: s.title == "Variant"),
+]
+
+
+@pytest.mark.parametrize(("text", "holds"), VARIANTS)
+def test_a_variant_overrides_its_base_key_by_key(text, holds, tmp_path, read):
+    """What excludes a key of the base replaces it."""
+    (tmp_path / "base.toml").write_text(BASE)
+    head, _, rest = ("", "", text) if text.startswith("[") else (text, "", "")
+    variant = read(f'extends = "base.toml"\n{head}{rest}')
+    assert holds(variant)
+    assert variant.bearing.ball_count == 12
+
+
+def test_a_variant_of_a_shipped_study_needs_no_path(read):
+    """The candidates in place replace the table of the base, and the origins name both files."""
+    text = (
+        'extends = "cryogenic-turbopump"\n[[ranking.candidates]]\nname = "Mine"\nfriction = { "air" = 0.1 }\n'
+    )
+    variant = read(text)
+    assert [c.name for c in variant.ranking.candidates] == ["Mine"]
+    assert variant.origins["bearing.bore"] == 'cryogenic-turbopump.toml, line 13: "50 mm"'
+    assert variant.origins["ranking.candidates"] == "case.toml, line 2"
+    assert variant.title == "Cryogenic turbopump bearing in liquid nitrogen, seven cage materials"
+
+
+def test_a_variant_of_a_variant_reads_through(tmp_path, read):
+    """Two steps, in another folder."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "base.toml").write_text(BASE)
+    (tmp_path / "sub" / "middle.toml").write_text('extends = "base.toml"\n[cage]\nmass = "30 g"\n')
+    variant = read('extends = "sub/middle.toml"\n[operation]\naxial_load = "2 kN"\n')
+    assert (variant.cage.mass, variant.operation.axial_load) == (0.03, 2000.0)
+
+
+def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
+    """JSON without NaN; SI with units; origins, defaults, sources and confidences."""
+    inputs = resolved(read_study("cryogenic-turbopump"))
+    assert json.loads(json.dumps(inputs, allow_nan=False)) == inputs
+    assert inputs["bearing"]["ball_diameter"] == {
+        "value": 0.0111125,
+        "unit": "m",
+        "origin": 'cryogenic-turbopump.toml, line 7: "11.1125 mm"',
+    }
+    assert inputs["operation"]["outer_speed"] == {"value": 0.0, "unit": "rad/s", "origin": "default"}
+    assert inputs["cage"]["moment_of_inertia"]["origin"] == "default: a thin ring at the pitch diameter"
+    assert inputs["stability"]["runs"]["origin"] == "default"
+    assert inputs["film"]["material"]["confidence"] == "modulus: guess, Poisson's ratio: guess"
+    armalon = next(c for c in inputs["ranking"]["candidates"] if c["name"] == "Armalon")
+    assert armalon["friction"]["liquid nitrogen, 440C"]["mean"] == 0.08
+    assert "table 3" in armalon["friction"]["liquid nitrogen, 440C"]["source"]
+    meldin = next(c for c in inputs["ranking"]["candidates"] if c["name"] == "Meldin HTC 100")
+    assert meldin["friction"]["gaseous nitrogen, 440C"] is None
+
+
+def test_a_study_built_in_python_resolves_too():
+    """Nothing is known of where its numbers come from, and that is said."""
+    inputs = resolved(study())
+    assert inputs["bearing"]["ball_diameter"]["origin"] == "given in Python"
+    assert inputs["cage"] is None
+
+
+def test_every_unit_of_a_record_can_be_read_from_text():
+    """The reader takes the unit of a key from the type of its field; each has its table."""
+    from separatrix.units import unit_of
+
+    for record in (BallBearing, Operation, Film, CageDesign, StabilitySettings, Material):
+        for name in record.__dataclass_fields__:
+            assert unit_of(record, name) in {"", "-", *UNITS}
+
+
+def test_a_windows_file_is_read(tmp_path):
+    """A byte order mark and CRLF line ends."""
+    path = tmp_path / "case.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + BASE.replace("\n", "\r\n").encode())
+    assert read_study(path).bearing.ball_count == 12
+
+
+def test_a_study_crosses_a_process_border():
+    """Studies are pickled to workers."""
+    example = read_study("cryogenic-turbopump")
+    again = pickle.loads(pickle.dumps(example))  # noqa: S301 - our own bytes
+    assert again == example
+    assert again.origins == example.origins

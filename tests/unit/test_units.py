@@ -1,0 +1,216 @@
+"""One number and one unit, read strictly: pint is the oracle for what each unit means."""
+
+import math
+import pickle
+
+import pytest
+
+from separatrix import units
+from separatrix.errors import InputError
+from separatrix.units import UNITS, format_number, format_quantity, parse
+
+PINT_NAMES = {
+    "lbf in": "lbf * inch",
+    "lbf/in": "lbf / inch",
+    "in": "inch",
+    "kgf": "kilogram_force",
+    "g0": "standard_gravity",
+    "t": "metric_ton",
+    "lb": "pound",
+    "rev/s": "revolution/s",
+    "rev/min": "revolution/min",
+    "degC": "degC",
+    "°C": "degC",
+    "°": "degree",
+    "deg": "degree",
+    "deg/s": "degree/s",
+}
+"""Spelling for pint where it is not ours; spaces are products and a final digit is a power elsewhere."""
+
+CYCLES = {"Hz", "kHz"}
+"""As a rotational speed these are turns per second; pint makes them radians per second."""
+
+EVERY_UNIT = [(si, unit) for si, known in UNITS.items() for unit in known]
+
+
+def pint_name(unit: str) -> str:
+    """Our spelling as pint wants it: ``kg mm2`` is ``kg * mm**2``."""
+    if unit in PINT_NAMES:
+        return PINT_NAMES[unit]
+    powers = "".join(f"**{c}" if c.isdigit() else c for c in unit)
+    return powers.replace(" ", " * ")
+
+
+@pytest.fixture(scope="module")
+def registry():
+    """The oracle."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(("si", "unit"), [u for u in EVERY_UNIT if u[0] != "rad/s" or u[1] not in CYCLES])
+def test_every_unit_means_what_pint_says(si, unit, registry):
+    """12.5 of each unit of the table, in SI; both round, so the last bit or two may differ."""
+    oracle = registry.Quantity(12.5, pint_name(unit)).to(pint_name(si)).magnitude
+    assert parse(f"12.5 {unit}", si) == pytest.approx(oracle, rel=4e-16 * 4)
+
+
+def test_the_table_has_about_sixty_units_of_named_quantities():
+    """Each with a word for what it measures, and an SI unit that is its own."""
+    assert 60 <= len(EVERY_UNIT) <= 100
+    assert set(UNITS) == set(units.QUANTITIES)
+    assert all(UNITS[si][si] == "1" for si in UNITS)
+
+
+def test_angle_and_cycles_are_kept_apart():
+    """250 Hz of rotation is 500 pi rad/s, to the last bit what 15 000 rpm is, and never 250 rad/s."""
+    assert (
+        parse("250 Hz", "rad/s")
+        == parse("15000 rpm", "rad/s")
+        == parse("250 rev/s", "rad/s")
+        == 500 * math.pi
+    )
+    assert parse("0.25 kHz", "rad/s") == parse("90000 deg/s", "rad/s") == 500 * math.pi
+    assert parse("250 rad/s", "rad/s") == 250.0
+    assert parse("250 Hz", "Hz") == 250.0
+
+
+@pytest.mark.parametrize(
+    "text", ["300 daN", "300daN", " 300 daN ", "+3e2 daN", "3000. N", "3.0E+3 N", "3 kN", ".3e4 N"]
+)
+def test_one_quantity_is_one_float_however_it_is_written(text):
+    """Exact arithmetic, rounded once: a change of units changes nothing."""
+    assert parse(text, "N") == 3000.0
+
+
+def test_lengths_are_the_same_to_the_last_bit_in_any_unit():
+    """A product of floats would differ in the last digit."""
+    assert parse("11.1125 mm", "m") == parse("0.4375 in", "m") == parse("11112.5 um", "m") == 0.0111125
+
+
+@pytest.mark.parametrize("micro", ["um", "\u00b5m", "\u03bcm"])
+def test_both_micro_signs_and_u_are_micrometres(micro):
+    """Keyboards give U+00B5, word processors U+03BC."""
+    assert parse(f"0.5 {micro}", "m") == 5e-7
+
+
+@pytest.mark.parametrize("unit", ["kg mm2", "kg mm^2", "kg mm\u00b2", "kg\u00b7mm\u00b2", "kg*mm2"])
+def test_products_and_powers_may_be_written_as_on_data_sheets(unit):
+    """Superscripts, a caret, a middle dot or a star."""
+    assert parse(f"26.4 {unit}", "kg m2") == 2.64e-5
+
+
+def test_temperatures_are_absolute():
+    """Celsius and Fahrenheit are shifted, not scaled."""
+    assert parse("-196.15 degC", "K") == pytest.approx(77.0, rel=1e-15)  # a rounding
+    assert parse("0 °C", "K") == 273.15
+    assert parse("-321.07 degF", "K") == pytest.approx(77.0, rel=1e-15)  # a rounding
+
+
+WRONG = {
+    "bare number": (11.1, "m", 'needs a unit of length; got 11.1. Write "11.1 mm".'),
+    "bare number as text": ("11.1", "m", 'needs a unit of length; got "11.1". Write "11.1 mm".'),
+    "integer": (3000, "N", 'Write "3000 N".'),
+    "bool": (True, "m", "needs a unit of length; got true."),
+    "nothing": (None, "m", "needs a unit of length"),
+    "list": ([1], "m", "got a list"),
+    "empty": ("", "m", "one number and one unit of length"),
+    "unit only": ("mm", "m", "one number and one unit of length"),
+    "two numbers": ("1 2 mm", "m", "one number and one unit of length"),
+    "two units": ("1 mm 2 um", "m", "needs a unit of length"),
+    "wrong dimension": (
+        "3 N",
+        "m",
+        'needs a unit of length (m, cm, mm, um, ...); got "3 N", which is a force.',
+    ),
+    "moment for force": ("3 N m", "N", "needs a unit of force"),
+    "rad/s for rpm of frequency": ("3 rad/s", "Hz", "which is a rotational speed"),
+    "decimal comma": ("1,5 mm", "m", 'needs a decimal point, not a comma; got "1,5 mm". Write "1.5 mm".'),
+    "thousands": ("1,500.5 mm", "m", "not a comma"),
+    "case": ("3 Mpa", "Pa", 'Did you mean "MPa"?'),
+    "unknown": ("3 furlong", "m", "needs a unit of length"),
+    "nan": ("nan mm", "m", "finite"),
+    "inf": ("-inf mm", "m", "finite"),
+    "infinity": ("Infinity mm", "m", "finite"),
+    "expression": ("9**9**9 m", "m", "one number and one unit"),
+    "product": ("2*3 mm", "m", "one number and one unit"),
+    "fraction": ("1/2 mm", "m", "one number and one unit"),
+    "underscore": ("1_000 mm", "m", "one number and one unit"),
+    "hexadecimal": ("0x10 mm", "m", "needs a unit of length"),
+    "two spaces": ("1  mm", "m", "one number and one unit"),
+    "tab": ("1\tmm", "m", "one number and one unit"),
+    "newline": ("1 mm\n", "m", "one number and one unit"),
+    "no-break space": ("1\u00a0mm", "m", "one number and one unit"),
+    "Arabic digits": ("\u0663 mm", "m", "one number and one unit"),
+    "full-width digits": ("\uff13 mm", "m", "one number and one unit"),
+    "minus sign": ("\u22123 mm", "m", "one number and one unit"),
+    "overflow": ("1e999 m", "m", "computer can hold"),
+    "overflow by the unit": ("1e308 kN", "N", "computer can hold"),
+    "underflow": ("1e-999 m", "m", "computer can hold"),
+    "long exponent": ("1e9999999999 m", "m", "needs a unit"),
+    "long": ("1" * 60 + " mm", "m", "at most 60 characters"),
+    "very long": ("1" * 1_000_000, "m", "at most 60 characters"),
+    "per cent": ("3 %", "m", "one number and one unit"),
+    "plain 1/s": ("250 1/s", "rad/s", "unit of rotational speed"),
+    "escape": ("1 m\x1b[31m", "m", "needs a unit of length"),
+}
+
+
+@pytest.mark.parametrize(("text", "si", "words"), WRONG.values(), ids=WRONG.keys())
+def test_what_is_not_one_number_and_one_unit_is_refused(text, si, words):
+    """One printable line of bounded length that says what is due; it survives a process pool."""
+    with pytest.raises(InputError) as caught:
+        parse(text, si, "[bearing] bore")
+    message = str(caught.value)
+    assert message.startswith("[bearing] bore ")
+    assert words in message
+    assert message.isprintable()
+    assert len(message) < 250
+    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
+
+
+def test_the_unit_of_a_field_is_read_from_its_type():
+    """One place says the unit: the annotation."""
+    from separatrix.study import BallBearing, CageDesign, StabilitySettings
+
+    assert units.unit_of(BallBearing, "ball_diameter") == "m"
+    assert units.unit_of(BallBearing, "bore") == "m"
+    assert units.unit_of(BallBearing, "ball_count") == ""
+    assert units.unit_of(CageDesign, "land_friction") == "-"
+    assert units.unit_of(StabilitySettings, "kicks") == "m/s"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.0111125, "m", "11.11 mm"),
+        (1.5, "m", "1.5 m"),
+        (0.0, "m", "0 mm"),
+        (-5.193e-5, "m", "-51.93 um"),
+        (5e-7, "m", "500 nm"),
+        (1570.7963267948966, "rad/s", "15000 rpm"),
+        (0.4363323129985824, "rad", "25 deg"),
+        (3000.0, "N", "3000 N"),
+        (22250.0, "N", "22.25 kN"),
+        (2e11, "Pa", "200 GPa"),
+        (1.5224e9, "Pa", "1.522 GPa"),
+        (0.025, "kg", "25 g"),
+        (3e6, "N/m", "3 MN/m"),
+        (3979.4, "N s/m", "3979 N s/m"),
+        (2.64e-5, "kg m2", "26.4 kg mm2"),
+        (77.0, "K", "77 K"),
+        (0.09, "-", "0.09"),
+        (123456789.0, "-", "1.235e+08"),
+        (1e-9, "-", "1e-09"),
+        (None, "m", "none"),
+    ],
+)
+def test_values_are_shown_in_the_unit_an_engineer_would_choose(value, unit, text):
+    """Four digits, a handy prefix, no exponent where a plain number is readable."""
+    assert format_quantity(value, unit) == text
+
+
+def test_a_rounded_zero_has_no_sign():
+    """-0 is a puzzle for a reader."""
+    assert format_number(-0.0) == "0"
