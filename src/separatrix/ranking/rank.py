@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from separatrix.cage import Judgement, PlanarCage, judge, run_ensemble
+from separatrix.cage import Judgement, judge, run_ensemble
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, measured, overall
@@ -21,13 +21,14 @@ from separatrix.stability import (
     critical_friction,
     curve_of_points,
     restitution_threshold,
+    threshold_factors,
 )
 from separatrix.stability.pool import Progress, work_through
 from separatrix.study import Candidate, RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
 
 Key = tuple[NewtonPerMetre, Ratio]
-"""Pocket stiffness and friction: all that tells one candidate's cage from another's."""
+"""Pocket stiffness, and a friction (for a verdict) or a restitution factor (for a point of the curve)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,11 +44,10 @@ class _Question:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Findings:
-    """What was computed, by stiffness and friction; an interrupt leaves entries out."""
+    """What was computed, by pocket stiffness; an interrupt leaves entries out."""
 
-    thresholds: Mapping[Key, RestitutionThreshold]
+    points: Mapping[NewtonPerMetre, Sequence[CriticalFriction]]
     judgements: Mapping[Key, Judgement]
-    curve: StabilityCurve | None
     complete: bool
 
 
@@ -85,7 +85,10 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         for environment in asked.environments
     }
     means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in asked.candidates}
-    keys = _keys(question, (*frictions.values(), means))
+    tables = (*frictions.values(), means)
+    keys = sorted(
+        {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
+    )
     found = _compute(question, keys, jobs=jobs, progress=progress)
     return Ranking(
         restitution_factor=max(_eta(question, k) for k in question.cages),
@@ -100,7 +103,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
             for name, table in frictions.items()
         ),
         overall=_ranked(question, found, means, ""),
-        stability=found.curve,
+        stability=_curve(question, found),
         kicks=study.stability.kicks,
         runs=study.stability.runs,
         duration=study.stability.duration,
@@ -144,57 +147,44 @@ def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
     return question.cages[stiffness].restitution.restitution.restitution_factor
 
 
-def _keys(
-    question: _Question, tables: Iterable[Mapping[str, MeanFriction | None]]
-) -> tuple[set[Key], set[Key]]:
-    """Cages and frictions whose threshold is wanted, and those whose verdict is."""
-    entries = [
-        (question.stiffness[name], f) for table in tables for name, f in table.items() if f is not None
-    ]
-    verdicts = {(k, f.mean) for k, f in entries}
-    return verdicts | {(k, end) for k, f in entries for end in f.interval()}, verdicts
-
-
-def _compute(
-    question: _Question, keys: tuple[set[Key], set[Key]], *, jobs: int, progress: Progress | None
-) -> _Findings:
-    """Curve, thresholds and verdicts, all in one row of work for the threads."""
-    etas = question.settings.restitution_factors
-    thresholds, verdicts = sorted(keys[0]), sorted(keys[1])
+def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: Progress | None) -> _Findings:
+    """Critical frictions and verdicts, all in one row of work for the threads."""
+    nodes = [(k, eta) for k in question.cages for eta in threshold_factors(question.settings)]
     work: list[Callable[[], object]] = [
-        *(lambda eta=eta: _point(question, eta) for eta in etas),
-        *(lambda key=key: _judgement(question, key) for key in verdicts),
-        *(lambda key=key: _threshold(question, key) for key in thresholds),
+        *(lambda node=node: _point(question, node) for node in nodes),
+        *(lambda key=key: _judgement(question, key) for key in keys),
     ]
     results = work_through(lambda piece: piece(), work, jobs=jobs, progress=progress)
-    points = [r for r in results[: len(etas)] if isinstance(r, CriticalFriction)]
-    judged = dict(zip(verdicts, results[len(etas) :], strict=False))
-    crossed = dict(zip(thresholds, results[len(etas) + len(verdicts) :], strict=True))
-    return _Findings(
-        thresholds={key: r for key, r in crossed.items() if isinstance(r, RestitutionThreshold)},
-        judgements={key: r for key, r in judged.items() if isinstance(r, Judgement)},
-        curve=curve_of_points(_cage(question), question.settings, points),
-        complete=None not in results,
-    )
+    points = {n: r for n, r in zip(nodes, results, strict=False) if isinstance(r, CriticalFriction)}
+    judged = {key: r for key, r in zip(keys, results[len(nodes) :], strict=True) if isinstance(r, Judgement)}
+    return _Findings(points=_by_cage(question, points), judgements=judged, complete=None not in results)
 
 
-def _cage(question: _Question) -> PlanarCage:
-    return question.cages[question.reference].cage
+def _by_cage(
+    question: _Question, points: Mapping[Key, CriticalFriction]
+) -> dict[NewtonPerMetre, list[CriticalFriction]]:
+    return {k: [point for (stiffness, _), point in points.items() if stiffness == k] for k in question.cages}
 
 
-def _point(question: _Question, eta: Ratio) -> CriticalFriction:
-    counter = question.counters[question.reference]
-    return critical_friction(counter.cage, eta, question.settings, counter=counter)
-
-
-def _threshold(question: _Question, key: Key) -> RestitutionThreshold:
-    counter = question.counters[key[0]]
-    return restitution_threshold(counter.cage, key[1], question.settings, counter=counter)
+def _point(question: _Question, node: Key) -> CriticalFriction:
+    """Critical friction at one restitution factor; with its band where the curve shows it."""
+    stiffness, eta = node
+    shown = stiffness == question.reference and eta in question.settings.restitution_factors
+    cage = question.cages[stiffness].cage
+    return critical_friction(cage, eta, question.settings, counter=question.counters[stiffness], band=shown)
 
 
 def _judgement(question: _Question, key: Key) -> Judgement:
     cage = replace(question.cages[key[0]].cage, ball_cage_friction=key[1])
     return judge(cage, run_ensemble(cage, question.settings))
+
+
+def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
+    """Stability curve of the reference cage; None if an interrupt left no point of it."""
+    shown = question.settings.restitution_factors
+    points = [point for point in found.points[question.reference] if point.restitution_factor in shown]
+    cage = question.cages[question.reference].cage
+    return curve_of_points(cage, question.settings, points) if points else None
 
 
 def _ranked(
@@ -241,7 +231,7 @@ def _row(
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    threshold = _with_friction_scatter(found.thresholds, stiffness, friction)
+    threshold = _threshold(question, found, stiffness, friction)
     judgement = found.judgements.get((stiffness, friction.mean))
     if threshold is None or judgement is None:
         return row
@@ -267,12 +257,12 @@ def _row(
     )
 
 
-def _with_friction_scatter(
-    thresholds: Mapping[Key, RestitutionThreshold], stiffness: NewtonPerMetre, friction: MeanFriction
+def _threshold(
+    question: _Question, found: _Findings, stiffness: NewtonPerMetre, friction: MeanFriction
 ) -> RestitutionThreshold | None:
     """Threshold at the mean friction, its interval widened by those at the ends of the friction's."""
-    keys = [(stiffness, f) for f in (friction.mean, *friction.interval())]
-    found = [thresholds[key] for key in keys if key in thresholds]
-    if len(found) < len(keys):
+    points = found.points[stiffness]
+    if len(points) < len(threshold_factors(question.settings)):
         return None
-    return replace(found[0], low=min(t.low for t in found), high=max(t.high for t in found))
+    value, *ends = (restitution_threshold(points, f) for f in (friction.mean, *friction.interval()))
+    return replace(value, low=min(t.low for t in ends), high=max(t.high for t in ends))

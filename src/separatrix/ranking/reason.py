@@ -27,19 +27,17 @@ def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgeme
     margin = threshold.value - eta
     side = f"{margin:.2f} below" if margin >= 0 else f"{-margin:.2f} above"
     first = f"With a friction of {friction:.3g} it {allowed}; the film gives {eta:.2f}, {side} that."
-    return " ".join((first, judgement.reason, disagreement(threshold.value, judgement.verdict))).rstrip()
+    return " ".join((first, judgement.reason, disagreement(threshold.value, eta, judgement.verdict))).rstrip()
 
 
-def disagreement(threshold: Ratio, verdict: Verdict) -> str:
+def disagreement(threshold: Ratio, eta: Ratio, verdict: Verdict) -> str:
     """Return how the paper's statement differs from the verdict; empty if it does not.
 
     The paper calls a material inapt if it needs a restitution factor below 0.6, whatever its film gives.
     """
-    inapt = threshold < SOLID_LUBRICATION_LIMIT
+    limit, inapt = SOLID_LUBRICATION_LIMIT, threshold < SOLID_LUBRICATION_LIMIT
     if inapt and verdict is Verdict.STABLE:
-        return f"{PAPER_STATEMENT} By it this material is inapt; this film gives less than that."
+        return f"The paper would call it inapt: it holds less than {limit:g} out of reach; this film gives {eta:.2f}."
     if not inapt and verdict is Verdict.UNSTABLE:
-        return (
-            f"{PAPER_STATEMENT} By it this material remains a candidate; this film gives more than it needs."
-        )
+        return f"The paper would keep it: it needs no less than {limit:g}; but this film gives {eta:.2f}."
     return ""

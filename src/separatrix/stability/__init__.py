@@ -1,5 +1,6 @@
 """When a cage is stable: critical pocket friction against restitution factor, and its inverse."""
 
+from separatrix.stability.crossing import Side
 from separatrix.stability.curve import (
     SEARCHED_FRICTION,
     CriticalFriction,
@@ -11,7 +12,12 @@ from separatrix.stability.curve import (
     stability_curve,
 )
 from separatrix.stability.growth import Count, GrowthCounter, cage_at, race_damping_at
-from separatrix.stability.threshold import RestitutionThreshold, restitution_threshold
+from separatrix.stability.threshold import (
+    RestitutionThreshold,
+    restitution_threshold,
+    threshold_factors,
+    threshold_points,
+)
 
 __all__ = [
     "SEARCHED_FRICTION",
@@ -20,6 +26,7 @@ __all__ = [
     "GrowthCounter",
     "LinearLimit",
     "RestitutionThreshold",
+    "Side",
     "StabilityCurve",
     "cage_at",
     "critical_friction",
@@ -28,4 +35,6 @@ __all__ = [
     "race_damping_at",
     "restitution_threshold",
     "stability_curve",
+    "threshold_factors",
+    "threshold_points",
 ]

@@ -58,8 +58,18 @@ def find_crossing(counter: Counter, grid: Sequence[Ratio], target: Ratio, start:
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if above(middle) else (middle, high)
-    shares = counter(grid[low], None).share, counter(grid[high], None).share
-    return Crossing(_between(grid[low], grid[high], shares, target), low)
+    return _settled(counter, grid, target, low)
+
+
+def _settled(counter: Counter, grid: Sequence[Ratio], target: Ratio, cell: int) -> Crossing:
+    """Crossing in the cell at whose ends P lies on either side of the target by all the runs."""
+    last = len(grid) - 1
+    while cell > 0 and counter(grid[cell], None).share >= target:
+        cell -= 1
+    while cell + 1 < last and counter(grid[cell + 1], None).share < target:
+        cell += 1
+    shares = counter(grid[cell], None).share, counter(grid[cell + 1], None).share
+    return Crossing(_between(grid[cell], grid[cell + 1], shares, target), cell)
 
 
 def _bracket(above: Callable[[int], bool], start: int, last: int) -> tuple[int, int]:
@@ -85,17 +95,22 @@ def _between(low: Ratio, high: Ratio, shares: tuple[Ratio, Ratio], target: Ratio
 def interval(
     counter: Counter, grid: Sequence[Ratio], crossing: Crossing, target: Ratio
 ) -> tuple[Ratio, Ratio]:
-    """Coordinates at which the target leaves the 95 % interval of the counts, before and after a crossing."""
-    low, edge = crossing.cell, len(grid) - 1
+    """Coordinates between which the target lies inside the 95 % interval of the counts, around a crossing.
 
-    def slack(i: int, end: int) -> float:
-        return counter(grid[i], None).interval()[end] - target
+    Where P jumps past the target within one cell, the whole cell counts: nothing is known of the inside.
+    """
+    low, high, last = crossing.cell, crossing.cell + 1, len(grid) - 1
 
-    while low > 0 and slack(low, 1) >= 0.0:
+    def ends(i: int) -> tuple[Ratio, Ratio]:
+        return counter(grid[i], None).interval()
+
+    while low > 0 and ends(low)[1] >= target:
         low -= 1
-    high = crossing.cell + 1
-    while high < edge and slack(high, 0) <= 0.0:
+    while high < last and ends(high)[0] <= target:
         high += 1
-    below = _between(grid[low], grid[low + 1], (slack(low, 1), slack(low + 1, 1)), 0.0)
-    above = _between(grid[high - 1], grid[high], (slack(high - 1, 0), slack(high, 0)), 0.0)
+    below, above = grid[low], grid[high]
+    if ends(low + 1)[0] <= target:
+        below = _between(grid[low], grid[low + 1], (ends(low)[1], ends(low + 1)[1]), target)
+    if ends(high - 1)[1] >= target:
+        above = _between(grid[high - 1], grid[high], (ends(high - 1)[0], ends(high)[0]), target)
     return min(below, crossing.value), max(above, crossing.value)

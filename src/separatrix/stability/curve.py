@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage, linear_critical_friction
-from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing
+from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing, interval
 from separatrix.stability.growth import Count, GrowthCounter, cage_at
 from separatrix.stability.pool import Progress, work_through
 from separatrix.study import StabilitySettings
@@ -22,16 +23,39 @@ FRICTION_GRID: tuple[Ratio, ...] = (
 )
 """Frictions at which runs are counted; between two of them the shares are joined by a line."""
 
+Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
+"""Where P crosses a target, from which kick."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CriticalFriction:
-    """Critical friction at one restitution factor; None where there is none, with the reason."""
+    """Critical friction at one restitution factor; None where there is none, with the reason.
+
+    Attributes
+    ----------
+    restitution_factor : float
+        eta [-].
+    critical_friction : float or None
+        Friction at which half the runs grow from the middle kick [-].
+    critical_friction_low, critical_friction_high : float or None
+        Smallest friction at which one run in ten grows from some kick, and largest at which nine in ten
+        grow from every kick: the band [-].
+    scatter_low, scatter_high : float or None
+        95 % interval of `critical_friction` from the number of runs [-].
+    side : Side or None
+        Where `critical_friction` is None: whether P(grow) lies above one half throughout, or below.
+    reason : str or None
+        Why something is None.
+    """
 
     restitution_factor: Ratio
-    critical_friction: Ratio | None
-    critical_friction_low: Ratio | None
-    critical_friction_high: Ratio | None
-    reason: str | None
+    critical_friction: Ratio | None = None
+    critical_friction_low: Ratio | None = None
+    critical_friction_high: Ratio | None = None
+    scatter_low: Ratio | None = None
+    scatter_high: Ratio | None = None
+    side: Side | None = None
+    reason: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,37 +152,63 @@ def critical_friction(
     settings: StabilitySettings,
     *,
     counter: GrowthCounter | None = None,
+    band: bool = True,
 ) -> CriticalFriction:
     """Friction at which half the runs grow from the middle kick, and the band over all kicks.
 
-    The band runs from the smallest friction at which one run in ten grows, from whatever kick, to the
-    largest at which nine in ten do.
+    Parameters
+    ----------
+    cage : PlanarCage
+        Its race damping and friction are replaced.
+    restitution_factor : float
+        Nominal, of the whole cage mass [-].
+    settings : StabilitySettings
+        Kicks, runs and seed.
+    counter : GrowthCounter, optional
+        To share counts with other questions about the same cage and settings.
+    band : bool
+        Whether the band is wanted; it takes most of the time.
     """
     counts = counter or GrowthCounter(cage, settings)
-    middle = settings.middle_kick
     at = {kick: _counter(counts, restitution_factor, kick) for kick in sorted(settings.kicks)}
-    found = find_crossing(at[middle], FRICTION_GRID, 0.5, start=len(FRICTION_GRID) // 2)
-    start = found.cell if isinstance(found, Crossing) else len(FRICTION_GRID) // 2
-    ends = {
-        "critical_friction": (found, 0.5, middle),
-        "critical_friction_low": _first(at, 0.1, start),
-        "critical_friction_high": _last(at, 0.9, start),
-    }
-    reasons = [
-        _REASONS[side].format(target, kick) for side, target, kick in ends.values() if isinstance(side, Side)
-    ]
-    values = {name: end[0].value if isinstance(end[0], Crossing) else None for name, end in ends.items()}
+    middle = at[settings.middle_kick]
+    start = _guess(cage, restitution_factor)
+    found = find_crossing(middle, FRICTION_GRID, 0.5, start)
+    low, high = (None, None)
+    if isinstance(found, Crossing):
+        low, high = interval(middle, FRICTION_GRID, found, 0.5)
+        start = found.cell
+    ends = [(found, 0.5, settings.middle_kick)]
+    ends += [_first(at, 0.1, start), _last(at, 0.9, start)] if band else []
+    values = [end[0].value if isinstance(end[0], Crossing) else None for end in ends] + [None, None]
     return CriticalFriction(
-        restitution_factor=restitution_factor, reason="; ".join(dict.fromkeys(reasons)) or None, **values
+        restitution_factor=restitution_factor,
+        critical_friction=values[0],
+        critical_friction_low=values[1],
+        critical_friction_high=values[2],
+        scatter_low=low,
+        scatter_high=high,
+        side=found if isinstance(found, Side) else None,
+        reason=_reason(ends),
     )
 
 
-_REASONS = {
-    Side.ABOVE: "kicked by {1:g} m/s, a share of {0:g} of the runs grows even without pocket friction",
-    Side.BELOW: f"kicked by {{1:g}} m/s, a share below {{0:g}} grows, up to a friction of {SEARCHED_FRICTION:g}",
-}
+def _guess(cage: PlanarCage, eta: Ratio) -> int:
+    """Cell of the friction grid to start from, by the linear law; it costs or saves time only."""
+    limit = linear_limit(cage, min(eta, 0.9)).critical_friction
+    return min(max(bisect_left(FRICTION_GRID, 0.8 * limit), 1), len(FRICTION_GRID) - 2)
 
-Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
+
+def _reason(ends: Sequence[Found]) -> str | None:
+    """Return why a crossing is missing; None if none is."""
+    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends if isinstance(side, Side)]
+    return "; ".join(dict.fromkeys(reasons)) or None
+
+
+_REASONS = {
+    Side.ABOVE: "from {1:g} m/s a share of {0:g} of the runs grows even without pocket friction",
+    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to a friction of {SEARCHED_FRICTION:g}",
+}
 
 
 def _counter(counts: GrowthCounter, eta: Ratio, kick: MetrePerSecond) -> Counter:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, sqrt
+from math import inf
 
-from separatrix.cage import PlanarCage, RunOutcome, run_ensemble
+from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
 from separatrix.restitution import damping_for
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
 
-SURE = 2.576
-"""Normal quantile of 99 %: a count this far from its target needs no more runs."""
-
-FEW_RUNS = 12
-"""Runs of a first look at a point."""
+LOOKS = (12, 32)
+"""Runs after which a count is looked at: far from the target few are enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +26,14 @@ class Count:
         """Estimate of P(grow)."""
         return self.grown / self.runs
 
-    def interval(self, quantile: float = 1.96) -> tuple[Ratio, Ratio]:
-        """Wilson's interval of P(grow); 95 % by default."""
-        n, p, z2 = self.runs, self.share, quantile**2
-        centre = (p + z2 / (2 * n)) / (1 + z2 / n)
-        half = quantile * sqrt(p * (1 - p) / n + z2 / (4 * n * n)) / (1 + z2 / n)
-        return max(0.0, centre - half), min(1.0, centre + half)
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """Wilson's 95 % interval of P(grow)."""
+        return wilson_interval(self.grown, self.runs)
 
     def decides(self, target: Ratio) -> bool:
-        """True if the target lies outside the 99 % interval."""
-        low, high = self.interval(SURE)
-        return not low <= target <= high
+        """True if all runs agree, or the target lies outside the 95 % interval."""
+        low, high = self.interval()
+        return self.grown in (0, self.runs) or not low <= target <= high
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
@@ -71,17 +65,20 @@ class GrowthCounter:
     ) -> Count:
         """Count at a point; with a target, only as many runs as tell on which side of it P lies."""
         key = (restitution_factor, friction, kick)
-        known = self._counts.get(key)
-        few = min(FEW_RUNS, self.settings.runs)
-        if known is None and target is not None:
-            known = self._run(key, few)
-        enough = known is not None and (
-            known.runs >= self.settings.runs or (target is not None and known.decides(target))
-        )
-        return known if known is not None and enough else self._run(key, self.settings.runs)
+        everything = self.settings.runs
+        known = self._counts.get(key, Count(0, 0))
+        for runs in (*LOOKS, everything):
+            if known.runs >= everything or (known.runs and target is not None and known.decides(target)):
+                break
+            if target is not None or runs == everything:
+                known = self._extend(key, known, min(runs, everything))
+        return known
 
-    def _run(self, key: tuple[Ratio, Ratio, MetrePerSecond], runs: int) -> Count:
-        cage = cage_at(self.cage, key[0], key[1])
-        outcome = run_ensemble(cage, self.settings, kicks=(key[2],), runs=runs).outcome
-        count = self._counts[key] = Count(int((outcome == RunOutcome.GROWS).sum()), runs)
-        return count
+    def _extend(self, key: tuple[Ratio, Ratio, MetrePerSecond], known: Count, runs: int) -> Count:
+        more = runs - known.runs
+        if more > 0:
+            cage = cage_at(self.cage, key[0], key[1])
+            found = run_ensemble(cage, self.settings, kicks=(key[2],), runs=more, first_run=known.runs)
+            known = Count(known.grown + int(found.count(RunOutcome.GROWS)[0]), runs)
+            self._counts[key] = known
+        return known
