@@ -1,6 +1,7 @@
 """Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
 
 from separatrix.cage.ensemble import Ensemble, run_ensemble
+from separatrix.cage.hard import blow_restitution, run_hard_ensemble
 from separatrix.cage.history import History, simulate
 from separatrix.cage.linear import (
     drift_law,
@@ -19,6 +20,7 @@ __all__ = [
     "PlanarCage",
     "RunOutcome",
     "Verdict",
+    "blow_restitution",
     "drift_law",
     "growth_probability",
     "judge",
@@ -26,6 +28,7 @@ __all__ = [
     "linear_roots",
     "linear_whirl_frequency",
     "run_ensemble",
+    "run_hard_ensemble",
     "simulate",
     "turning_critical_friction",
     "wilson_interval",

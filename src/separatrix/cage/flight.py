@@ -10,7 +10,7 @@ from separatrix.cage.slots import GRAVITY, GROSS, MOVING_FRAME, SPIN, THETA, UNB
 
 @kernel
 def fly(p, t, s, dt, c, i):  # type: ignore[no-untyped-def]
-    """Advance the free motion exactly: a straight line in space (or a parabola), seen in the turning frame."""
+    """Advance the free motion exactly: a line in space (or a parabola), seen in the turning frame."""
     W = p.turning
     ux, uy = s[VX] - W * s[Y], s[VY] + W * s[X]
     x, y = s[X] + ux * dt, s[Y] + uy * dt

@@ -1,0 +1,273 @@
+r"""The hard-impact form: pockets are walls, and a blow is over at once.
+
+The normal velocity is reversed times eta and the friction impulse is f times the normal one, along
+-sigma N e_r; between blows the cage flies freely, in the turning frame. Landless: pockets only. The balls
+hold their places.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from separatrix.cage import compiled, flight, slots
+from separatrix.cage.coefficients import ball_directions, coefficients
+from separatrix.cage.compiled import kernel
+from separatrix.cage.ensemble import (
+    GROWN,
+    Ensemble,
+    chosen,
+    energy_scale,
+    gathered,
+    random_starts,
+    spread,
+)
+from separatrix.cage.flight import fly
+from separatrix.cage.planar import PlanarCage, RunOutcome
+from separatrix.cage.slots import (
+    DIRECTION,
+    FORCE,
+    GROWTH,
+    IMBALANCE,
+    OFFSET,
+    OUTCOME,
+    SPIN,
+    STATE,
+    THETA,
+    VX,
+    VY,
+    WHIRL,
+    X,
+    Y,
+)
+from separatrix.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from separatrix.study import StabilitySettings
+    from separatrix.units import MetrePerSecond, Ratio
+
+MOST_BLOWS = 2_000_000
+STALL = 1_000
+"""So many events in a billionth of the run each, one after the other, are an inelastic collapse."""
+
+CHUNK_RUNS = 8
+TIME, WORK, DONE, FAR, LATE_ENERGY, SWEPT, AREA, PEAK = range(8)
+NOTES = 8
+UNKNOWN = -1
+DIES, GROWS, DRIFT, STALLED = (
+    int(outcome) for outcome in (RunOutcome.DIES, RunOutcome.GROWS, RunOutcome.DRIFT, RunOutcome.STALLED)
+)
+
+
+def felt_mass(cage: PlanarCage, *, may_turn: bool = True) -> float:
+    """Mass that a blow feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
+    turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
+    return 1.0 / (1.0 / cage.mass + turning)
+
+
+def blow_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
+    r"""Restitution of a blow of the series spring and damper on the mass that it feels [-].
+
+    :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})` with :math:`\zeta = \sqrt{km}/2C_\mu`, 0 from :math:`\zeta
+    = 1`. The nominal eta has m = M; a thin ring that may turn returns more: 0.928 for 0.90, 0.698 for 0.60.
+    """
+    m = felt_mass(cage, may_turn=may_turn)
+    zeta = math.sqrt(cage.ball_cage_stiffness * m) / (2.0 * cage.race_damping)
+    return math.exp(-math.pi * zeta / math.sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0
+
+
+@kernel
+def next_blow(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
+    """Time in which no wall is passed, and the ball and side that may be reached then.
+
+    From the gap g, the speed u towards the wall and a bound A on the acceleration that the frame gives:
+    t = 2 g/(u + sqrt(u^2 + 2 A g)), exact for A = 0. Ball -1: none within the longest time.
+    """
+    W = abs(p.turning)
+    vx, vy = s[VX] - p.turning * s[Y], s[VY] + p.turning * s[X]
+    straight = np.sqrt(vx * vx + vy * vy)
+    rim = np.sqrt(s[X] * s[X] + s[Y] * s[Y]) + straight * longest
+    bound = 2.0 * W * (straight + W * rim) + W * W * rim
+    first, ball, side = longest, -1, 1.0
+    for j in range(cos.size):
+        u = s[Y] * cos[j] - s[X] * sin[j] + p.radius * s[THETA] - lead[j]
+        rate = s[VY] * cos[j] - s[VX] * sin[j] + p.radius * s[SPIN]
+        for sign in (1.0, -1.0):
+            gap, speed = max(p.half_play - sign * u, 0.0), sign * rate
+            reach = speed + np.sqrt(speed * speed + 2.0 * bound * gap)
+            if reach > 0.0 and 2.0 * gap < first * reach:
+                first, ball, side = 2.0 * gap / reach, j, sign
+    return first, ball, side
+
+
+@kernel
+def energy_of(p, s):  # type: ignore[no-untyped-def]
+    """Kinetic energy in the turning frame [J]."""
+    return 0.5 * (p.mass * (s[VX] ** 2 + s[VY] ** 2) + p.inertia * s[SPIN] ** 2)
+
+
+@kernel
+def coast(p, s, note, dt, late):  # type: ignore[no-untyped-def]
+    """Fly freely for a time, and note the frame's work and the mean energy since the time `late`."""
+    before, swept, far = energy_of(p, s), s[X] * s[VY] - s[Y] * s[VX], s[X] * s[X] + s[Y] * s[Y]
+    angle = p.turning * dt
+    fly(p, note[TIME], s, dt, np.cos(angle), np.sin(angle))
+    note[TIME] += dt
+    farther = s[X] * s[X] + s[Y] * s[Y]
+    work = 0.5 * p.mass * p.turning * p.turning * (farther - far)
+    note[WORK] += work
+    note[DONE] += abs(work)
+    note[FAR] = max(note[FAR], farther)
+    part = 0.5 * max(0.0, note[TIME] - max(late, note[TIME] - dt))
+    note[LATE_ENERGY] += part * (before + energy_of(p, s))
+    note[SWEPT] += dt * (swept + s[X] * s[VY] - s[Y] * s[VX])
+    note[AREA] += dt * (far + farther)
+
+
+@kernel
+def blow(p, c, i, s, note, side, eta, mass):  # type: ignore[no-untyped-def]
+    """Blow of the ball in direction (c, i), if its pocket comes at it, and note its work."""
+    before = energy_of(p, s)
+    speed = side * (s[VY] * c - s[VX] * i + p.radius * s[SPIN])
+    if speed <= 1e-12 * np.sqrt(2.0 * before / p.mass):
+        return
+    impulse = side * (1.0 + eta) * mass * speed
+    push = p.friction * impulse
+    s[VX] += (impulse * i - push * c) / p.mass
+    s[VY] -= (impulse * c + push * i) / p.mass
+    s[SPIN] -= impulse * p.radius / p.inertia
+    # Normal part: the felt mass goes on with eta times the speed; friction: impulse times the mean radial
+    # speed.
+    radial = s[VX] * c + s[VY] * i + 0.5 * push / p.mass
+    normal = -0.5 * mass * speed * speed * (1.0 - eta * eta)
+    note[WORK] += normal - push * radial
+    note[DONE] += abs(normal) + abs(push * radial)
+    note[PEAK] = max(note[PEAK], speed * np.sqrt(p.stiffness * mass))
+
+
+@kernel
+def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # type: ignore[no-untyped-def]
+    """Go from blow to blow until the time is over, the energy has grown, or blows come in no time."""
+    horizon = duration if p.turning == 0.0 else min(duration, 0.1 / abs(p.turning))
+    late, idle = 0.8 * duration, 0
+    for _ in range(MOST_BLOWS):
+        dt, ball, side = next_blow(p, cos, sin, lead, s, min(horizon, duration - note[TIME]))
+        coast(p, s, note, dt, late)
+        if note[TIME] >= duration:
+            return UNKNOWN
+        idle = idle + 1 if dt < 1e-9 * duration else 0
+        if idle > STALL:
+            return STALLED
+        if ball >= 0:
+            u = s[Y] * cos[ball] - s[X] * sin[ball] + p.radius * s[THETA] - lead[ball]
+            if p.half_play - side * u <= 1e-10 * p.half_play:
+                blow(p, cos[ball], sin[ball], s, note, side, eta, mass)
+        if energy_of(p, s) > grows_above:
+            return GROWS
+    return STALLED
+
+
+@kernel
+def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
+    """Run from one kick, blow by blow; outcome and evidence into `out`, shape (evidence,)."""
+    s, note = np.zeros(STATE), np.zeros(NOTES)
+    s[VX], s[VY] = kick * np.cos(direction), kick * np.sin(direction)
+    start = energy_of(p, s)
+    outcome = follow(p, cos, sin, lead, s, note, eta, mass, duration, limits[1])
+    late = note[TIME] - 0.8 * duration
+    out[GROWTH] = (note[LATE_ENERGY] / late if late > 0.0 else energy_of(p, s)) / start
+    out[OFFSET] = np.sqrt(note[FAR])
+    if outcome == UNKNOWN:
+        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits[0] else DIES)
+    whirl = note[SWEPT] / note[AREA] if note[AREA] > 0.0 else 0.0
+    out[OUTCOME] = outcome
+    out[WHIRL] = abs(whirl) / (2.0 * np.pi)
+    out[DIRECTION] = np.sign(whirl) * sense
+    out[FORCE] = note[PEAK]
+    out[IMBALANCE] = abs(energy_of(p, s) - start - note[WORK]) / (note[DONE] + start)
+
+
+def _hard_chunk(stamp: int) -> Callable[..., Any]:
+    def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
+        if stamp < 0:
+            return
+        for i in range(starts.shape[0]):
+            hard_run(
+                p, cos, sin, starts[i, 0], kick, starts[i, 1:], eta, mass, duration, limits, sense, out[i]
+            )
+
+    return hard_chunk
+
+
+hard_chunk: Any = compiled.entry(_hard_chunk, flight, slots)
+"""Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+
+
+def run_hard_ensemble(
+    cage: PlanarCage,
+    settings: StabilitySettings,
+    *,
+    kicks: Sequence[MetrePerSecond] | None = None,
+    runs: int | None = None,
+    jobs: int = 1,
+    restitution: Ratio | None = None,
+    may_turn: bool = True,
+) -> Ensemble:
+    """Run the cage from every kick and seed with instantaneous impacts.
+
+    Parameters
+    ----------
+    cage : PlanarCage
+        The cage; it must have play and neither land, gravity nor unbalance. Its race damping gives the
+        restitution.
+    settings, kicks, runs, jobs
+        As in `run_ensemble`, and the same starts.
+    restitution : float, optional
+        Of a blow [-]; default: `blow_restitution`, from the mass that the blow feels.
+    may_turn : bool
+        False holds the cage's rotation to that of the ball set.
+
+    Returns
+    -------
+    Ensemble
+        With the force that an undamped spring would reach at each blow, the whirl as the mean turning rate of
+        the offset, and no drift rate. Runs that meet too many events in no time are STALLED.
+
+    Raises
+    ------
+    InputError
+        The cage has a land, gravity, unbalance or no play, or the ensemble is empty.
+    """
+    _refuse(cage)
+    speeds, runs = chosen(settings, kicks, runs)
+    mass = felt_mass(cage, may_turn=may_turn)
+    eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution
+    p = coefficients(cage, 1.0)._replace(radius=cage.pitch_radius if may_turn else 0.0)
+    directions, starts = ball_directions(cage.ball_count), random_starts(cage, settings, 0, runs)
+    evidence = np.zeros((speeds.size, runs, slots.EVIDENCE))
+
+    def work(i: int, rows: slice) -> None:
+        drift = 2.0 * cage.half_play
+        limits = (drift, GROWN * energy_scale(cage, speeds[i]))
+        hard_chunk(p, *directions, starts[rows], speeds[i], eta, mass, settings.duration, limits,
+                   cage.rotation_sense, evidence[i, rows])  # fmt: skip
+
+    spread(work, speeds.size, runs, CHUNK_RUNS, jobs)
+    return gathered(speeds, evidence, settings.duration)
+
+
+def _refuse(cage: PlanarCage) -> None:
+    """Refuse what the hard form leaves out."""
+    cure = "Use run_ensemble, which has lands, gravity, unbalance and pockets without play."
+    if not math.isinf(cage.land_gap):
+        raise InputError("PlanarCage.guidance", "must be ball in the hard-impact form", "", "", cure)
+    if cage.gravity > 0 or cage.unbalance > 0:
+        raise InputError(
+            "PlanarCage", "must be free of gravity and unbalance in the hard-impact form", cure=cure
+        )
+    if cage.half_play <= 0:
+        raise InputError("PlanarCage.pocket_clearance", "must be > 0 in the hard-impact form", "m", "0", cure)
