@@ -2,7 +2,7 @@
 
 from separatrix.cage.ensemble import Ensemble, run_ensemble
 from separatrix.cage.hard import blow_restitution, run_hard_ensemble
-from separatrix.cage.history import History, simulate
+from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.linear import (
     drift_law,
     linear_critical_friction,
@@ -22,6 +22,7 @@ __all__ = [
     "Verdict",
     "blow_restitution",
     "drift_law",
+    "follow",
     "growth_probability",
     "judge",
     "linear_critical_friction",

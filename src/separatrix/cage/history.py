@@ -12,7 +12,7 @@ from separatrix.cage.planar import PlanarCage, RunOutcome
 from separatrix.cage.run import FIFTHS, run_chunk
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
-from separatrix.units import Array, MetrePerSecond, Ratio, Second
+from separatrix.units import Array, MetrePerSecond, Radian, Ratio, Second
 
 MOST_SAMPLES = 1_000_000
 SOURCES = ("pocket_friction", "race_dampers", "land", "gravity", "moving_frame", "unbalance")
@@ -87,19 +87,59 @@ def simulate(
     InputError
         A setting is out of range.
     """
-    if not 2 <= samples <= MOST_SAMPLES:
-        raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES}", "-", str(samples))
     settings = StabilitySettings(
         kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed
     )
+    start = random_starts(cage, settings, run, 1)
+    return follow(
+        cage,
+        kick=kick,
+        direction=float(start[0, 0]),
+        ball_lead=start[0, 1:],
+        duration=duration,
+        samples=samples,
+    )
+
+
+def follow(
+    cage: PlanarCage,
+    *,
+    kick: MetrePerSecond,
+    direction: Radian,
+    ball_lead: Array,
+    duration: Second,
+    samples: int = 4000,
+) -> History:
+    """Follow the run that starts with this direction of the kick [rad] and these leads, shape (ball,) [m].
+
+    Raises
+    ------
+    InputError
+        A setting is out of range.
+    """
+    if not 2 <= samples <= MOST_SAMPLES:
+        raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES}", "-", str(samples))
+    lead = np.asarray(ball_lead, dtype=np.float64)
+    if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= cage.half_play):
+        rule = f"must be {cage.ball_count} numbers within the pockets' play"
+        raise InputError("ball_lead", rule, "m", f"{lead.tolist()}")
+    settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)
     engine = prepare(cage, duration)
-    starts = random_starts(cage, settings, run, 1)
     rows = np.zeros((samples, slots.BALLS + 2 * cage.ball_count))
     rows[:, 0] = np.linspace(0.0, FIFTHS * engine.fifth, samples)
     out = np.zeros((1, slots.EVIDENCE))
-    run_chunk(*engine.kernel_arguments, starts, kick, engine.fifth, run_limits(cage, kick),
-              cage.rotation_sense, rows, out)  # fmt: skip
+    starts = np.concatenate([[direction], lead])[np.newaxis]
+    run_chunk(
+        *engine.kernel_arguments,
+        starts,
+        kick,
+        engine.fifth,
+        run_limits(cage, kick),
+        cage.rotation_sense,
+        rows,
+        out,
+    )
     return _history(cage, rows[: int(out[0, slots.ROWS])], out[0])
 
 

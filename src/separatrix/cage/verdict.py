@@ -116,20 +116,24 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
 def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, str]:
     """Verdict and the sentence that gives its reason."""
     dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
-    drifts, stalled = ensemble.count(RunOutcome.DRIFT), ensemble.count(RunOutcome.STALLED)
-    few = wilson_interval(runs, runs)[0] <= FEW
-    if few:
+    stalled, drifted = ensemble.count(RunOutcome.STALLED), ensemble.count(RunOutcome.DRIFT)
+    if wilson_interval(runs, runs)[0] <= FEW:
         return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
     if _clear(grows, runs):
         return Verdict.UNSTABLE, f"The motion grows in {_percent(grows, runs)} of the runs at every kick."
+    if not _clear(dies + drifted + stalled, runs):
+        return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
     if stalled.any():
-        return Verdict.UNDECIDED, f"{int(stalled.sum())} runs met too many impacts in no time and were ended."
-    rate = drift_law(cage)
-    if drifts.any() or (_clear(dies, runs) and math.isinf(cage.land_gap) and rate > 0.0):
-        return Verdict.UNDECIDED, _drift_reason(ensemble, int(drifts.sum()), rate)
-    if _clear(dies, runs):
-        return Verdict.STABLE, f"The motion dies in {_percent(dies, runs)} of the runs at every kick."
-    return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
+        count, total = int(stalled.sum()), ensemble.outcome.size
+        return Verdict.UNDECIDED, f"{count} of {total} runs met too many impacts in no time and were ended."
+    if drifts(cage) or not _clear(dies, runs):
+        return Verdict.UNDECIDED, _drift_reason(cage, ensemble)
+    return Verdict.STABLE, f"The motion dies in {_percent(dies, runs)} of the runs at every kick."
+
+
+def drifts(cage: PlanarCage) -> bool:
+    """Whether nothing holds the cage centre: no land, and the turning of the ball set or gravity moves it."""
+    return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
 def _clear(counts: Counts, runs: int) -> bool:
@@ -137,24 +141,27 @@ def _clear(counts: Counts, runs: int) -> bool:
 
 
 def _percent(counts: Counts, runs: int) -> str:
-    return f"at least {100 * int(counts.min()) // runs} %"
+    least = int(counts.min())
+    return "all" if least == runs else f"at least {100 * least // runs} %"
 
 
-def _drift_reason(ensemble: Ensemble, drifted: int, rate: float) -> str:
-    count = ensemble.outcome.size
-    return (
-        f"The cage has no land and drifts: without growing in energy its offset passed the pocket's play in "
-        f"{drifted} of {count} runs; by the linear law it grows e-fold every {1.0 / rate:.3g} s."
-        if rate > 0.0
-        else f"The offset passed the pocket's play in {drifted} of {count} runs without growing in energy."
-    )
+def _drift_reason(cage: PlanarCage, ensemble: Ensemble) -> str:
+    passed, total = int(ensemble.count(RunOutcome.DRIFT).sum()), ensemble.outcome.size
+    seen = f"its offset passed the play of its pockets in {passed} of {total} runs"
+    rate = drift_law(cage)
+    if rate > 0.0 and math.isinf(cage.land_gap):
+        return (
+            f"The motion dies, but the cage has no land and drifts: {seen}, and by the linear law it grows "
+            f"e-fold every {1.0 / rate:.3g} s."
+        )
+    return f"The motion dies, but the cage has no land and drifts: {seen}."
 
 
 def _mixed_reason(kicks: Array, dies: Counts, grows: Counts, runs: int) -> str:
     order = np.argsort(kicks)
     calm = [kicks[i] for i in order if dies[i] / runs >= CLEAR]
     wild = [kicks[i] for i in order if grows[i] / runs >= CLEAR]
-    if calm and wild:
+    if calm and wild and max(calm) < min(wild):
         return f"Sub-critical: the motion dies from {max(calm):g} m/s and grows from {min(wild):g} m/s."
     shares = ", ".join(f"{100 * grows[i] / runs:.0f} % from {kicks[i]:g} m/s" for i in order)
-    return f"Neither clear: the motion grows in {shares}."
+    return f"No clear answer: the motion grows in {shares}."
