@@ -100,8 +100,9 @@ def problem(record: object, field: str, rule: str, cure: str = "") -> InputError
 
 
 def is_number(value: object) -> bool:
-    """True for a real number that is not a bool."""
-    return isinstance(value, Real) and not isinstance(value, bool)
+    """True for a real number that is not a bool, nor an integer too long for a float."""
+    too_long = isinstance(value, int) and abs(value) >= 10**300
+    return isinstance(value, Real) and not isinstance(value, bool) and not too_long
 
 
 def _range(unit: str, low: float, high: float, open_low: bool, open_high: bool) -> str:

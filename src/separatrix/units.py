@@ -206,19 +206,23 @@ def spellings(unit: str, most: int = 4) -> str:
     return ", ".join(known[:most]) + (", ..." if len(known) > most else "")
 
 
-def shown(value: object, longest: int = LONGEST) -> str:
+def shown(value: object) -> str:
     """Text of a wrong value for a message: one line, quoted if it was text, cut if it is long."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (dict, list, tuple)):
-        return {dict: "a table", list: "a list", tuple: "a list"}[type(value)]
-    text = f'"{printable(value)}"' if isinstance(value, str) else printable(str(value))
-    return text if len(text) <= longest else text[: longest - 4] + "..." + text[-1]
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, (list, tuple)):
+        return "a list"
+    if isinstance(value, int) and abs(value) >= 10**LONGEST:
+        return "a whole number of more than 60 digits"
+    return f'"{printable(value)}"' if isinstance(value, str) else printable(str(value))
 
 
-def printable(text: str) -> str:
-    """The text with every control or invisible character written as its code."""
-    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text[: 10 * LONGEST])
+def printable(text: str, longest: int = LONGEST) -> str:
+    """The text on one line: control and invisible characters as their codes, cut if it is long."""
+    plain = "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text[: longest + 1])
+    return plain if len(plain) <= longest else plain[: longest - 3] + "..."
 
 
 def _scaled(number: str, scale: str, text: str, where: str) -> float:
@@ -245,7 +249,7 @@ def _needs_unit(value: object, unit: str, where: str) -> InputError:
 def _is_number(value: object) -> bool:
     if isinstance(value, str):
         return re.fullmatch(r"[-+.0-9eE]+", value) is not None
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and -1e300 < value < 1e300
 
 
 def _refusal(text: str, unit: str, where: str) -> InputError:

@@ -210,7 +210,7 @@ EDITS = {
     "unknown film": (('"PTFE transfer film"', '"Teflon"'), ["[film] material", "PTFE transfer film", "MoS2"]),
     "material as a number": (
         ('ball_material = "440C"', "ball_material = 440"),
-        ["[bearing] ball_material", "440"],
+        ["[bearing] ball_material must be the name of a bearing material in quotes", "440"],
     ),
     "material without modulus": (
         ('elastic_modulus = "205 GPa", ', ""),
@@ -354,6 +354,14 @@ EDITS = {
     "deep dotted key": (("bore =", ".".join("a" * 1500) + " = 1\nbore ="), ["line 10", "[bearing] a"]),
     "long line": (("bore =", "# " + "x" * 6000 + "\nbore ="), ["line 10", "longer than 4000"]),
     "NUL byte": (('"A valid study"', '"A\0"'), ["line 1", "NUL"]),
+    "long key twice": (
+        ("bore =", ("a." * 1500 + "a = 1\n") * 2 + "bore ="),
+        ["line 11 gives a.a.a.", "a second time"],
+    ),
+    "long hexadecimal ratio": (("race_friction = 0.1", "race_friction = 0x" + "f" * 3900), ["60 digits"]),
+    "long hexadecimal count": (("ball_count = 13", "ball_count = 0x" + "f" * 3900), ["60 digits"]),
+    "long number without a unit": (('"50 mm"', "9" * 3900), ["needs a unit of length"]),
+    "empty key": (("bore =", '"" = 1\nbore ='), ['[bearing] "" is no key']),
     "extends itself": (
         ('title = "A valid study"', 'extends = "study.toml"'),
         ["line 1: extends", "leads back"],

@@ -24,7 +24,7 @@ def read_study(study: str | Path) -> Study:
         Everything that is wrong with the file, on one line: place, rule, value, cure.
     """
     path = find(study)
-    return build_study(load(path), printable(path.stem)[:100])
+    return build_study(load(path), printable(path.stem, 100))
 
 
 def require(study: Study, verb: str, *sections: str) -> None:

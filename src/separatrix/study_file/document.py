@@ -15,6 +15,8 @@ from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
 MOST_BASES = 8
+MOST_PROBLEMS = 20
+"""After so many mistakes a file is read no further."""
 
 _ALTERNATIVES = {
     "bearing": (("contact_angle",), ("radial_clearance",)),
@@ -106,8 +108,10 @@ def _own(path: Path) -> Document:
     data, lines = read_toml(path)
     document = Document(label_of(path), lines=lines)
     for name, value in data.items():
+        if len(document.problems) > MOST_PROBLEMS:
+            break
         place = document.place(name, f"{name}.0")
-        plain = printable(name)[:60]
+        plain = printable(name) or '""'
         if name in ("title", "extends"):
             document.top[name] = Entry(value, place)
         elif name in SECTIONS and isinstance(value, dict):

@@ -20,14 +20,13 @@ from separatrix.study import (
     Study,
 )
 from separatrix.study_file import values
-from separatrix.study_file.document import SECTIONS, Document, Entry, nearest
+from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry, nearest
 from separatrix.study_file.ranking_section import ranking
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, relocated, where
 from separatrix.study_file.values import Reader
 from separatrix.units import format_quantity, shown, unit_of
 
 _REQUIRED_SECTIONS = ("bearing", "operation", "film")
-_MOST_PROBLEMS = 20
 
 
 def _readers(record: type, **special: Reader) -> dict[str, Reader]:
@@ -112,7 +111,7 @@ def _converted(document: Document, section: str) -> dict[str, Any]:
     """Values of a section's known keys; what is wrong goes to the document's problems."""
     converted: dict[str, Any] = {}
     for key, entry in document.sections[section].items():
-        if len(document.problems) > _MOST_PROBLEMS:
+        if len(document.problems) > MOST_PROBLEMS:
             break
         attempt(document, lambda k=key, e=entry: converted.update({k: _read(document, section, k, e)}))  # type: ignore[misc]
     return converted

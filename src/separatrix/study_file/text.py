@@ -32,7 +32,7 @@ _STRING_OR_COMMENT = re.compile(
 
 def label_of(path: Path) -> str:
     """Name of a file in messages and results: without its folder, on one line."""
-    return printable(path.name or str(path))[:60]
+    return printable(path.name or str(path))
 
 
 def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
@@ -129,7 +129,7 @@ def _newlines(match: re.Match[str]) -> str:
 
 
 def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
-    message = printable(str(error))
+    message = printable(str(error), 300)
     found = re.search(r" \(at line (\d+), column \d+\)", message)
     if not found:
         rule = "is not valid TOML: it ends inside a quotation or a bracket"
@@ -147,7 +147,7 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
         where,
         f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120],
         "",
-        printable(line)[:60],
+        printable(line),
         _cure(line),
     )
 

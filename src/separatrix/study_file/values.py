@@ -35,7 +35,7 @@ def ratio(value: Any, where: str) -> float:
         if isinstance(value, str) and "," in value:
             cure = "Write a decimal point, without quotes."
         raise InputError(where, "must be a plain number, without a unit", "", shown(value), cure)
-    if not math.isfinite(value) or abs(value) > 1e300:
+    if not -1e300 < value < 1e300:  # an integer may be too long for a float
         raise InputError(where, "must be a finite number", "", shown(value))
     return float(value)
 
@@ -43,7 +43,7 @@ def ratio(value: Any, where: str) -> float:
 def whole(value: Any, where: str) -> int:
     """Read an integer."""
     if isinstance(value, bool) or not isinstance(value, int):
-        near = isinstance(value, float) and math.isfinite(value) and value == int(value) and abs(value) < 1e15
+        near = isinstance(value, float) and -1e15 < value < 1e15 and value == int(value)
         cure = f"Write {int(value)}." if near else ""
         raise InputError(where, "must be a whole number", "", shown(value), cure)
     return value
@@ -93,7 +93,7 @@ def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
         return tuple(list_of(ratio)(value, where))
     given = table(value, where, {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
     if not 2 <= given["count"] <= 1000:
-        raise InputError(where, "needs a count from 2 to 1000", "", str(given["count"]))
+        raise InputError(where, "needs a count from 2 to 1000", "", shown(given["count"]))
     return study.evenly_spaced(given["from"], given["to"], given["count"])
 
 
@@ -103,6 +103,9 @@ def material(kind: str) -> Reader:
     def read(value: Any, where: str) -> Material:
         if isinstance(value, str):
             return named_material(value, kind, where)
+        if not isinstance(value, dict):
+            rule = f"must be the name of a {kind} in quotes, or a table with its properties in {{braces}}"
+            raise InputError(where, rule, "", shown(value))
         return material_in_place(value, where)
 
     return read
@@ -151,7 +154,7 @@ def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[st
         raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", "", shown(value))
     for key in value:
         if key not in readers:
-            at = f"{where}.{printable(key)[:60]}"
+            at = f"{where}.{printable(key)}"
             raise InputError(at, "is no key of this table", cure=nearest(key, readers))
     if missing := [key for key in required if key not in value]:
         raise InputError(where, f"lacks: {', '.join(missing)}")
