@@ -71,7 +71,8 @@ def relocated(document: Document, error: InputError) -> InputError:
 def where(document: Document, section: str, key: str) -> str:
     """Place of a key: ``case.toml, line 7: [bearing] bore``."""
     entry = document.sections.get(section, {}).get(key)
-    return f"{entry.place if entry else document.label}: [{section}] {printable(key) or '""'}"
+    name = printable(key) or '""'
+    return f"{entry.place if entry else document.label}: [{section}] {name}"
 
 
 def refuse_both(document: Document, section: str, one: str, other: str) -> None:
