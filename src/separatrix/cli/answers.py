@@ -7,14 +7,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState, TractionState
+    from separatrix.cage import History
+    from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
     from separatrix.ranking import Ranking
     from separatrix.stability import StabilityCurve
     from separatrix.study import Study
-    from separatrix.traction import TractionCurve
+    from separatrix.traction import ShearField, TractionCurve
+    from separatrix.units import MetrePerSecond, Ratio
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
+
+STRIPS = 5
+"""Strips in which the shear is shown."""
+
+SAMPLES_A_WHIRL = 6
+"""Samples of a simulated run in a period of the linear whirl."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,11 +35,16 @@ class Work:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TractionAnswer:
-    """Traction curves of both races, and the same contacts at several pivoting-to-rolling ratios."""
+    """Traction curves, as they are and at other pivoting-to-rolling ratios, and shear in free rolling."""
 
-    state: TractionState
-    inner_by_ratio: tuple[TractionCurve, ...]
-    outer_by_ratio: tuple[TractionCurve, ...]
+    race_friction: Ratio
+    bearing: BearingState
+    inner: TractionCurve
+    outer: TractionCurve
+    inner_others: tuple[TractionCurve, ...]
+    outer_others: tuple[TractionCurve, ...]
+    inner_shear: ShearField
+    outer_shear: ShearField
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +53,16 @@ class StabilityAnswer:
 
     cage: CageState
     curve: StabilityCurve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationAnswer:
+    """One run of the ensemble, from the middle kick."""
+
+    cage: CageState
+    history: History
+    kick: MetrePerSecond
+    run: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,28 +89,58 @@ def traction(study: Study, work: Work) -> TractionAnswer:  # noqa: ARG001
     from separatrix.chain import traction_state
 
     state = traction_state(study)
+    inner = curves_by_ratio(study, state.bearing.inner, state.inner)
+    outer = curves_by_ratio(study, state.bearing.outer, state.outer)
     return TractionAnswer(
-        state=state,
-        inner_by_ratio=curves_by_ratio(study, state.bearing.inner, state.inner),
-        outer_by_ratio=curves_by_ratio(study, state.bearing.outer, state.outer),
+        race_friction=study.film.race_friction,
+        bearing=state.bearing,
+        inner=inner[0],
+        outer=outer[0],
+        inner_others=inner[1:],
+        outer_others=outer[1:],
+        inner_shear=shear(study, state.bearing.inner),
+        outer_shear=shear(study, state.bearing.outer),
     )
 
 
 def curves_by_ratio(study: Study, at: RaceContact, curve: TractionCurve) -> tuple[TractionCurve, ...]:
-    """Traction curves of one contact at `SPIN_ROLL_RATIOS`, at the creep increments of `curve`."""
+    """Traction curves of one contact: at its own ratio, then at `SPIN_ROLL_RATIOS` with its sign.
+
+    The creep increments are those that span saturation, drawn together where the curve bends.
+    """
+    import math
     from dataclasses import replace
+
+    import numpy as np
 
     from separatrix.traction import film_compliance, traction_curve
 
+    span = float(curve.creep_increment[-1])
+    increments = span * np.sinh(np.linspace(-4.0, 4.0, 101)) / math.sinh(4.0)
+    own = at.creep.spin
+    others = (math.copysign(ratio, own) * at.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
     return tuple(
         traction_curve(
             at.ellipse,
-            replace(at.creep, spin=ratio * at.ellipse.curvature_rolling),
+            replace(at.creep, spin=spin),
             race_friction=study.film.race_friction,
             film_compliance=film_compliance(study.film),
-            creep_increments=curve.creep_increment,
+            creep_increments=increments,
         )
-        for ratio in SPIN_ROLL_RATIOS
+        for spin in (own, *others)
+    )
+
+
+def shear(study: Study, at: RaceContact) -> ShearField:
+    """Shear in a few strips of a contact in free rolling (the paper's Fig. 6)."""
+    from separatrix.traction import film_compliance, shear_field
+
+    return shear_field(
+        at.ellipse,
+        at.creep,
+        race_friction=study.film.race_friction,
+        film_compliance=film_compliance(study.film),
+        strips=STRIPS,
     )
 
 
@@ -106,6 +159,25 @@ def stability(study: Study, work: Work) -> StabilityAnswer:
     state = cage_state(study)
     curve = stability_curve(state.cage, study.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
+
+
+def simulate(study: Study, work: Work) -> SimulationAnswer:  # noqa: ARG001
+    """Follow the first run of the ensemble from the middle kick."""
+    from separatrix.cage import linear_whirl_frequency, simulate
+    from separatrix.chain import cage_state
+
+    state, settings = cage_state(study), study.stability
+    samples = SAMPLES_A_WHIRL * linear_whirl_frequency(state.cage) * settings.duration
+    history = simulate(
+        state.cage,
+        kick=settings.middle_kick,
+        run=0,
+        seed=settings.seed,
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        samples=int(min(max(samples, 1000), 20_000)),
+    )
+    return SimulationAnswer(cage=state, history=history, kick=settings.middle_kick, run=0)
 
 
 def rank(study: Study, work: Work) -> RankingAnswer:

@@ -1,39 +1,31 @@
-"""Files are written beside their final name and renamed; nothing is ever left half-written."""
+"""Files are written aside and renamed into place; nothing is ever left half-written."""
 
 from __future__ import annotations
 
 import contextlib
-import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from separatrix.errors import InputError
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file beside `path`, then give it that name.
-
-    Parameters
-    ----------
-    path : Path
-        Final name; an older file of that name is replaced at once.
-    write : callable
-        Writes a file at the path it is given, which has the same suffix.
+@contextlib.contextmanager
+def staged(folder: Path) -> Iterator[Path]:
+    """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
 
     Raises
     ------
     InputError
         The folder cannot be written, or is full.
     """
-    temporary = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
     try:
-        write(temporary)
-        temporary.replace(path)
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".separatrix-") as stage:
+            yield Path(stage)
+            for path in sorted(Path(stage).iterdir()):
+                path.replace(folder / path.name)
     except OSError as error:
-        raise _cannot_write(path.parent, error) from error
-    finally:
-        temporary.unlink(missing_ok=True)
+        raise _cannot_write(folder, error) from error
 
 
 @contextlib.contextmanager

@@ -7,13 +7,12 @@ import json
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, progress_bar
-from separatrix.cli.files import writable_folder, write_new, write_whole
+from separatrix.cli.files import staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
@@ -103,14 +102,13 @@ def _summary(verb: Verb, document: dict[str, Any], folder: Path | None) -> str:
 
 
 def _write_files(verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str]) -> None:
-    for suffix, text in texts.items():
-        write_whole(folder / f"{verb.name}{suffix}", partial(_write_text, text))
-    if verb.writes_files:
-        _write_data(verb, document, folder)
-
-
-def _write_text(text: str, path: Path) -> None:
-    path.write_text(text, encoding="utf-8", errors="backslashreplace")
+    """Write texts, dataset and figures aside, then put them in their places together."""
+    with staged(folder) as stage:
+        for suffix, text in texts.items():
+            path = stage / f"{verb.name}{suffix}"
+            path.write_text(text, encoding="utf-8", errors="backslashreplace")
+        if verb.writes_files:
+            _write_data(verb, document, stage)
 
 
 def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> None:
@@ -118,10 +116,10 @@ def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> None:
     from separatrix import figures, results
 
     data = results.dataset(document)
-    write_whole(folder / f"{verb.name}.nc", partial(results.save, data))
+    results.save(data, folder / f"{verb.name}.nc")
     for name, figure in figures.figures(verb.name, data):
         for suffix in (".png", ".svg"):
-            write_whole(folder / f"{name}{suffix}", partial(figures.save, figure))
+            figures.save(figure, folder / f"{name}{suffix}")
 
 
 def make_study(path: Path, *, as_json: bool, quiet: bool) -> int:

@@ -57,6 +57,12 @@ VERBS: tuple[Verb, ...] = (
         needs=("cage",),
     ),
     Verb(
+        name="simulate",
+        help="Follow one run of the cage in the bearing plane.",
+        compute=answers.simulate,
+        needs=("cage",),
+    ),
+    Verb(
         name="rank",
         help="Rank the cage materials: verdict, margin, reason.",
         compute=answers.rank,

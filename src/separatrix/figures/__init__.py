@@ -7,17 +7,19 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.figures import bearing, stability, traction
+from separatrix.figures import bearing, ranking, simulation, stability, traction
 from separatrix.figures.style import journal, save
 
-__all__ = ["FIGURES", "figures", "save"]
+__all__ = ["figures", "save"]
 
 Draw = Callable[[xr.Dataset], Figure]
 
 FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "bearing": {"bearing-balls": bearing.balls, "bearing-contacts": bearing.contact},
-    "traction": {"traction-curves": traction.curves},
+    "traction": {"traction-curves": traction.curves, "traction-shear": traction.shear},
     "stability": {"stability-curve": stability.stability},
+    "simulate": {"simulation": simulation.run},
+    "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
 }
 """Verb -> name of the file -> what draws it."""
 
@@ -32,7 +34,8 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     data : Dataset
         From `results.dataset` or `results.load`.
     """
-    for name, draw in FIGURES.get(verb, {}).items():
-        with journal():
-            figure = draw(data)
-        yield name, figure
+    with journal():
+        for name, draw in FIGURES.get(verb, {}).items():
+            yield name, draw(data)
+        if verb == "rank":
+            yield from ranking.environments(data)

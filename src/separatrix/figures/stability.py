@@ -1,4 +1,4 @@
-"""The stability curve with its band (the paper's Fig. 2), alone and with candidates on it (Figs 9-12)."""
+"""The stability curve with its band (the paper's Fig. 2)."""
 
 from __future__ import annotations
 
@@ -7,54 +7,65 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, VERMILION, canvas
+from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, canvas
 
 HIGHEST = 0.5
 """Friction at the top of the picture: above it no cage material is of interest."""
 
-
-def stability(data: xr.Dataset) -> Figure:
-    """Critical friction against restitution factor: curve, band, linear limit, and the bearing's own eta."""
-    figure, axes = canvas(0.72 * PAGE, 3.4)
-    frame(axes, data)
-    return figure
-
-
-def frame(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the curve with its band, the linear limit, the regions and the lines of eta."""
-    eta = data["restitution_factor"].values
-    middle, low, high = (data[name].values for name in CURVES)
-    axes.set(xlim=(0, 1), ylim=(0, top(data)), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
-    axes.fill_between(
-        eta, low, np.where(np.isnan(high), axes.get_ylim()[1], high), color=BLUE, alpha=0.15, lw=0
-    )
-    axes.plot(eta, middle, color=BLUE)
-    axes.plot(eta, data["linear_limit_critical_friction"].values, color=GREY, lw=0.9, ls=(0, (4, 2)))
-    chain_lines(axes, data)
-
-
-CURVES = ("critical_friction", "critical_friction_low", "critical_friction_high")
 ETA_LABEL = r"restitution factor $\eta$ [-]"
 FRICTION_LABEL = r"ball/cage friction $f_{BC}$ [-]"
 
 
-def top(data: xr.Dataset) -> float:
-    """Return the highest friction to draw."""
+def stability(data: xr.Dataset) -> Figure:
+    """Critical friction against restitution factor: curve, band, linear limit, and the bearing's own eta."""
+    figure, axes = canvas(0.8 * PAGE, 3.6)
+    frame(axes, data, highest(data))
+    chain_lines(axes, data)
+    axes.text(0.03, 0.05, "stable", transform=axes.transAxes, color=GREY, style="italic")
+    axes.text(0.97, 0.5, "unstable", transform=axes.transAxes, color=GREY, style="italic", ha="right")
+    axes.legend(loc="upper right", fontsize=7, handlelength=1.8)
+    return figure
+
+
+def highest(data: xr.Dataset) -> float:
+    """Friction at the top of the picture: the band, up to a limit."""
     found = data["critical_friction_high"].values
     found = found[np.isfinite(found)]
-    return float(min(HIGHEST, 1.1 * found.max())) if found.size else HIGHEST
+    return float(min(HIGHEST, 1.5 * found.max())) if found.size else HIGHEST
+
+
+def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
+    """Draw the curve with its band and the linear limit; the band reaches the edge where it has no end."""
+    eta = data["restitution_factor"].values
+    middle, low, high = (data[f"critical_friction{end}"].values for end in ("", "_low", "_high"))
+    kicks = data["kicks"].values
+    axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
+    low, high = (np.where(np.isnan(end), edge, end) for end, edge in ((low, 0.0), (high, 2 * top)))
+    known = np.isfinite(middle)
+    span = f"kicks {kicks.min():g} to {kicks.max():g} m/s" if kicks.size > 1 else f"kick {kicks[0]:g} m/s"
+    axes.fill_between(
+        eta,
+        low,
+        high,
+        where=known,
+        color=BLUE,
+        alpha=0.15,
+        lw=0,
+        label=f"10 to 90 % of the runs grow, {span}",
+    )
+    label = f"half of {int(data['runs'])} runs grow, kick {float(data['middle_kick']):g} m/s"
+    axes.plot(eta, middle, color=BLUE, label=label)
+    limit = data["linear_limit_critical_friction"].values
+    axes.plot(
+        eta, limit, color=GREY, lw=0.9, ls=(0, (4, 2)), label="linear limit: no clearance, balls at rest"
+    )
 
 
 def chain_lines(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the restitution factors of the chain as upright lines, named at their tops."""
+    """Draw the restitution factors of the chain as upright lines."""
     for name, style, text in (
-        ("chain_restitution_factor", "-", r"this bearing, $\eta$ = {:.2f}"),
-        ("chain_restitution_factor_free_spin", ":", r"ball free to spin, {:.2f}"),
+        ("chain_restitution_factor", "-", r"this bearing, $\eta$ = {:.2f} (Eq. 18)"),
+        ("chain_restitution_factor_free_spin", ":", r"the same, ball free to spin, $\eta$ = {:.2f}"),
     ):
         value = float(data[name])
-        axes.axvline(value, color=VERMILION, ls=style, lw=1.0)
-        axes.text(value, 1.01, text.format(value), transform=axes.get_xaxis_transform(), color=VERMILION)
-
-
-def _unused() -> str:
-    return BLACK
+        axes.axvline(value, color=BLACK, ls=style, lw=1.0, label=text.format(value))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from separatrix.report.cage import stability
+from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.study import check
 from separatrix.report.tables import heading, paragraph
@@ -16,6 +16,7 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "traction": traction,
     "restitution": restitution,
     "stability": stability,
+    "simulate": simulate,
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from separatrix.report.tables import facts, number, paragraph, quantity, section, table
+from separatrix.report.tables import facts, number, paragraph, quantity, section, significant, table
 
 Document = Mapping[str, Any]
 
@@ -65,4 +65,35 @@ def ensemble_facts(settings: Document) -> list[tuple[str, str]]:
     return [
         ("Kicks", f"{kicks} m/s; the curve is drawn for {settings['middle_kick']:g} m/s"),
         ("Runs", f"{settings['runs']} at each point, of {quantity(settings['duration'], 's')}"),
+    ]
+
+
+FIRST = ", the first candidate's; [cage] ball_cage_friction sets it"
+
+
+def simulate(document: Document) -> list[str]:
+    """How one run ended, its largest offset and force, and the work that drove it."""
+    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
+    end = f"{document['outcome']} after {quantity(document['time'][-1], 's')}."
+    ended = [
+        ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
+        ("Pocket friction", number(document["cage"]["ball_cage_friction"]) + origin),
+        ("Ended", f"{end} {document['outcome_sentence']}"),
+        ("Energy growth", f"{significant(document['energy_growth'])} times the energy of the kick"),
+        ("Largest offset", quantity(document["largest_offset"], "m")),
+        ("Largest pocket force", quantity(document["largest_contact_force"], "N")),
+    ]
+    work = [
+        (name.replace("_", " "), f"{1e3 * values[-1]:.4g} mJ")
+        for name, values in document["work"].items()
+        if any(values)
+    ]
+    return [
+        section("What it holds for", facts(chain_facts(document["chain"]))),
+        section("The run", facts(ended)),
+        section("Work on the cage", facts(work or [("none", "0 mJ")])),
+        paragraph(
+            "One run proves nothing: two of them may differ in the class. See the verbs stability and rank.",
+            indent="",
+        ),
     ]

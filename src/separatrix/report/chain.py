@@ -16,7 +16,7 @@ def bearing(document: Document) -> list[str]:
     """Ball loads and angles, ring displacement, and the contacts of the most loaded ball."""
     return [
         section("Inner ring", facts(_ring(document))),
-        section("Balls", table(BALL_HEADERS, [_ball(ball) for ball in document["balls"]])),
+        section("Balls", table(BALL_HEADERS, _balls(document["balls"]))),
         section("Contacts of the most loaded ball", by_race(document["contacts"], CONTACT_ROWS)),
     ]
 
@@ -53,10 +53,15 @@ BALL_HEADERS = (
 )
 
 
+def _balls(balls: Sequence[Document]) -> list[list[str]]:
+    """Return a row for each ball, or a single one if all are alike."""
+    rows = [[str(ball["ball"]), number(degrees(ball["azimuth"]), 1), *_ball(ball)] for ball in balls]
+    alike = all(row[2:] == rows[0][2:] for row in rows)
+    return [[f"all {len(rows)}", "any", *rows[0][2:]]] if alike else rows
+
+
 def _ball(ball: Document) -> list[str]:
     return [
-        str(ball["ball"]),
-        number(degrees(ball["azimuth"]), 1),
         number(degrees(ball["contact_angle_inner"]), 2),
         number(degrees(ball["contact_angle_outer"]), 2),
         number(ball["load_inner"], 1),

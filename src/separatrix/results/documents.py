@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from separatrix.results.plain import plain, plain_record
 
 if TYPE_CHECKING:
@@ -71,17 +73,20 @@ def contact(at: Any) -> Document:
 
 
 def traction(record: Any) -> Document:
-    """Return the traction curve of each race with its contact, and the curves at other ratios."""
-    state = record.state
+    """Return contact, traction curve, curves at other ratios, and shear of each race."""
     return {
-        "inner": _curve(state.bearing.inner, state.inner, record.inner_by_ratio),
-        "outer": _curve(state.bearing.outer, state.outer, record.outer_by_ratio),
+        "race_friction": record.race_friction,
+        "inner": _curve(record.bearing.inner, record.inner, record.inner_others, record.inner_shear),
+        "outer": _curve(record.bearing.outer, record.outer, record.outer_others, record.outer_shear),
     }
 
 
-def _curve(at: Any, curve: Any, others: Sequence[Any] = ()) -> Document:
-    by_ratio = {"by_spin_roll_ratio": plain(others, "by_spin_roll_ratio")} if others else {}
-    return contact(at) | plain_record(curve, "curve") | by_ratio
+def _curve(at: Any, curve: Any, others: Sequence[Any], shear: Any) -> Document:
+    """Return one race; the curves at other ratios are at the same increments as its own."""
+    names = ("spin_roll_ratio", "slope", "slope_error", "traction_coefficient")
+    by_ratio = [{name: plain(getattr(other, name), name) for name in names} for other in others]
+    parts = {"by_spin_roll_ratio": by_ratio, "shear": plain_record(shear, "shear")}
+    return contact(at) | plain_record(curve, "curve") | parts
 
 
 def restitution(record: Any) -> Document:
@@ -110,6 +115,29 @@ def cage(state: Any) -> Document:
     return {"chain": restitution(state.restitution), "cage": plain_record(state.cage, "cage")}
 
 
+def simulation(record: Any) -> Document:
+    """Return the course of one run, how it ended, and the cage."""
+    history = record.history
+    return (
+        {
+            "kick": record.kick,
+            "run": record.run,
+            "outcome_sentence": outcome_sentence(history.outcome),
+            "largest_offset": plain(np.hypot(*history.position.T).max()),
+            "largest_contact_force": plain(np.abs(history.contact_force).max()),
+        }
+        | plain_record(history, "history")
+        | cage(record.cage)
+    )
+
+
+def outcome_sentence(outcome: Any) -> str:
+    """Return how a run ended, in words."""
+    from separatrix.cage.planar import OUTCOME_SENTENCES
+
+    return OUTCOME_SENTENCES[outcome]
+
+
 def ranking(record: Any) -> Document:
     """Return verdict, margin, rank and reason of each candidate, with the curve and the chain behind them."""
     return plain_record(record.ranking, "ranking") | cage(record.cage)
@@ -125,5 +153,6 @@ DOCUMENTS: Mapping[str, Callable[[Any], Document]] = {
     "traction": traction,
     "restitution": restitution,
     "stability": stability,
+    "simulate": simulation,
     "rank": ranking,
 }

@@ -28,7 +28,7 @@ def dataset(document: Mapping[str, Any]) -> xr.Dataset:
     document : mapping
         What `results.document` returns, or a parsed ``--json`` answer.
     """
-    body = {key: value for key, value in document.items() if key not in PROVENANCE}
+    body = {RENAMED.get(key, key): value for key, value in document.items() if key not in PROVENANCE}
     variables = {name: _variable(name, dims, values) for name, (dims, values) in _flatten(body).items()}
     return xr.Dataset(variables, attrs=_provenance(document))
 
@@ -56,7 +56,7 @@ def load(path: Path | str) -> xr.Dataset:
 def _provenance(document: Mapping[str, Any]) -> dict[str, Any]:
     """Return the attributes: text as it is, the rest as JSON."""
     attributes = {key: document[key] for key in PROVENANCE if document.get(key) is not None}
-    return {k: v if isinstance(v, str | int) else json.dumps(v) for k, v in attributes.items()}
+    return {k: v if type(v) in (str, int) else json.dumps(v) for k, v in attributes.items()}
 
 
 def _variable(name: str, dims: tuple[str, ...], values: Any) -> xr.Variable:
@@ -108,7 +108,7 @@ def _flatten_one(key: str, value: Any) -> Columns:
         return _prefixed(group.prefix, _stack(group, value))
     if isinstance(value, list):
         return {key: (LISTS.get(key, (key,)), value)}
-    return {RENAMED.get(key, key): ((), value)}
+    return {key: ((), value)}
 
 
 def _prefixed(prefix: str, columns: Columns) -> Columns:

@@ -24,12 +24,13 @@ class Group:
     label: str = ""
 
 
+SOURCES = ("pocket_friction", "race_dampers", "land", "gravity", "moving_frame", "unbalance")
+"""What does work on the cage."""
+
 GROUPS = {
     "balls": Group("ball", label="ball"),
     "contacts": Group(prefix="contact_"),
     "by_spin_roll_ratio": Group("ratio", "ratio_"),
-    "shear_strips": Group("strip", "strip_"),
-    "lubrication": Group(prefix="lubrication_"),
     "chain": Group(prefix="chain_"),
     "stability": Group(),
     "curve": Group("restitution_factor", label="restitution_factor"),
@@ -45,7 +46,25 @@ LISTS: dict[str, tuple[str, ...]] = {
     "creep_increment": ("increment",),
     "traction_coefficient": ("increment",),
     "kicks": ("kick",),
-}
+    "across": ("strip",),
+    "creep_ratio": ("strip",),
+    "sweeps": ("strip",),
+    "along": ("strip", "node"),
+    "pressure": ("strip", "node"),
+    "shear": ("strip", "node"),
+    "shear_without_slip": ("strip", "node"),
+    "slip": ("strip", "node"),
+    "position": ("time", "axis"),
+    "velocity": ("time", "axis"),
+    "ball_lead": ("time", "ball"),
+    "contact_force": ("time", "ball"),
+} | dict.fromkeys(
+    (
+        *("rotation", "rotation_rate", "land_force", "kinetic_energy", "spring_energy"),
+        *SOURCES,
+    ),
+    ("time",),
+)
 """Key of a list of numbers: its dimensions. A key that is missing here names its own."""
 
 RENAMED = {"restitution_factor": "chain_restitution_factor"}
@@ -56,16 +75,58 @@ RECORD_CLASSES = {
     "hertz": "ContactEllipse",
     "creep": "Creep",
     "equilibrium": "Equilibrium",
-    "traction": "TractionCurve",
+    "traction": "TractionCurve ShearField",
     "restitution": "Restitution",
     "chain": "RaceContact",
-    "cage": "PlanarCage Judgement",
+    "cage": "PlanarCage Judgement History",
     "stability": "CriticalFriction StabilityCurve",
     "ranking": "RankedMaterial",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""
 
-OTHER_UNITS = {"creep_spin": "1/m", "creep_curvature": "1/m2"}
+OTHER_UNITS = {
+    "creep_spin": "1/m",
+    "creep_curvature": "1/m2",
+    "azimuth": "rad",
+    "load_inner": "N",
+    "load_outer": "N",
+    "contact_angle_inner": "rad",
+    "contact_angle_outer": "rad",
+    "orbital_speed": "rad/s",
+    "pitch_angle": "rad",
+    "yaw_angle": "rad",
+    "ball_spin": "rad/s",
+    "spin_roll_ratio_inner": "-",
+    "spin_roll_ratio_outer": "-",
+    "rolling_speed_inner": "m/s",
+    "rolling_speed_outer": "m/s",
+    "centrifugal_force": "N",
+    "gyroscopic_moment": "N m",
+    "creep_increment": "-",
+    "traction_coefficient": "-",
+    "across": "m",
+    "along": "m",
+    "creep_ratio": "-",
+    "pressure": "Pa",
+    "shear": "Pa",
+    "shear_without_slip": "Pa",
+    "time": "s",
+    "position": "m",
+    "velocity": "m/s",
+    "rotation": "rad",
+    "rotation_rate": "rad/s",
+    "ball_lead": "m",
+    "contact_force": "N",
+    "land_force": "N",
+    "kinetic_energy": "J",
+    "spring_energy": "J",
+    "kick": "m/s",
+    "kicks": "m/s",
+    "drift_rate": "1/s",
+    "friction": "-",
+    "linear_limit": "-",
+} | {f"work_{source}": "J" for source in SOURCES}
+"""Units of arrays, whose type does not carry one."""
 
 
 @functools.cache
