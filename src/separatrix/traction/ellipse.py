@@ -17,6 +17,7 @@ from separatrix.traction.master import master_traction
 from separatrix.units import Array
 
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
+SECTORS = np.pi * np.array([-0.5, -0.4, -0.25, 0.0, 0.25, 0.4, 0.5])
 LEVELS = np.array([0.0, 0.5, 1.0, 2.0, 4.0, 12.0, 48.0, 192.0])
 Table = tuple[Array, Array, tuple[float, float, float, float, float]]
 
@@ -43,8 +44,9 @@ def _roots(d: float, sigma: float, eta: float) -> tuple[float, float]:
 @kernel
 def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) -> Array:
     """Edges in theta of the panels, in order, shape (edge,) [rad]."""
-    edges = np.empty(8 * levels.size + 8)
-    edges[0], edges[1], count = -0.5 * math.pi, 0.5 * math.pi, 2
+    edges = np.empty(4 * levels.size + SECTORS.size + 1)
+    edges[: SECTORS.size] = SECTORS
+    count = SECTORS.size
     if eta != 0.0 and abs(sigma) < 2.0 * abs(eta):
         edges[count] = math.asin(-0.5 * sigma / eta)
         count += 1

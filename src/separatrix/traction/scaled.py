@@ -59,7 +59,7 @@ class ScaledContact:
 
     def increments(self, table: MasterTable) -> Array:
         """41 creep increments from saturation to saturation, shape (case,) [-]."""
-        span = self.saturation * (1.5 * self.reach(table) + 1.5 * (abs(self.sigma) + abs(self.eta)))
+        span = self.saturation * (2.5 * self.reach(table) + 1.5 * (abs(self.sigma) + abs(self.eta)))
         return np.linspace(-span, span, 41)
 
     def refined_slope(self, tolerance: Ratio) -> tuple[Ratio, Ratio, int]:
