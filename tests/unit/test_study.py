@@ -502,3 +502,32 @@ def test_a_study_crosses_a_process_border():
     again = pickle.loads(pickle.dumps(example))  # noqa: S301 - our own bytes
     assert again == example
     assert again.origins == example.origins
+
+
+def test_the_page_on_study_files_names_every_key_and_every_unit():
+    """The documentation of the contract is complete."""
+    from pathlib import Path
+
+    from separatrix.study_file.sections import _READERS
+
+    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
+    for section, readers in _READERS.items():
+        assert f"## [{section}]" in page
+        for key in readers:
+            assert f"`{key}`" in page, key
+    table = (
+        page.partition("| quantity |")[2].partition("Both micro signs")[0].replace("|", ",").replace("(", ",")
+    )
+    listed = {word.strip() for word in table.split(",")}
+    for unit in {unit for known in UNITS.values() for unit in known}:
+        assert unit in listed, unit
+
+
+def test_the_toml_on_the_page_is_right(read):
+    """Both examples can be read."""
+    from pathlib import Path
+
+    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
+    variant, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
+    assert read(variant).operation.axial_load == 1500.0
+    assert read(BASE + candidate).ranking.candidates[0].name == "My compound"
