@@ -6,13 +6,11 @@ difference of the ring speeds.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba import njit
 
 from separatrix.equilibrium.groove import Touch, touch
-from separatrix.equilibrium.problem import Problem
+from separatrix.equilibrium.problem import Problem, Work
 from separatrix.equilibrium.race_control import inertia_loads, normal_slopes
 from separatrix.equilibrium.slip import friction_resultants
 from separatrix.units import Array
@@ -35,7 +33,15 @@ def slip_coefficients(p: Problem, side: float, t: Touch, state: Array, c: Array,
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def contact_friction(
-    p: Problem, side: float, t: Touch, load: float, state: Array, smoothing: float, cells: int, nodes: Array, out: Array
+    p: Problem,
+    side: float,
+    t: Touch,
+    load: float,
+    state: Array,
+    smoothing: float,
+    cells: int,
+    nodes: Array,
+    out: Array,
 ) -> None:
     """Resultants of the slip field of one contact per unit of friction and load; see `friction_resultants`."""
     c, normal = np.empty(4), np.empty(2)
@@ -102,21 +108,12 @@ def _to_ball(resultants: Array, n_x: float, n_r: float, out: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def free_ball(
-    p: Problem,
-    A: Array,
-    state: Array,
-    smoothing: float,
-    cells: int,
-    nodes: Array,
-    residual: Array,
-    by_state: Array,
-    push: Array,
-    push_by: Array,
-) -> tuple[float, float]:
-    """Force and moment balance of one ball, shape (6,), and what the inner race gives it; returns the loads.
+    p: Problem, A: Array, state: Array, smoothing: float, cells: int, nodes: Array, residual: Array, out: Work
+) -> None:
+    """Force and moment balance of one ball, shape (6,), its slopes, and what the inner race gives it.
 
-    Forces (axial, outward, orbital) [N], then couples [N m]. `by_state`, shape (6, 8): slopes with the state, then
-    with A; `push`, `push_by` (5, 8) as in `controlled_ball`.
+    Forces (axial, outward, orbital) [N], then couples [N m]. `out.by_state`, shape (6, 8): slopes with the state,
+    then with A; `out.push` and `out.push_by`, shape (5, 8), as in `controlled_ball`.
     """
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
@@ -124,38 +121,54 @@ def free_ball(
     inner, inner_by, outer, outer_by = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     contact_actions(p, -1.0, i, load_i, slope_i, state, smoothing, cells, nodes, inner, inner_by)
     contact_actions(p, 1.0, o, load_o, o.load_slope, state, smoothing, cells, nodes, outer, outer_by)
+    by_state, push, push_by = out.by_state, out.push, out.push_by
     residual[:] = inner + outer
     by_state[:, 2:6] = inner_by[:, 2:] + outer_by[:, 2:]
     by_state[:, 6:] = inner_by[:, :2]
     by_state[:, :2] = outer_by[:, :2] - inner_by[:, :2]
     _add_inertia(p, state, residual, by_state)
-    # What the ball and the ring feel: friction of the true load, and the normal loads.
+    _keep_real_friction(i, load_i, inner, inner_by, residual, by_state)
     real = min(i.load / load_i, 1.0)
-    if real < 1.0:
-        for q in range(2):
-            residual[q] -= (1.0 - real) * inner[q]
-            for k in range(2):
-                along = (i.sine if k == 0 else i.cosine) * i.load_slope / load_i * inner[q]
-                by_state[q, 6 + k] += along - (1.0 - real) * inner_by[q, k]
-                by_state[q, k] -= along - (1.0 - real) * inner_by[q, k]
-            by_state[q, 2:6] -= (1.0 - real) * inner_by[q, 2:]
-    H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
-    normal_slopes(i, H_i)
-    normal_slopes(o, H_o)
-    residual[0] += i.load * i.sine - o.load * o.sine
-    residual[1] += i.load * i.cosine - o.load * o.cosine
-    by_state[:2, :2] -= H_i + H_o
-    by_state[:2, 6:] += H_i
     for q in range(5):
         source = q if q < 3 else q + 1
         push[q] = real * inner[source]
         push_by[q, :2], push_by[q, 6:] = -real * inner_by[source, :2], real * inner_by[source, :2]
         push_by[q, 2:6] = real * inner_by[source, 2:]
-    push[0] += i.load * i.sine
-    push[1] += i.load * i.cosine
-    push_by[:2, :2] -= H_i
-    push_by[:2, 6:] += H_i
-    return i.load, o.load
+    _add_normal_loads(i, o, residual, out)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_normal_loads(i: Touch, o: Touch, residual: Array, out: Work) -> None:
+    H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
+    normal_slopes(i, H_i)
+    normal_slopes(o, H_o)
+    residual[0] += i.load * i.sine - o.load * o.sine
+    residual[1] += i.load * i.cosine - o.load * o.cosine
+    out.by_state[:2, :2] -= H_i + H_o
+    out.by_state[:2, 6:] += H_i
+    out.push[0] += i.load * i.sine
+    out.push[1] += i.load * i.cosine
+    out.push_by[:2, :2] -= H_i
+    out.push_by[:2, 6:] += H_i
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _keep_real_friction(
+    i: Touch, turning: float, inner: Array, inner_by: Array, residual: Array, by_state: Array
+) -> None:
+    """In the plane of the ball a hardly touching race pushes with its true load, not with the turning one."""
+    if i.load >= turning:
+        return
+    gone = 1.0 - i.load / turning
+    for q in range(2):
+        residual[q] -= gone * inner[q]
+        by_state[q, 2:6] -= gone * inner_by[q, 2:]
+        for k in range(2):
+            along = (i.sine if k == 0 else i.cosine) * i.load_slope / turning * inner[q] - gone * inner_by[
+                q, k
+            ]
+            by_state[q, 6 + k] += along
+            by_state[q, k] -= along
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

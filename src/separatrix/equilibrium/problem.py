@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 from separatrix.errors import InputError
@@ -30,6 +31,30 @@ class Problem(NamedTuple):
     inner_share: float  # lambda_i of the gyroscopic friction; the outer race carries 2 - lambda_i
     friction: float
     inertia_factor: float
+
+
+class Method(NamedTuple):
+    """How to solve: the force that counts as one unit [N], and the quadrature over an ellipse."""
+
+    force: float
+    cells: int
+    nodes: Array
+    coarse_cells: int
+    coarse_nodes: Array
+
+
+class Work(NamedTuple):
+    """Room for one ball of n unknowns: slopes of its balance, (n, n + 2), what it gives, (5,), and (5, n + 2)."""
+
+    by_state: Array
+    push: Array
+    push_by: Array
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def work(n: int) -> Work:
+    """Empty room for a ball of n unknowns."""
+    return Work(np.zeros((n, n + 2)), np.zeros(5), np.zeros((5, n + 2)))
 
 
 def problem(bearing: BallBearing, operation: Operation, inner_share: float, friction: float) -> Problem:

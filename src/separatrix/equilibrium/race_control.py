@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from separatrix.equilibrium.groove import Touch, touch
-from separatrix.equilibrium.problem import Problem, solve_linear
+from separatrix.equilibrium.problem import Problem, Work
 from separatrix.units import Array
 
 
@@ -68,10 +68,10 @@ def normal_slopes(t: Touch, slopes: Array) -> None:
 def inner_share(p: Problem, load: float) -> tuple[float, float]:
     """Share lambda_i of the gyroscopic friction and its slope with the inner load.
 
-    A ball that leaves the inner race cannot be controlled by it: below a tenth of the centrifugal force (taken
-    at half the ring speed) the share falls smoothly to 0.
+    A ball that leaves the inner race cannot be controlled by it: where the inner load is less than the
+    centrifugal force (taken at 0.45 of the ring speed) the share falls smoothly to 0.
     """
-    full = 0.1 * inertia_loads(p, 0.45, 0.0)[0]
+    full = inertia_loads(p, 0.45, 0.0)[0]
     if p.inner_share == 0.0 or load >= full:
         return p.inner_share, 0.0
     t = load / full
@@ -79,39 +79,44 @@ def inner_share(p: Problem, load: float) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def controlled_ball(
-    p: Problem, A: Array, state: Array, residual: Array, by_state: Array, push: Array, push_by: Array
-) -> tuple[float, float]:
-    """Force balance of one ball, shape (2,) [N], and what the inner race gives the ball; returns the loads.
+def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Work) -> None:
+    """Force balance of one ball, shape (2,) [N], its slopes, and what the inner race gives the ball.
 
-    `by_state`, shape (2, 4), holds the slopes of the balance with V and with A. `push`, shape (5,), is (axial,
-    outward, orbital force, outward couple, orbital couple); `push_by`, shape (5, 4), its slopes.
+    `out.by_state`, shape (2, 4): slopes of the balance with V and with A. `out.push`: (axial, outward, orbital
+    force, outward couple, orbital couple) of the inner race on the ball; `out.push_by`, shape (5, 4), its slopes.
     """
-    D = p.ball_diameter
+    D, push = p.ball_diameter, out.push
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
-    angle_i, angle_o = math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine)
-    F, G = _inertia_at(p, angle_i, angle_o)
-    F_i, G_i, F_o, G_o = _inertia_slopes(p, angle_i, angle_o)
-    share, share_slope = inner_share(p, i.load)
-    T_i, T_o = share * G / D, (2.0 - share) * G / D  # friction across the grooves carries the gyroscopic moment
+    F, G = _inertia_at(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine))
+    share, _ = inner_share(p, i.load)
+    T_i, T_o = share * G / D, (2.0 - share) * G / D  # friction across the grooves carries the moment
     push[:] = 0.0
     push[0] = i.load * i.sine + T_i * i.cosine
     push[1] = i.load * i.cosine - T_i * i.sine
     push[4] = 0.5 * D * T_i
     residual[0] = push[0] - o.load * o.sine - T_o * o.cosine
     residual[1] = push[1] - o.load * o.cosine + T_o * o.sine + F
+    _controlled_slopes(p, i, o, G, out)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> None:
+    """Slopes of the balance; with w = A - V they enter V negative and A positive."""
+    D, push_by, by_state = p.ball_diameter, out.push_by, out.by_state
+    F_i, G_i, F_o, G_o = _inertia_slopes(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine))
+    share, share_slope = inner_share(p, i.load)
+    T_i, T_o = share * G / D, (2.0 - share) * G / D
     H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
     normal_slopes(i, H_i)
     normal_slopes(o, H_o)
+    push_by[:, :] = 0.0
     for k in range(2):
-        # slopes with w = A - V (inner) and with V (outer); V enters as outer - inner, A as inner
-        a_i = (i.cosine if k == 0 else -i.sine) / i.length
+        a_i = (i.cosine if k == 0 else -i.sine) / i.length  # slopes of the angles with w and V
         a_o = (o.cosine if k == 0 else -o.sine) / o.length
         moved = share_slope * i.load_slope * (i.sine if k == 0 else i.cosine) * G / D
         Ti_w, Ti_v = share * G_i * a_i / D + moved, share * G_o * a_o / D
         To_w, To_v = (2.0 - share) * G_i * a_i / D - moved, (2.0 - share) * G_o * a_o / D
-        push_by[:, k], push_by[:, 2 + k] = 0.0, 0.0
         push_by[0, 2 + k] = H_i[0, k] + Ti_w * i.cosine - T_i * i.sine * a_i
         push_by[1, 2 + k] = H_i[1, k] - Ti_w * i.sine - T_i * i.cosine * a_i
         push_by[4, 2 + k] = 0.5 * D * Ti_w
@@ -124,7 +129,6 @@ def controlled_ball(
         outer_r = H_o[1, k] - To_v * o.sine - T_o * o.cosine * a_o - F_o * a_o
         by_state[0, k] = push_by[0, k] - outer_x + To_w * o.cosine
         by_state[1, k] = push_by[1, k] - outer_r - To_w * o.sine - F_i * a_i
-    return i.load, o.load
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

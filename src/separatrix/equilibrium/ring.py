@@ -7,17 +7,31 @@ azimuth psi_j from y towards z. Loads are conjugate to q.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from separatrix.equilibrium.ball import solve_controlled, solve_free
+from separatrix.equilibrium.continuation import SMOOTHING, slopes_with_ring, solve_free
+from separatrix.equilibrium.controlled import solve_controlled
 from separatrix.equilibrium.groove import static_split
-from separatrix.equilibrium.problem import Problem, solve_linear
+from separatrix.equilibrium.problem import Method, Problem, Work, solve_linear, work
 from separatrix.units import Array
 
-STATIC, CONTROLLED, FREE = 0, 2, 6
-"""Number of unknowns of a ball, which names its model."""
+STATIC, CONTROLLED, FREE = 3, 2, 6
+"""Length of the state of a ball, which names its model; of the three numbers of STATIC two are used."""
+
+IntArray = NDArray[np.int64]
+
+
+class Balls(NamedTuple):
+    """Loads on the ring, its degrees of freedom, and the balls to solve, each standing for `weight` balls."""
+
+    loads: Array
+    dofs: IntArray
+    azimuths: Array
+    weight: float
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -57,73 +71,42 @@ def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def moving_ball(
-    p: Problem,
-    A: Array,
-    state: Array,
-    force: float,
-    cells: int,
-    nodes: Array,
-    coarse_nodes: Array,
-    push: Array,
-    by_ring: Array,
-) -> float:
+def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, by_ring: Array) -> float:
     """Ball with inertia, solved; returns 0, or how far the smoothing of friction came (inf: nowhere)."""
-    n = state.shape[0]
-    by_state, push_by = np.zeros((n, n + 2)), np.zeros((5, n + 2))
-    if n == CONTROLLED:
-        if not solve_controlled(p, A, state, force, nodes, by_state, push, push_by):
+    if state.shape[0] == CONTROLLED:
+        if not solve_controlled(p, A, state, method, out):
             return math.inf
     else:
-        reached = solve_free(p, A, state, force, cells, nodes, coarse_nodes, by_state, push, push_by)
-        if reached > 1e-4:
+        reached = solve_free(p, A, state, method, out)
+        if reached > SMOOTHING:
             return reached
-    answer = by_state[:, n:].copy()
-    if not solve_linear(by_state[:, :n].copy(), answer):
-        return math.inf
-    for row in range(5):
-        for k in range(2):
-            total = push_by[row, n + k]
-            for j in range(n):
-                total -= push_by[row, j] * answer[j, k]
-            by_ring[row, k] = total
-    return 0.0
+    return 0.0 if slopes_with_ring(out, by_ring) else math.inf
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def ring_balance(
-    p: Problem,
-    q: Array,
-    loads: Array,
-    azimuths: Array,
-    weight: float,
-    states: Array,
-    force: float,
-    cells: int,
-    nodes: Array,
-    coarse_nodes: Array,
-    balance: Array,
-    slopes: Array,
+    p: Problem, q: Array, setup: Balls, states: Array, method: Method, balance: Array, slopes: Array
 ) -> tuple[float, int]:
-    """Loads less what the balls carry, shape (5,), and slopes with q, (5, 5); each ball stands for `weight`.
+    """Loads less what the balls carry, shape (5,), and slopes with q, (5, 5).
 
     Returns 0, or the smoothing reached by the ball that failed, and its number.
     """
-    balance[:] = loads
+    balance[:] = setup.loads
     slopes[:, :] = 0.0
-    A, push, by_ring = np.empty(2), np.zeros((5, 1)), np.zeros((5, 2))
-    total, total_by = np.empty((5, 1)), np.empty((5, 2))
-    for j in range(azimuths.size):
-        groove_vector(p, q, azimuths[j], A)
-        if states.shape[1] == STATIC + 3:
-            static_ball(p, A, states[j], push[:, 0], by_ring)
+    A, by_ring, out = np.empty(2), np.zeros((5, 2)), work(states.shape[1])
+    total, total_by, weight, arm = np.empty((5, 1)), np.empty((5, 2)), setup.weight, 0.5 * p.pitch_diameter
+    for j in range(setup.azimuths.size):
+        azimuth = setup.azimuths[j]
+        groove_vector(p, q, azimuth, A)
+        if states.shape[1] == STATIC:
+            static_ball(p, A, states[j], out.push, by_ring)
         else:
-            reached = moving_ball(p, A, states[j], force, cells, nodes, coarse_nodes, push[:, 0], by_ring)
+            reached = moving_ball(p, A, states[j], method, out, by_ring)
             if reached > 0.0:
                 return reached, j
-        push_on_ring(p, azimuths[j], push, total)
-        push_on_ring(p, azimuths[j], by_ring, total_by)
-        s, c, arm = math.sin(azimuths[j]), math.cos(azimuths[j]), 0.5 * p.pitch_diameter
+        push_on_ring(p, azimuth, out.push.reshape((5, 1)), total)
+        push_on_ring(p, azimuth, by_ring, total_by)
+        s, c = math.sin(azimuth), math.cos(azimuth)
         for row in range(5):
             balance[row] -= weight * total[row, 0]
             x, r = weight * total_by[row, 0], weight * total_by[row, 1]
@@ -136,86 +119,75 @@ def ring_balance(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def unbalance(balance: Array, dofs: Array, arm: float) -> float:
-    """Largest unbalanced load over the degrees of freedom `dofs`, moments over the arm [N]."""
+def unbalance(balance: Array, dofs: IntArray, arm: float) -> float:
+    """Root of the sum of squares of the unbalanced loads in `dofs`, moments over the arm [N]."""
+    total = 0.0
+    for d in dofs:
+        total += (balance[d] / (arm if d > 2 else 1.0)) ** 2
+    return math.sqrt(total)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _ring_step(
+    balance: Array, slopes: Array, dofs: IntArray, arm: float, damping: float, step: Array
+) -> bool:
+    """Newton step over `dofs`, turns times the arm [m], shape (n, 1); `damping` [N/m] shortens it."""
+    n = dofs.size
+    matrix = np.empty((n, n))
+    for i in range(n):
+        unit = arm if dofs[i] > 2 else 1.0
+        step[i, 0] = -balance[dofs[i]] / unit
+        for k in range(n):
+            matrix[i, k] = slopes[dofs[i], dofs[k]] / (unit * (arm if dofs[k] > 2 else 1.0))
+        matrix[i, i] -= damping
+    return solve_linear(matrix, step)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
     worst = 0.0
     for d in dofs:
-        worst = max(worst, abs(balance[d]) / (arm if d > 2 else 1.0))
+        worst = max(worst, abs(slopes[d, d]) / (arm * arm if d > 2 else 1.0))
     return worst
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve_ring(
-    p: Problem,
-    q: Array,
-    loads: Array,
-    dofs: Array,
-    azimuths: Array,
-    weight: float,
-    states: Array,
-    force: float,
-    cells: int,
-    nodes: Array,
-    coarse_nodes: Array,
-    tolerance: float,
-    limit: int,
+    p: Problem, q: Array, setup: Balls, states: Array, method: Method, tolerance: float, limit: int
 ) -> tuple[float, int, float, int]:
-    """Newton with step halving on the ring from `q`, in place, over the degrees of freedom `dofs`.
+    """Damped Newton (Levenberg) on the ring from `q` and `states`, both in place.
 
     Returns the unbalance [N], iterations, the smoothing at which a ball failed (0: none) and its number.
     """
-    arm, n = 0.5 * p.pitch_diameter, dofs.size
-    balance, slopes = np.empty(5), np.empty((5, 5))
-    matrix, step = np.empty((n, n)), np.empty((n, 1))
+    dofs, arm, n = setup.dofs, 0.5 * p.pitch_diameter, setup.dofs.size
+    balance, slopes, step = np.empty(5), np.empty((5, 5)), np.empty((n, 1))
     span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
-    failed, ball = ring_balance(
-        p, q, loads, azimuths, weight, states, force, cells, nodes, coarse_nodes, balance, slopes
-    )
+    failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
     if failed > 0.0:
         return math.inf, 0, failed, ball
-    rest = unbalance(balance, dofs, arm)
-    good_q, good_states = q.copy(), states.copy()
-    damping = 0.0
+    rest, good_q, good_states = unbalance(balance, dofs, arm), q.copy(), states.copy()
+    good_balance, good_slopes, damping = balance.copy(), slopes.copy(), 0.0
     for iteration in range(limit):
         if rest <= tolerance:
             return rest, iteration, 0.0, -1
-        stiffest = 0.0
-        for i in range(n):
-            unit = arm if dofs[i] > 2 else 1.0
-            step[i, 0] = -balance[dofs[i]] / unit
-            for k in range(n):
-                matrix[i, k] = slopes[dofs[i], dofs[k]] / (unit * (arm if dofs[k] > 2 else 1.0))
-            stiffest = max(stiffest, abs(matrix[i, i]))
-        floor = max(stiffest, force / span)
-        for i in range(n):
-            matrix[i, i] -= (1e-14 + damping) * floor
-        if not solve_linear(matrix, step):
-            return rest, iteration, 0.0, -1
-        size = np.max(np.abs(step))
-        stride = min(1.0, 0.2 * span / max(size, 1e-300))
-        moved = False
-        for _ in range(10):
+        floor = max(_stiffest(good_slopes, dofs, arm), method.force / span)
+        solved = _ring_step(good_balance, good_slopes, dofs, arm, (1e-14 + damping) * floor, step)
+        now = math.inf
+        if solved:
+            stride = min(1.0, 0.2 * span / max(np.max(np.abs(step)), 1e-300))
             for i in range(n):
                 q[dofs[i]] = good_q[dofs[i]] + stride * step[i, 0] / (arm if dofs[i] > 2 else 1.0)
             states[:] = good_states
-            failed, ball = ring_balance(
-                p, q, loads, azimuths, weight, states, force, cells, nodes, coarse_nodes, balance, slopes
-            )
+            failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
             now = unbalance(balance, dofs, arm) if failed == 0.0 else math.inf
-            if now <= (1.0 - 0.05 * stride) * rest:
-                moved = True
-                break
-            stride *= 0.4
-        if moved:
+        if now < rest:
             rest = now
             good_q[:], good_states[:] = q, states
-            damping *= 0.1
-            if damping < 1e-9:
-                damping = 0.0
-            continue
-        q[:], states[:] = good_q, good_states
-        ring_balance(p, q, loads, azimuths, weight, states, force, cells, nodes, coarse_nodes, balance, slopes)
-        if damping > 1e3:
-            return rest, iteration, failed, ball
-        damping = max(10.0 * damping, 1e-6)
-    return rest, limit, 0.0, -1
+            good_balance[:], good_slopes[:] = balance, slopes
+            damping = 0.1 * damping if damping > 1e-9 else 0.0
+        elif damping > 1e4:
+            break
+        else:
+            damping = max(6.0 * damping, 1e-5)
+    q[:], states[:] = good_q, good_states
+    return rest, limit, failed if rest > 1e3 * tolerance else 0.0, ball

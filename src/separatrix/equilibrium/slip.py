@@ -44,7 +44,15 @@ def _sum(v: float, r: float, s2: float) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def friction_resultants(
-    c: Array, a: float, b: float, height: float, radius: float, smoothing: float, cells: int, nodes: Array, out: Array
+    c: Array,
+    a: float,
+    b: float,
+    height: float,
+    radius: float,
+    smoothing: float,
+    cells: int,
+    nodes: Array,
+    out: Array,
 ) -> None:
     """Resultants of v/sqrt(|v|^2 + smoothing^2) weighted by the Hertz pressure, per unit load.
 
@@ -63,7 +71,11 @@ def friction_resultants(
         weight = 0.75 * (1.0 - mean_square) * step
         s = math.sqrt(1.0 - mean_square)
         y1, y2, y = a * e1, a * e2, 0.5 * a * (e1 + e2)
-        d1, d2, d = math.sqrt(radius**2 - y1 * y1), math.sqrt(radius**2 - y2 * y2), math.sqrt(radius**2 - y * y)
+        d1, d2, d = (
+            math.sqrt(radius**2 - y1 * y1),
+            math.sqrt(radius**2 - y2 * y2),
+            math.sqrt(radius**2 - y * y),
+        )
         h1, h2, h = height - radius + d1, height - radius + d2, height - radius + d
         v1, v2 = c[0] * y1 + c[1] * h1 + c[2], c[0] * y2 + c[1] * h2 + c[2]
         # growth of the slip with ln(load): y, x grow by a third, h by y h'(y) / 3

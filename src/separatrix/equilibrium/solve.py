@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from separatrix.equilibrium.problem import Problem, problem
+from separatrix.equilibrium.problem import Method, Problem, problem
 from separatrix.equilibrium.race_control import inertia_loads
 from separatrix.equilibrium.record import Equilibrium
-from separatrix.equilibrium.ring import FREE, STATIC, solve_ring
+from separatrix.equilibrium.ring import FREE, STATIC, Balls, solve_ring
 from separatrix.equilibrium.slip import chebyshev_nodes
 from separatrix.equilibrium.speeds import ball_table, controlled_states, settle_free_states
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import BallBearing, KinematicModel, Operation, Race
 from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio
 
-CELLS, NODES, COARSE_NODES = 48, chebyshev_nodes(24), chebyshev_nodes(8)
-"""Quadrature over an ellipse: strips across the groove, places along rolling, and those of the first approach."""
+CELLS, NODES, COARSE_CELLS, COARSE_NODES = 48, chebyshev_nodes(24), 16, chebyshev_nodes(8)
+"""Quadrature over an ellipse: strips across the groove and places along rolling; the same, for a first approach."""
 
-LIMIT = 60
+LIMIT = 150
 """Newton steps of the ring; a usual case takes 3 to 8."""
 
 
@@ -68,7 +67,7 @@ def equilibrium(
     Jones and Harris for race control, the gyroscopic friction split 0 to 2; without it the slip fields over both
     ellipses decide (docs/theory/equilibrium.md). Rigid rings, steady speeds, dry Coulomb friction, no cage force.
     """
-    _check(bearing, operation, model, race_friction, cross_moment)
+    _check(model, race_friction)
     share = 2.0 if model is KinematicModel.INNER_RACE_CONTROL else 0.0
     p = problem(bearing, operation, share, race_friction)
     setup = _setup(bearing, operation, p, cross_moment)
@@ -78,70 +77,53 @@ def equilibrium(
         if model is KinematicModel.FREE:
             q, iterations, rest, states = _free(p, setup, q, states, iterations)
     if states.shape[1] != FREE:
-        states = controlled_states(p, q, setup.azimuths, states)
+        states = controlled_states(p, q, setup.balls.azimuths, states)
         if model is KinematicModel.FREE:
-            ball = settle_free_states(p, q, setup.azimuths, states, CELLS, NODES)
+            ball = settle_free_states(p, q, setup.balls.azimuths, states, setup.method)
             if ball >= 0:
                 raise ConvergenceError(_not_free(math.inf, ball), iterations, rest)
     return _finished(p, setup, model, q, states, iterations, rest)
 
 
-@dataclass(frozen=True, slots=True)
-class _Setup:
-    """Loads, degrees of freedom and the balls to solve: one for all where load and ring make them alike."""
+class _Setup(NamedTuple):
+    """The ring and its balls, how to solve them, and what counts as balanced."""
 
-    loads: Array
+    balls: Balls
+    method: Method
     held_tilt: Radian
-    dofs: NDArray[np.int64]
-    azimuths: Array
-    weight: float
     ball_count: int
-    force: Newton
     tolerance: Newton
 
 
 def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Setup:
+    """Collect the loads; one ball stands for all where load and ring make them alike."""
     Z, arm = bearing.ball_count, 0.5 * bearing.pitch_diameter
-    moment = 0.0 if operation.tilt is not None else operation.moment
-    loads = np.array([operation.axial_load, operation.radial_load, 0.0, cross_moment, -moment])
+    loads = np.array([operation.axial_load, operation.radial_load, 0.0, cross_moment, -operation.moment])
     tilt = operation.tilt or 0.0
     alike = not loads[1:].any() and tilt == 0.0
     dofs = [0] if alike else [0, 1, 2] if operation.tilt is not None else [0, 1, 2, 3, 4]
-    carried = max(abs(operation.axial_load), abs(operation.radial_load), abs(moment) / arm, abs(cross_moment) / arm)
+    carried = float(np.abs(loads / (1.0, 1.0, 1.0, arm, arm)).max())
+    force = carried / Z + inertia_loads(p, 0.45, 0.0)[0]
+    azimuths = 2.0 * np.pi * np.arange(1 if alike else Z) / Z
     return _Setup(
-        loads=loads,
+        balls=Balls(loads, np.array(dofs, dtype=np.int64), azimuths, float(Z) if alike else 1.0),
+        method=Method(force, CELLS, NODES, COARSE_CELLS, COARSE_NODES),
         held_tilt=tilt,
-        dofs=np.array(dofs, dtype=np.int64),
-        azimuths=2.0 * np.pi * np.arange(1 if alike else Z) / Z,
-        weight=float(Z) if alike else 1.0,
         ball_count=Z,
-        force=carried / Z + inertia_loads(p, 0.45, 0.0)[0],
         tolerance=1e-9 * carried,
     )
 
 
 def _solve(p: Problem, setup: _Setup, q: Array, states: Array) -> tuple[float, int, float, int]:
     answer: tuple[float, int, float, int] = solve_ring(
-        p,
-        q,
-        setup.loads,
-        setup.dofs,
-        setup.azimuths,
-        setup.weight,
-        states,
-        setup.force,
-        CELLS,
-        NODES,
-        COARSE_NODES,
-        setup.tolerance,
-        LIMIT,
+        p, q, setup.balls, states, setup.method, setup.tolerance, LIMIT
     )
     return answer
 
 
 def _static(p: Problem, setup: _Setup) -> tuple[Array, int, Newton, Array]:
     """Ring and balls without inertia: a convex problem, solved from a ring pressed along its load."""
-    q, states = np.zeros(5), np.zeros((setup.azimuths.size, STATIC + 3))
+    q, states = np.zeros(5), np.zeros((setup.balls.azimuths.size, STATIC))
     q[4] = -setup.held_tilt
     rest, iterations, _, _ = _solve(p, setup, q, states)
     if rest > 1e3 * setup.tolerance:
@@ -174,9 +156,11 @@ def _controlled(
     return q, iterations, rest, states
 
 
-def _free(p: Problem, setup: _Setup, q: Array, states: Array, iterations: int) -> tuple[Array, int, Newton, Array]:
+def _free(
+    p: Problem, setup: _Setup, q: Array, states: Array, iterations: int
+) -> tuple[Array, int, Newton, Array]:
     """Ring and balls without race control, from the answer under outer race control."""
-    full = controlled_states(p, q, setup.azimuths, states)
+    full = controlled_states(p, q, setup.balls.azimuths, states)
     rest, count, failed, ball = _solve(p, setup, q, full)
     iterations += count
     if failed > 0.0:
@@ -201,24 +185,19 @@ def _not_free(reached: float, ball: int) -> str:
     )
 
 
-def _check(
-    bearing: BallBearing, operation: Operation, model: KinematicModel, race_friction: Ratio, cross_moment: NewtonMetre
-) -> None:
-    if operation.axial_load < 0.0 and bearing.contact_angle > 0.0:
-        cure = "Positive axial load presses the inner ring on; give its magnitude."
-        raise InputError("[operation] axial_load", "lifts the inner ring off", "N", f"{operation.axial_load:g}", cure)
-    if not any((operation.axial_load, operation.radial_load, operation.moment, operation.tilt, cross_moment)):
-        cure = "Without load the inner ring floats; give an axial load."
-        raise InputError("[operation] axial_load", "must not be 0 with no other load", "N", "0", cure)
+def _check(model: KinematicModel, race_friction: Ratio) -> None:
     if model is KinematicModel.FREE and not 0.0 < race_friction < math.inf:
-        cure = "Without friction nothing turns the balls; give a small value, or use race control."
-        raise InputError("[film] race_friction", "must be > 0 without race control", "-", f"{race_friction:g}", cure)
+        rule, cure = (
+            "must be > 0 without race control",
+            "Without friction nothing turns the balls; use race control.",
+        )
+        raise InputError("[film] race_friction", rule, "-", f"{race_friction:g}", cure)
 
 
 def _finished(
     p: Problem, setup: _Setup, model: KinematicModel, q: Array, states: Array, iterations: int, rest: Newton
 ) -> Equilibrium:
-    table = ball_table(p, q, setup.azimuths, states)
+    table = ball_table(p, q, setup.balls.azimuths, states)
     Z = setup.ball_count
     rows = np.broadcast_to(table, (Z, table.shape[1])) if table.shape[0] == 1 else table
     column = [np.ascontiguousarray(rows[:, k]) for k in range(rows.shape[1])]
@@ -246,7 +225,7 @@ def _finished(
         transverse_displacement=float(q[2]),
         tilt=float(-q[4]),
         cross_tilt=float(q[3]),
-        moment=float(-setup.loads[4]),
+        moment=float(-setup.balls.loads[4]),
         iterations=iterations,
         residual=float(rest),
     )

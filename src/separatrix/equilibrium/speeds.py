@@ -7,10 +7,11 @@ import math
 import numpy as np
 from numba import njit
 
-from separatrix.equilibrium.ball import kinematic_start, solve_kinematics
+from separatrix.equilibrium.continuation import solve_kinematics
+from separatrix.equilibrium.controlled import kinematic_start
 from separatrix.equilibrium.free import slip_coefficients
 from separatrix.equilibrium.groove import Touch, touch
-from separatrix.equilibrium.problem import Problem
+from separatrix.equilibrium.problem import Method, Problem
 from separatrix.equilibrium.race_control import inertia_loads
 from separatrix.equilibrium.ring import groove_vector
 from separatrix.hertz import elliptic_integrals
@@ -25,7 +26,7 @@ def _grip(t: Touch) -> float:
     """Jones's measure of how well a race holds the spin of a ball, Q a E [N m]."""
     K, D, _ = elliptic_integrals(t.axis_ratio)
     E = K - (1.0 - t.axis_ratio) * (1.0 + t.axis_ratio) * D
-    return t.major_coefficient * t.load ** (4.0 / 3.0) * E
+    return float(t.major_coefficient * t.load ** (4.0 / 3.0) * E)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -78,11 +79,11 @@ def controlled_states(p: Problem, q: Array, azimuths: Array, states: Array) -> A
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def settle_free_states(p: Problem, q: Array, azimuths: Array, states: Array, cells: int, nodes: Array) -> int:
+def settle_free_states(p: Problem, q: Array, azimuths: Array, states: Array, method: Method) -> int:
     """Bring orbit and spin of every ball to the free balance with V held; -1, or the first ball that fails."""
     A = np.empty(2)
     for j in range(azimuths.size):
         groove_vector(p, q, azimuths[j], A)
-        if not solve_kinematics(p, A, states[j], cells, nodes):
+        if not solve_kinematics(p, A, states[j], method):
             return j
     return -1
