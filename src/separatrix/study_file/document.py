@@ -10,7 +10,7 @@ from typing import Any
 
 from separatrix.errors import InputError
 from separatrix.study_file.shipped import shipped_studies
-from separatrix.study_file.text import label_of, read_toml
+from separatrix.study_file.text import label_of, path_text, read_toml
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
@@ -71,7 +71,7 @@ def find(study: str | Path) -> Path:
     if text in shipped:
         return shipped[text]
     if not _exists(path):
-        raise InputError(label_of(path), "does not exist", cure=_shipped_names(text))
+        raise InputError(path_text(path), "does not exist", cure=_shipped_names(text))
     return path
 
 

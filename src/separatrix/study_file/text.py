@@ -35,6 +35,12 @@ def label_of(path: Path) -> str:
     return printable(path.name or str(path))
 
 
+def path_text(path: Path) -> str:
+    """A path as the user wrote it, on one line; only its name if it is long."""
+    text = printable(str(path), 200)
+    return text if len(text) <= 80 else label_of(path)
+
+
 def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
     """Content of a TOML file, and the line of each key as a dotted path.
 
@@ -82,20 +88,21 @@ def _plain(key: str) -> str:
 def _text(path: Path, label: str) -> str:
     try:
         mode = path.stat().st_mode
-        if not stat.S_ISREG(mode):
-            raise InputError(
-                label, "is a folder, not a file" if stat.S_ISDIR(mode) else "is not a regular file"
-            )
-        with path.open("rb") as file:
-            raw = file.read(MOST_BYTES + 1)
+        raw = _bytes(path) if stat.S_ISREG(mode) else None  # a pipe or a device may never end
     except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
         reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
-        raise InputError(label, f"cannot be read: {reason[:1].lower()}{reason[1:]}") from None
+        raise InputError(path_text(path), f"cannot be read: {reason[:1].lower()}{reason[1:]}") from None
+    if raw is None:
+        rule = "is a folder, not a file" if stat.S_ISDIR(mode) else "is not a regular file"
+        raise InputError(path_text(path), rule)
     if len(raw) > MOST_BYTES:
         raise InputError(label, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
     return _decoded(raw, label)
+
+
+def _bytes(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(MOST_BYTES + 1)
 
 
 def _decoded(raw: bytes, label: str) -> str:
