@@ -133,3 +133,30 @@ def test_any_value_for_any_key_is_taken_or_refused_in_one_line(tmp_path: Path, d
     path = tmp_path / "changed.toml"
     path.write_text(text, encoding="utf-8", errors="replace")
     refused_in_one_line(lambda: read_study(path))
+
+
+OTHER_UNITS = {
+    '"11.1125 mm"': '"0.4375 in"',
+    '"65 mm"': '"6.5 cm"',
+    '"50 mm"': '"50000 um"',
+    '"15000 rpm"': '"250 Hz"',
+    '"300 daN"': '"3 kN"',
+    '"0.5 um"': '"500 nm"',
+    '"25 g"': '"0.025 kg"',
+    '"3e6 N/m"': '"3 kN/mm"',
+    '"0.6 mm"': '"600 µm"',
+    '"1 mm"': '"1e-3 m"',
+    '"77 K"': '"77000e-3 K"',
+    '"25 deg"': '"1500 arcmin"',
+}
+
+
+def test_a_change_of_units_changes_nothing_to_the_last_bit(tmp_path):
+    """The shipped example, every quantity in another unit, is the same study."""
+    text = EXAMPLE
+    for old, new in OTHER_UNITS.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "cryogenic-turbopump.toml"
+    path.write_text(text, encoding="utf-8")
+    assert read_study(path) == read_study("cryogenic-turbopump")

@@ -52,7 +52,7 @@ def _in_place(document: Document, items: Any) -> dict[str, Any]:
         rule = f"must be 1 to {MOST_CANDIDATES} tables, each under [[ranking.candidates]]"
         raise InputError(place, rule, "", shown(items))
     before = len(document.problems)
-    found = [attempt(document, lambda i=i: _candidate(document, items[i], i)) for i in range(len(items))]  # type: ignore[misc]
+    found = [attempt(document, _candidate, document, item, i) for i, item in enumerate(items)]
     candidates = [item for item in found if item is not None]
     if len(document.problems) > before:
         raise Unfinished

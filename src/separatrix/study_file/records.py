@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import MISSING, fields
-from typing import Any, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from separatrix.errors import InputError, together
 from separatrix.study_file.document import Document
 from separatrix.units import printable, shown
 
 Record = TypeVar("Record")
+Inputs = ParamSpec("Inputs")
 
 _SECTION_OF = {
     "BallBearing": "bearing",
@@ -26,10 +27,12 @@ class Unfinished(Exception):  # noqa: N818 - not an error: it never leaves this 
     """A section cannot be built because one of its values was refused already."""
 
 
-def attempt(document: Document, make: Callable[[], Record]) -> Record | None:
+def attempt(
+    document: Document, make: Callable[Inputs, Record], *args: Inputs.args, **kwargs: Inputs.kwargs
+) -> Record | None:
     """What `make` returns, or None with its refusals noted in the document."""
     try:
-        return make()
+        return make(*args, **kwargs)
     except InputError as error:
         document.problems.extend(error.problems or (error,))
     except Unfinished:

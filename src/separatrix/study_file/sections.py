@@ -78,7 +78,7 @@ def build_study(document: Document, name: str) -> Study:
     InputError
         With everything that is wrong, on one line.
     """
-    title = attempt(document, lambda: _title(document, name))
+    title = attempt(document, _title, document, name)
     parts = _parts(document)
     if missing := [f"[{section}]" for section in _REQUIRED_SECTIONS if section not in document.sections]:
         rule = f"lacks the section{'s'[: len(missing) > 1]} {', '.join(missing)}"
@@ -97,8 +97,7 @@ def _parts(document: Document) -> dict[str, Any]:
     for section in SECTIONS:
         if section in document.sections:
             given = _converted(document, section)
-            make = _MAKERS[section]
-            parts[section] = attempt(document, lambda m=make, g=given: m(document, g))  # type: ignore[misc]
+            parts[section] = attempt(document, _MAKERS[section], document, given)
     return parts
 
 
@@ -113,7 +112,9 @@ def _converted(document: Document, section: str) -> dict[str, Any]:
     for key, entry in document.sections[section].items():
         if len(document.problems) > MOST_PROBLEMS:
             break
-        attempt(document, lambda k=key, e=entry: converted.update({k: _read(document, section, k, e)}))  # type: ignore[misc]
+        value = attempt(document, _read, document, section, key, entry)
+        if value is not None:
+            converted[key] = value
     return converted
 
 
