@@ -37,7 +37,9 @@ def disagreement(threshold: Ratio, eta: Ratio, verdict: Verdict) -> str:
     """
     limit, inapt = SOLID_LUBRICATION_LIMIT, threshold < SOLID_LUBRICATION_LIMIT
     if inapt and verdict is Verdict.STABLE:
-        return f"The paper would call it inapt: it holds less than {limit:g} out of reach; this film gives {eta:.2f}."
+        return (
+            f"The paper would call it inapt: less than {limit:g} is out of reach; this film gives {eta:.2f}."
+        )
     if not inapt and verdict is Verdict.UNSTABLE:
         return f"The paper would keep it: it needs no less than {limit:g}; but this film gives {eta:.2f}."
     return ""

@@ -50,9 +50,9 @@ def find_crossing(counter: Counter, grid: Sequence[Ratio], target: Ratio, start:
         return counter(grid[i], target).share >= target
 
     last = len(grid) - 1
-    if above(0):
+    if reaches(counter, grid[0], target):
         return Side.ABOVE
-    if not above(last):
+    if not reaches(counter, grid[last], target):
         return Side.BELOW
     low, high = _bracket(above, min(max(start, 1), last - 1), last)
     while high - low > 1:
@@ -61,7 +61,15 @@ def find_crossing(counter: Counter, grid: Sequence[Ratio], target: Ratio, start:
     return _settled(counter, grid, target, low)
 
 
-def _settled(counter: Counter, grid: Sequence[Ratio], target: Ratio, cell: int) -> Crossing:
+def reaches(counter: Counter, at: Ratio, target: Ratio) -> bool:
+    """True if P reaches the target at a coordinate; a first look in which all runs agree is enough."""
+    look = counter(at, 0.5)
+    if look.grown in (0, look.runs):
+        return look.grown > 0
+    return counter(at, target).share >= target
+
+
+def _settled(counter: Counter, grid: Sequence[Ratio], target: Ratio, cell: int) -> Crossing | Side:
     """Crossing in the cell at whose ends P lies on either side of the target by all the runs."""
     last = len(grid) - 1
     while cell > 0 and counter(grid[cell], None).share >= target:
@@ -69,6 +77,10 @@ def _settled(counter: Counter, grid: Sequence[Ratio], target: Ratio, cell: int) 
     while cell + 1 < last and counter(grid[cell + 1], None).share < target:
         cell += 1
     shares = counter(grid[cell], None).share, counter(grid[cell + 1], None).share
+    if cell == 0 and shares[0] >= target:
+        return Side.ABOVE
+    if shares[1] < target:
+        return Side.BELOW
     return Crossing(_between(grid[cell], grid[cell + 1], shares, target), cell)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage, linear_critical_friction
-from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing, interval
+from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing, interval, reaches
 from separatrix.stability.growth import Count, GrowthCounter, cage_at
 from separatrix.stability.pool import Progress, work_through
 from separatrix.study import StabilitySettings
@@ -22,6 +22,9 @@ FRICTION_GRID: tuple[Ratio, ...] = (
     *(SEARCHED_FRICTION * 10 ** (-i / _STEPS_A_DECADE) for i in range(2 * _STEPS_A_DECADE + 12, -1, -1)),
 )
 """Frictions at which runs are counted; between two of them the shares are joined by a line."""
+
+BAND_CELLS = 4
+"""A guess of how far the band's ends lie from its middle; it costs or saves time only."""
 
 Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
 """Where P crosses a target, from which kick."""
@@ -167,11 +170,12 @@ def critical_friction(
     counter : GrowthCounter, optional
         To share counts with other questions about the same cage and settings.
     band : bool
-        Whether the band is wanted; it takes most of the time.
+        Whether the band is wanted; its ends are counted with half the runs.
     """
     counts = counter or GrowthCounter(cage, settings)
-    at = {kick: _counter(counts, restitution_factor, kick) for kick in sorted(settings.kicks)}
-    middle = at[settings.middle_kick]
+    middle = _counter(counts, restitution_factor, settings.middle_kick, settings.runs)
+    half = max(1, settings.runs // 2)
+    at = {kick: _counter(counts, restitution_factor, kick, half) for kick in sorted(settings.kicks)}
     start = _guess(cage, restitution_factor)
     found = find_crossing(middle, FRICTION_GRID, 0.5, start)
     low, high = (None, None)
@@ -207,42 +211,44 @@ def _reason(ends: Sequence[Found]) -> str | None:
 
 _REASONS = {
     Side.ABOVE: "from {1:g} m/s a share of {0:g} of the runs grows even without pocket friction",
-    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to a friction of {SEARCHED_FRICTION:g}",
+    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to friction {SEARCHED_FRICTION:g}",
 }
 
 
-def _counter(counts: GrowthCounter, eta: Ratio, kick: MetrePerSecond) -> Counter:
+def _counter(counts: GrowthCounter, eta: Ratio, kick: MetrePerSecond, most: int) -> Counter:
     def count(friction: Ratio, target: Ratio | None) -> Count:
-        return counts.count(eta, friction, kick, target=target)
+        return counts.count(eta, friction, kick, target=target, most=most)
 
     return count
 
 
 def _first(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
-    """Smallest crossing of the target over the kicks; ABOVE if one kick is above it without friction."""
+    """Smallest crossing of the target over the kicks; ABOVE if one is above it without friction."""
     for kick, count in at.items():
-        if count(FRICTION_GRID[0], target).share >= target:
+        if reaches(count, FRICTION_GRID[0], target):
             return Side.ABOVE, target, kick
     best: Found = (Side.BELOW, target, max(at))
     for kick in sorted(at, reverse=True):
         known = best[0]
-        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[known.cell], target).share < target:
+        cell = known.cell if isinstance(known, Crossing) else start - BAND_CELLS
+        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[cell], target).share < target:
             continue  # this kick needs more friction than the best one
-        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, start), target, kick), sign=1)
+        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, cell), target, kick), sign=1)
     return best
 
 
 def _last(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
-    """Largest crossing of the target over the kicks; BELOW if one kick is below it at the top."""
+    """Largest crossing of the target over the kicks; BELOW if one is below it at the top."""
     for kick, count in at.items():
-        if count(FRICTION_GRID[-1], target).share < target:
+        if not reaches(count, FRICTION_GRID[-1], target):
             return Side.BELOW, target, kick
     best: Found = (Side.ABOVE, target, min(at))
     for kick in sorted(at):
         known = best[0]
-        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[known.cell + 1], target).share >= target:
+        cell = known.cell if isinstance(known, Crossing) else start + BAND_CELLS
+        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[cell + 1], target).share >= target:
             continue  # this kick needs less friction than the best one
-        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, start), target, kick), sign=-1)
+        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, cell), target, kick), sign=-1)
     return best
 
 

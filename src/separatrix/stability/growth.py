@@ -10,7 +10,7 @@ from separatrix.restitution import damping_for
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
 
-LOOKS = (12, 32)
+LOOKS = (8, 24)
 """Runs after which a count is looked at: far from the target few are enough."""
 
 
@@ -31,9 +31,9 @@ class Count:
         return wilson_interval(self.grown, self.runs)
 
     def decides(self, target: Ratio) -> bool:
-        """True if all runs agree, or the target lies outside the 95 % interval."""
+        """True if the target lies outside the 95 % interval, or all of many runs agree."""
         low, high = self.interval()
-        return self.grown in (0, self.runs) or not low <= target <= high
+        return not low <= target <= high or (self.runs >= LOOKS[-1] and self.grown in (0, self.runs))
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
@@ -61,17 +61,25 @@ class GrowthCounter:
         self._counts: dict[tuple[Ratio, Ratio, MetrePerSecond], Count] = {}
 
     def count(
-        self, restitution_factor: Ratio, friction: Ratio, kick: MetrePerSecond, *, target: Ratio | None = None
+        self,
+        restitution_factor: Ratio,
+        friction: Ratio,
+        kick: MetrePerSecond,
+        *,
+        target: Ratio | None = None,
+        most: int | None = None,
     ) -> Count:
-        """Count at a point; with a target, only as many runs as tell on which side of it P lies."""
+        """Count at a point; with a target, only as many runs as tell on which side of it P lies.
+
+        `most` runs at the most; by default those of the settings.
+        """
         key = (restitution_factor, friction, kick)
-        everything = self.settings.runs
+        most = self.settings.runs if most is None else most
         known = self._counts.get(key, Count(0, 0))
-        for runs in (*LOOKS, everything):
-            if known.runs >= everything or (known.runs and target is not None and known.decides(target)):
+        for runs in (*LOOKS, most) if target is not None else (most,):
+            if known.runs >= most or (known.runs and target is not None and known.decides(target)):
                 break
-            if target is not None or runs == everything:
-                known = self._extend(key, known, min(runs, everything))
+            known = self._extend(key, known, min(runs, most))
         return known
 
     def _extend(self, key: tuple[Ratio, Ratio, MetrePerSecond], known: Count, runs: int) -> Count:
