@@ -38,7 +38,9 @@ def contact(data: xr.Dataset) -> Figure:
         )
     widest = 1e3 * float(data["contact_semi_major"].max())
     for axes in (plan, pressure, creep):
-        axes.set(xlabel="y across the groove [mm]", xlim=(-1.12 * widest, 1.12 * widest))
+        axes.set(xlabel="y across the groove [mm]")
+    for axes in (pressure, creep):
+        axes.set_xlim(-1.12 * widest, 1.12 * widest)
     plan.set(title="a  Ellipses, to scale", ylabel="x along rolling", yticks=[])
     plan.set_aspect("equal", adjustable="datalim")
     pressure.set(title="b  Pressure on the axis x = 0", ylabel="pressure [MPa]", ylim=(0, None))

@@ -25,8 +25,9 @@ from separatrix.figures.style import (
 
 def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield a figure for each environment: the candidates' frictions carried to the stability curve."""
+    top = 1.12 * float(np.nanmax(data["material_friction"].values, initial=0.1))
     for i, name in enumerate(data["environment"].values):
-        yield f"rank-{i + 1}-{file_name(str(name))}", environment(data.isel(environment=i))
+        yield f"rank-{i + 1}-{file_name(str(name))}", environment(data.isel(environment=i), top)
 
 
 def file_name(text: str) -> str:
@@ -35,27 +36,37 @@ def file_name(text: str) -> str:
     return "-".join(part for part in plain.split("-") if part)[:60] or "environment"
 
 
-def environment(data: xr.Dataset) -> Figure:
-    """Stability curve with the candidates of one environment, and the paper's bound for solid lubrication."""
+def environment(data: xr.Dataset, top: float) -> Figure:
+    """Stability curve up to a friction `top` with the candidates of one environment, and the paper's bound."""
     figure, axes = canvas(PAGE, 4.3)
     measured = data.isel(material=np.isfinite(data["material_friction"].values))
-    frame(axes, data, _top(data))
+    frame(axes, data, top)
     chain_lines(axes, data)
     limit = float(data["solid_lubrication_limit"])
     axes.axvline(
-        limit, color=GREY, lw=1.0, ls="-.", label=rf"$\eta$ = {limit:g}, the paper's least (quoted below)"
+        limit, color=GREY, lw=1.0, ls="-.", label=rf"$\eta$ = {limit:g}, the paper's least (quoted above)"
     )
     for i in range(measured.sizes["material"]):
         _candidate(axes, measured.isel(material=i))
     _names(axes, measured)
-    axes.set_title(str(data["environment"].values))
+    _title(axes, data)
     _legend(figure, axes, data)
     return figure
 
 
-def _top(data: xr.Dataset) -> float:
-    frictions = data["material_friction"].values
-    return float(1.12 * max(0.1, np.nanmax(frictions, initial=0.1)))
+def _title(axes: Axes, data: xr.Dataset) -> None:
+    """Name the environment, and at the right who was not measured in it."""
+    name = str(data["environment"].values)
+    axes.set_title(name[:1].upper() + name[1:])
+    absent = data["material"].values[~np.isfinite(data["material_friction"].values)]
+    if absent.size:
+        axes.text(
+            0.99, 1.015, f"not measured: {', '.join(absent)}", fontsize=7, **_RIGHT, transform=axes.transAxes
+        )
+    axes.text(1.005, 1.015, "rank  candidate", fontsize=7, color=GREY, transform=axes.transAxes)
+
+
+_RIGHT = {"ha": "right", "color": GREY}
 
 
 def _candidate(axes: Axes, data: xr.Dataset) -> None:
@@ -75,7 +86,7 @@ def _candidate(axes: Axes, data: xr.Dataset) -> None:
     if np.isfinite(threshold):
         low, high = (float(data[f"material_restitution_threshold_{end}"]) for end in ("low", "high"))
         axes.plot([low, high], [friction, friction], color=colour, lw=1.6)
-        axes.plot(threshold, friction, "o", mfc="white", mec=colour, ms=4.5)
+        axes.plot(threshold, friction, "o", mfc="white", mec=colour, ms=4.5, clip_on=False, zorder=4)
 
 
 def _names(axes: Axes, data: xr.Dataset) -> None:
@@ -116,7 +127,7 @@ def overview(data: xr.Dataset) -> Figure:
     for i, name in enumerate(data["environment"].values):
         place = places + 0.26 - 0.52 * (i + 0.5) / data.sizes["environment"]
         threshold = data["material_restitution_threshold"].values[i]
-        axes.plot(threshold, place, "o", color=CYCLE[i % len(CYCLE)], ms=3.2, label=str(name))
+        axes.plot(threshold, place, "o", color=CYCLE[i % len(CYCLE)], ms=3.2, label=str(name), clip_on=False)
     low, middle, high = (data[f"overall_restitution_threshold{end}"].values for end in ("_low", "", "_high"))
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
@@ -127,6 +138,7 @@ def overview(data: xr.Dataset) -> Figure:
     axes.set(xlim=(0, 1), ylim=(-0.6, count - 0.4), xlabel=f"threshold of the {ETA_LABEL}: larger is better")
     axes.set_yticks(places, [_ranked(data, i) for i in range(count)])
     axes.tick_params(axis="y", length=0)
+    axes.set_title("Restitution thresholds; the number is the overall rank")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure
 

@@ -31,7 +31,7 @@ def _orbit(axes: Axes, data: xr.Dataset) -> None:
     reach = 1.08 * max(np.abs([x, y]).max(), *(radius for radius, *_ in rings))
     for ring in rings:
         _ring(axes, *ring, reach=reach)
-    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x [mm]", ylabel="y [mm]")
+    axes.set(ylim=(-reach, reach), xlabel="x [mm]", ylabel="y [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_title("a  Orbit of the cage centre, turning frame")
 

@@ -21,7 +21,7 @@ def stability(data: xr.Dataset) -> Figure:
     figure, axes = canvas(0.8 * PAGE, 3.6)
     frame(axes, data, highest(data))
     chain_lines(axes, data)
-    axes.text(0.03, 0.05, "stable", transform=axes.transAxes, color=GREY, style="italic")
+    axes.text(0.42, 0.05, "stable", transform=axes.transAxes, color=GREY, style="italic")
     axes.text(0.97, 0.5, "unstable", transform=axes.transAxes, color=GREY, style="italic", ha="right")
     axes.legend(loc="upper right", fontsize=7, handlelength=1.8)
     return figure

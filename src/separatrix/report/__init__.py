@@ -7,6 +7,7 @@ from typing import Any
 
 from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
+from separatrix.report.ranking import rank
 from separatrix.report.study import check
 from separatrix.report.tables import heading, paragraph
 
@@ -17,6 +18,7 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "restitution": restitution,
     "stability": stability,
     "simulate": simulate,
+    "rank": rank,
 }
 
 

@@ -61,9 +61,10 @@ def restitution_text(chain: Document) -> str:
 
 def ensemble_facts(settings: Document) -> list[tuple[str, str]]:
     """Return the ensemble in a few words."""
+    middle = settings.get("middle_kick")
     kicks = ", ".join(f"{kick:g}" for kick in settings["kicks"])
     return [
-        ("Kicks", f"{kicks} m/s; the curve is drawn for {settings['middle_kick']:g} m/s"),
+        ("Kicks", f"{kicks} m/s" + (f"; the curve is that of {middle:g} m/s" if middle else "")),
         ("Runs", f"{settings['runs']} at each point, of {quantity(settings['duration'], 's')}"),
     ]
 
