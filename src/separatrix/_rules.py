@@ -44,8 +44,8 @@ def moment_and_tilt(operation: Operation) -> _check.Problems:
 
 def nothing_presses(operation: Operation) -> _check.Problems:
     """Without any load there is no contact to compute."""
-    if operation.axial_load == 0.0 and operation.radial_load == 0.0 and operation.moment == 0.0:
-        rule = "must be > 0 when there is no radial load and no moment: nothing presses the balls"
+    if not any((operation.axial_load, operation.radial_load, operation.moment, operation.tilt)):
+        rule = "must be > 0 when there is no radial load, moment or tilt: nothing presses the balls"
         yield _check.problem(operation, "axial_load", rule, "Give the preload.")
 
 

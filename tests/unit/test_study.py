@@ -222,7 +222,8 @@ def test_balls_fit_up_to_touching():
 
 
 def test_no_speed_and_no_friction_are_allowed_where_they_mean_something():
-    """A static bearing; a frictionless one under race control."""
+    """A static bearing; one loaded by a held tilt alone; a frictionless one under race control."""
+    assert Operation(inner_speed=0.0, axial_load=0.0, tilt=1e-3).tilt == 1e-3
     assert study(operation=Operation(inner_speed=0.0, axial_load=1.0)).operation.inner_speed == 0.0
     controlled = study(film=Film(race_friction=0.0), kinematics=KinematicModel.OUTER_RACE_CONTROL)
     assert controlled.film.race_friction == 0.0
