@@ -15,6 +15,7 @@ from separatrix.creep import Creep, contact_creep
 from separatrix.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.errors import InputError
 from separatrix.hertz import ContactEllipse
+from separatrix.lubrication import LubricationCurve, lubrication_curve
 from separatrix.restitution import Restitution, ball_pocket_stiffness, contact_damping, restitution
 from separatrix.study import CageDesign, Material, Race, Study
 from separatrix.traction import TractionCurve, film_compliance, traction_curve
@@ -162,6 +163,19 @@ def restitution_state(
     inner, outer = damping
     found = restitution(inner, outer, ball_cage_stiffness=stiffness, cage_mass=design.mass)
     return RestitutionState(traction=links, restitution=found, stiffness_source=source)
+
+
+def lubrication(study: Study, state: RestitutionState) -> LubricationCurve | None:
+    """Restitution factor against film thickness and race friction; None without a film material."""
+    if study.film.material is None:
+        return None
+    return lubrication_curve(
+        state.traction.bearing.inner,
+        state.traction.bearing.outer,
+        study.film.material,
+        ball_cage_stiffness=state.restitution.ball_cage_stiffness,
+        cage_mass=state.restitution.cage_mass,
+    )
 
 
 def cage_design(study: Study) -> CageDesign:
