@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 STEPS_PER_RADIAN = 6.0
 UNITS = 4
+CALM_RADIANS = 17.0
 LONGEST_FLIGHT = 1024
 
 
@@ -34,6 +35,7 @@ class Coefficients(NamedTuple):
     half_play: float
     friction: float  # sigma f
     longest_flight: float
+    calm_after: float  # units of lasting contact after which steps may be longer
     land_side: float
     land_gap: float
     land_stiffness: float
@@ -93,6 +95,7 @@ def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
         half_play=cage.half_play,
         friction=cage.friction_sense * cage.ball_cage_friction,
         longest_flight=_longest_flight(cage, dt),
+        calm_after=CALM_RADIANS * STEPS_PER_RADIAN * UNITS,
         land_side=side,
         land_gap=cage.land_gap,
         land_stiffness=cage.land_stiffness,

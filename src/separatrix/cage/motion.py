@@ -37,7 +37,7 @@ from separatrix.cage.slots import (
     VY,
 )
 
-CALM_AFTER, CALM_STRIDE = 100, 3
+CALM_STRIDE = 3
 
 
 @kernel
@@ -85,7 +85,7 @@ def enter(p, s, tally, before_vx, before_vy, before_energy, peak, dt):  # type: 
     tally[OFFSET_X] += x * dt
     tally[OFFSET_Y] += y * dt
     if dot != 0.0:
-        tally[TURNING] += cross * (1.0 - (cross / dot) ** 2 / 6.0) if abs(cross) < abs(dot) else cross
+        tally[TURNING] += cross * (1.0 + (cross / dot) ** 2 / 6.0) if abs(cross) < abs(dot) else cross
     tally[SPEED_SQUARED] += now * dt
     tally[OFFSET_MAX] = max(tally[OFFSET_MAX], x * x + y * y)
     tally[FORCE_MAX] = max(tally[FORCE_MAX], peak)
@@ -116,14 +116,14 @@ def record(p, s, ledger, lead, load, land_force, rows, filled):  # type: ignore[
 @kernel
 def units_of_step(p, counts, s, touching, reach, calm, left):  # type: ignore[no-untyped-def]
     """Units in the next step: what the contacts ask for, more in flight and in lasting contact."""
-    count = counts[touching] * (CALM_STRIDE if calm > CALM_AFTER else 1)
+    count = counts[touching] * (CALM_STRIDE if calm > p.calm_after else 1)
     if touching == 0:
         count = max(count, int(clear_time(p, s, reach, p.longest_flight) / p.unit))
     return min(count, left)
 
 
 @kernel
-def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, rows, filled):  # type: ignore[no-untyped-def]
+def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, ceiling, rows, filled):  # type: ignore[no-untyped-def]
     """Advance the cage by a time, in place; return how many rows of the history are filled.
 
     Parameters
@@ -138,6 +138,8 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, rows
         State, work since the start, and integrals of this window, as in `slots`.
     units : int
         Time to advance; no more steps are taken, so the work is bounded.
+    ceiling : float
+        Kinetic energy above which to stop [J], before the numbers end.
     rows : ndarray
         History, shape (row, slot); the first slot of an unfilled row holds the time from which it is due, in
         units.
@@ -148,7 +150,7 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, rows
     energy = kinetic_energy(p, s)
     done, length, calm, land_force = 0, -1, 0, 0.0
     now = pace(p, 1)
-    while done < units:
+    while done < units and energy < ceiling:
         count = units_of_step(p, counts, s, f.touching, f.reach, calm, units - done)
         if count != length:
             now = pace(p, count)
@@ -163,7 +165,7 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, rows
             land_force = 0.0
             drift(p, s[STEP] * p.unit, s, ledger, dt, c, i)
         f = press(p, cos, sin, s, seat, lead, load, a, kept, followed)
-        calm = calm + 1 if f.changes == 0 and f.touching > 0 else 0
+        calm = calm + count if f.changes == 0 and f.touching > 0 else 0
         if f.touching > 0 or f.changes > 0:
             kick(p, s, ledger, f.cos + f.edge_cos, f.sin + f.edge_sin, f.total + f.edge, 0.5 * dt)
         lost = 0.5 * (was + f.squares) * p.yielding * dt

@@ -31,6 +31,7 @@ from separatrix.cage.slots import (
     SOURCES,
     SPEED_SQUARED,
     STATE,
+    STEP,
     STORED,
     TALLY,
     TURNING,
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
 FIFTHS = 5
 LOOKS = 10  # looks at the energy in each fifth
 UNKNOWN = -1
+CEILING = 1e6  # multiple of the energy that is growth: between two looks no run goes on beyond
 DIES, GROWS, DRIFT = int(RunOutcome.DIES), int(RunOutcome.GROWS), int(RunOutcome.DRIFT)
 
 
@@ -80,9 +82,10 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
         while done < fifth:
             units = min(fifth - done, step)
             filled = advance(
-                p, cos, sin, counts, s, seat, lead, load, ledger, tally[window], units, rows, filled
-            )
-            done += units
+                p, cos, sin, counts, s, seat, lead, load, ledger, tally[window], units, CEILING * grows_above,
+                rows, filled,
+            )  # fmt: skip
+            done = s[STEP] - window * fifth
             energy = kinetic_energy(p, s) + ledger[STORED]
             if energy > grows_above:
                 return GROWS, window, done * p.unit, filled
