@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.errors import InputError
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import (
     BallBearing,
     CageDesign,
@@ -532,3 +532,13 @@ def test_the_toml_on_the_page_is_right(read):
     variant, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
     assert read(variant).operation.axial_load == 1500.0
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"
+
+
+def test_a_land_left_beside_ball_guidance_is_said_to_be_unused(tmp_path):
+    """Switching guidance to "ball" in a file answers without the land, and says which keys it leaves out."""
+    path = tmp_path / "landless.toml"
+    path.write_text(template().replace('guidance = "outer"', 'guidance = "ball"'))
+    with pytest.warns(ValidityWarning, match=r"\[cage\] land_clearance, .*not used") as said:
+        study = read_study(path)
+    assert study.cage.land_clearance is None
+    assert len({str(one.message) for one in said}) == 1

@@ -267,7 +267,7 @@ EDITS = {
     ),
     "land of a ball-guided cage": (
         ('guidance = "outer"\n', ""),
-        ["[cage] land_clearance has no meaning", "guidance"],
+        ["[cage] land_clearance needs guidance", "guidance = "],
     ),
     "unknown guidance": (('guidance = "outer"', 'guidance = "both"'), ['"inner" or "ball"', 'got "both"']),
     "runs zero": (("runs = 64", "runs = 0"), ["[stability] runs must be a whole number from 1", "got 0"]),

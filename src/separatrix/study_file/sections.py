@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from separatrix.errors import InputError, together
+from separatrix.errors import InputError, ValidityWarning, together
 from separatrix.study import (
     BallBearing,
     CageDesign,
@@ -190,12 +191,21 @@ def _cage(document: Document, given: dict[str, Any]) -> CageDesign:
     land = [key for key in written if key in _READERS["cage"] and key.startswith("land_")]
     if any(key not in given for key in written if key in _READERS["cage"]):
         raise Unfinished
-    if land and given.get("guidance", Guidance.BALL) is Guidance.BALL:
+    if land and "guidance" not in written:
         cure = 'Give guidance = "outer" or "inner", or leave it out.'
         raise InputError(
-            where(document, "cage", land[0]), "has no meaning for a cage guided by its balls", cure=cure
+            where(document, "cage", land[0]), "needs guidance: without it the balls guide the cage", cure=cure
         )
+    if land and given["guidance"] is Guidance.BALL:
+        _say_unused(document, land)
+        given = {key: value for key, value in given.items() if key not in land}
     return record_of(document, CageDesign, given)
+
+
+def _say_unused(document: Document, land: list[str]) -> None:
+    place = where(document, "cage", land[0]).removesuffix(f" {land[0]}")
+    names = ", ".join(land)
+    warnings.warn(f'{place} {names}: not used, for guidance is "ball".', ValidityWarning, stacklevel=2)
 
 
 def _stability(document: Document, given: dict[str, Any]) -> StabilitySettings:
