@@ -54,6 +54,9 @@ MOST_BLOWS = 2_000_000
 STALL = 1_000
 """So many events in a billionth of the run each, one after the other, are an inelastic collapse."""
 
+STILL = 1e-12
+"""Share of the cage's speed at which a pocket slides along its ball and strikes no blow."""
+
 CHUNK_RUNS = 8
 TIME, WORK, DONE, FAR, LATE_ENERGY, SWEPT, AREA, PEAK = range(8)
 NOTES = 8
@@ -81,6 +84,12 @@ def blow_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
 
 
 @kernel
+def energy_of(p, s):  # type: ignore[no-untyped-def]
+    """Kinetic energy in the turning frame [J]."""
+    return 0.5 * (p.mass * (s[VX] ** 2 + s[VY] ** 2) + p.inertia * s[SPIN] ** 2)
+
+
+@kernel
 def next_blow(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
     """Time in which no wall is passed, and the ball and side that may be reached then.
 
@@ -92,22 +101,19 @@ def next_blow(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
     straight = np.sqrt(vx * vx + vy * vy)
     rim = np.sqrt(s[X] * s[X] + s[Y] * s[Y]) + straight * longest
     bound = 2.0 * W * (straight + W * rim) + W * W * rim
+    still = STILL * np.sqrt(2.0 * energy_of(p, s) / p.mass)
     first, ball, side = longest, -1, 1.0
     for j in range(cos.size):
         u = s[Y] * cos[j] - s[X] * sin[j] + p.radius * s[THETA] - lead[j]
         rate = s[VY] * cos[j] - s[VX] * sin[j] + p.radius * s[SPIN]
         for sign in (1.0, -1.0):
             gap, speed = max(p.half_play - sign * u, 0.0), sign * rate
+            if bound == 0.0 and speed <= still:
+                continue
             reach = speed + np.sqrt(speed * speed + 2.0 * bound * gap)
             if reach > 0.0 and 2.0 * gap < first * reach:
                 first, ball, side = 2.0 * gap / reach, j, sign
     return first, ball, side
-
-
-@kernel
-def energy_of(p, s):  # type: ignore[no-untyped-def]
-    """Kinetic energy in the turning frame [J]."""
-    return 0.5 * (p.mass * (s[VX] ** 2 + s[VY] ** 2) + p.inertia * s[SPIN] ** 2)
 
 
 @kernel
@@ -133,7 +139,7 @@ def blow(p, c, i, s, note, side, eta, mass):  # type: ignore[no-untyped-def]
     """Blow of the ball in direction (c, i), if its pocket comes at it, and note its work."""
     before = energy_of(p, s)
     speed = side * (s[VY] * c - s[VX] * i + p.radius * s[SPIN])
-    if speed <= 1e-12 * np.sqrt(2.0 * before / p.mass):
+    if speed <= STILL * np.sqrt(2.0 * before / p.mass):
         return
     impulse = side * (1.0 + eta) * mass * speed
     push = p.friction * impulse

@@ -1,0 +1,53 @@
+"""Speed of the planar cage: simulated seconds per second and core, of the shipped class and of the reference case.
+
+Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
+second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`.
+"""
+
+from dataclasses import replace
+
+import pytest
+
+from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
+from separatrix.study import Guidance, StabilitySettings
+
+RUNS = 16
+SHIPPED = PlanarCage(
+    mass=0.025,
+    moment_of_inertia=26.4e-6,
+    ball_count=13,
+    pitch_radius=0.0325,
+    cage_speed=670.0,
+    inner_speed=1570.8,
+    outer_speed=0.0,
+    pocket_clearance=6e-4,
+    ball_cage_stiffness=3e6,
+    race_damping=600.0,
+    ball_cage_friction=0.1,
+    guidance=Guidance.OUTER,
+    land_clearance=1e-3,
+)
+CASES = {
+    "shipped class, dies": SHIPPED,
+    "shipped class, grows": replace(SHIPPED, race_damping=2000.0, ball_cage_friction=0.2),
+    "no land": replace(SHIPPED, guidance=Guidance.BALL),
+    "ball set at rest": replace(SHIPPED, guidance=Guidance.BALL, cage_speed=0.0),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_planar_motion(benchmark, name):
+    """Runs of 0.3 s on one core."""
+    settings = StabilitySettings(kicks=(0.5,), runs=RUNS, duration=0.3)
+    run_ensemble(CASES[name], settings, runs=1)
+    benchmark(run_ensemble, CASES[name], settings)
+    benchmark.extra_info["simulated_seconds_per_second"] = 0.3 * RUNS / benchmark.stats["mean"]
+
+
+def test_hard_impacts(benchmark):
+    """Runs of 0.3 s on one core."""
+    settings = StabilitySettings(kicks=(0.5,), runs=RUNS, duration=0.3)
+    cage = replace(SHIPPED, guidance=Guidance.BALL, cage_speed=0.0)
+    run_hard_ensemble(cage, settings, runs=1)
+    benchmark(run_hard_ensemble, cage, settings)
+    benchmark.extra_info["simulated_seconds_per_second"] = 0.3 * RUNS / benchmark.stats["mean"]

@@ -1,0 +1,93 @@
+"""The hard-impact form: its limits, the restitution of a ring that may turn, and its guard."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from separatrix.cage import PlanarCage, RunOutcome, blow_restitution, growth_probability, run_hard_ensemble
+from separatrix.study import StabilitySettings
+
+M, K, R = 0.05, 3e6, 0.0325
+CAGE = PlanarCage(
+    mass=M,
+    moment_of_inertia=M * R * R,
+    ball_count=11,
+    pitch_radius=R,
+    cage_speed=0.0,
+    inner_speed=1500.0,
+    outer_speed=0.0,
+    pocket_clearance=6e-4,
+    ball_cage_stiffness=K,
+    race_damping=2000.0,
+    ball_cage_friction=0.1,
+)
+EVEN = StabilitySettings(kicks=(0.5,), runs=24, duration=5.0, ball_scatter=0.0)
+
+
+def damping_of(eta: float) -> float:
+    """C_mu of a nominal restitution factor."""
+    zeta = -math.log(eta) / math.hypot(math.pi, math.log(eta))
+    return math.sqrt(K * M) / (2 * zeta)
+
+
+@pytest.mark.parametrize("eta", [0.0, 1e-3])
+@pytest.mark.parametrize(("balls", "limit"), [(11, math.tan(math.pi / 22)), (12, math.tan(math.pi / 12))])
+def test_critical_friction_of_dead_impacts_between_even_pockets(balls, limit, eta):
+    """Z walls, 2 Z where Z is odd: f_c = tan(pi/22) = 0.1438 and tan(pi/12) = 0.2679, within 1 %."""
+    assert limit == pytest.approx({11: 0.1438, 12: 0.2679}[balls], abs=5e-5)
+    for friction, least, most in ((0.99 * limit, 0.0, 0.0), (1.01 * limit, 0.6, 1.0)):
+        # above the limit the cage grows unless it set out against the whirl, and never turned round
+        cage = replace(CAGE, ball_count=balls, ball_cage_friction=friction)
+        share = growth_probability(run_hard_ensemble(cage, EVEN, restitution=eta, may_turn=False))[0]
+        assert least <= share <= most
+
+
+@pytest.mark.parametrize(("nominal", "free"), [(0.90, 0.928), (0.60, 0.698)])
+def test_a_ring_that_may_turn_returns_more(nominal, free):
+    """Its blow feels M/2; held against turning it has the nominal restitution."""
+    cage = replace(CAGE, race_damping=damping_of(nominal))
+    assert blow_restitution(cage) == pytest.approx(free, abs=5e-4)  # three digits given
+    assert blow_restitution(cage, may_turn=False) == pytest.approx(nominal, rel=1e-12)
+    assert blow_restitution(replace(cage, race_damping=1.0)) == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, 300.0])
+def test_the_energy_of_hard_impacts_is_accounted_for(speed):
+    """Work of blows, friction and frame explains the energy, to the rounding of 1e5 events."""
+    cage = replace(CAGE, race_damping=damping_of(0.9), ball_cage_friction=0.12, cage_speed=speed)
+    runs = run_hard_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=16, duration=0.3))
+    assert runs.energy_imbalance.max() < 1e-10
+
+
+def test_free_impacts_without_friction_or_loss_keep_the_energy():
+    """Restitution 1 and no friction: the energy is the kick's for ever."""
+    cage = replace(CAGE, ball_cage_friction=0.0)
+    runs = run_hard_ensemble(cage, replace(EVEN, duration=0.5, ball_scatter=0.3), restitution=1.0)
+    np.testing.assert_allclose(runs.energy_growth, 1.0, rtol=1e-10)  # rounding of some thousand blows
+    assert np.all(runs.largest_offset < 6e-4)
+
+
+def test_whirl_of_hard_impacts_follows_the_balls_spin():
+    """Forward for inner rotation, backward for outer, in the runs that grow."""
+    for speeds, sense in (((1500.0, 0.0), 1), ((0.0, 1500.0), -1)):
+        cage = replace(CAGE, ball_cage_friction=0.3, inner_speed=speeds[0], outer_speed=speeds[1])
+        runs = run_hard_ensemble(cage, replace(EVEN, duration=0.3, ball_scatter=0.3), restitution=0.8)
+        grows = runs.outcome == RunOutcome.GROWS
+        assert grows.mean() > 0.5
+        assert np.median(runs.whirl_direction[grows]) == sense
+
+
+def test_a_collapse_of_impacts_is_ended_as_stalled():
+    """The centrifugal force presses a turning cage into a corner, where dead blows come in no time."""
+    cage = replace(CAGE, cage_speed=600.0)
+    runs = run_hard_ensemble(cage, replace(EVEN, duration=0.3), restitution=0.1)
+    assert np.all(runs.outcome == RunOutcome.STALLED)
+    assert np.all(np.isfinite(runs.energy_growth))
+
+
+def test_threads_change_no_bit_of_the_hard_form():
+    """1 and 2 workers."""
+    one, two = (run_hard_ensemble(CAGE, replace(EVEN, duration=0.1), jobs=jobs) for jobs in (1, 2))
+    assert np.array_equal(one.energy_growth, two.energy_growth)
