@@ -64,7 +64,7 @@ def test_carters_traction_along_the_strip(creep):
     share = 1.0 - creep
     inside = np.maximum(share**2 - (strip.along - creep) ** 2, 0.0)
     exact = np.sqrt(1.0 - strip.along**2) - np.sqrt(inside)
-    # first order: 1/nodes inside; at the stick edge the slope is infinite, an element's width costs sqrt(2/nodes)
+    # first order inside; at the stick edge the traction is steep, an element's width costs sqrt(2/nodes)
     assert np.abs(strip.shear - exact).mean() < 1.0 / 400
     assert np.abs(strip.shear - exact).max() < np.sqrt(2.0 / 400)
     assert np.count_nonzero(strip.slip) / 400 == pytest.approx(creep, abs=2.0 / 400)

@@ -40,7 +40,7 @@ def test_slope_without_spin():
 
 @pytest.mark.parametrize("sigma", [0.01, 0.1, 0.5, 1.0, 2.0, 5.0, 20.0, 200.0, 1e6])
 def test_slope_with_spin(sigma):
-    """Bare, spin: (pi/2) E* a b arctan(1/sigma)/N; strips crowd at the zero-creep line however strong the spin."""
+    """Bare, spin: (pi/2) E* a b arctan(1/sigma)/N; strips crowd at the zero-creep line."""
     value, error = slope(spin=sigma * XI_S / A)
     exact = pi / 2.0 * E * A * B * atan(1.0 / sigma) / N
     assert value == pytest.approx(exact, rel=3e-4)  # interpolation of the table; measured 3e-5
@@ -119,7 +119,7 @@ def test_no_zero_creep_line_is_full_slip():
     [(0.1, 0.0, 5.0, -2e4, 0.3), (0.05, 0.3, -20.0, 3e4, -0.5), (0.2, 5.0, 1.0, -1e5, 0.1)],
 )
 def test_strips_solved_one_by_one_agree(friction, lam, spin, curvature, shift):
-    """The master curve against direct active sets of 100 and 200 elements, extrapolated: traction and slope."""
+    """Master curve against direct active sets of 100 and 200 elements, extrapolated: traction, slope."""
     creep, case = (
         Creep(spin=spin, curvature=curvature),
         {"race_friction": friction, "film_compliance": lam * B / E},

@@ -1,4 +1,4 @@
-"""The exact bonded layer: same material, thin and thick limits; finite elements and Fourier as second roads."""
+"""The exact bonded layer: same material, thin and thick limits; finite elements and Fourier."""
 
 from math import pi
 
@@ -114,7 +114,7 @@ def test_a_thick_layer_is_a_half_plane_of_the_film():
 
 @pytest.mark.parametrize(("ratio", "gap"), [(0.003, 0.0021), (0.01, 0.0113), (0.03, 0.0430)])
 def test_what_the_series_costs_a_slope(ratio, gap):
-    """PTFE film at 77 K: exact over series slope of a sticking strip; short waves at the edge feel it first."""
+    """PTFE film at 77 K: exact over series slope of a sticking strip."""
     film = layer(1.5e9)
     lam = ratio / BODY / shear_modulus(film)
     exact = small_creep_slope(strip_layer(film, ratio, 200), strip_layer(film, ratio, 400))

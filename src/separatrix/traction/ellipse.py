@@ -16,9 +16,9 @@ from separatrix.traction.compiled import kernel
 from separatrix.traction.master import master_traction
 from separatrix.units import Array
 
-GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 SECTORS = np.pi * np.array([-0.5, -0.4, -0.25, 0.0, 0.25, 0.4, 0.5])
-LEVELS = np.array([0.0, 0.5, 1.0, 2.0, 4.0, 12.0, 48.0, 192.0])
+LEVELS = np.array([0.0, 0.6, 1.5, 4.0, 16.0, 100.0])
 Table = tuple[Array, Array, tuple[float, float, float, float, float]]
 
 

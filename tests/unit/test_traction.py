@@ -1,0 +1,129 @@
+"""What traction refuses, warns of and returns."""
+
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from separatrix.creep import Creep
+from separatrix.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.hertz import contact_ellipse
+from separatrix.study import BallBearing, Film, Material
+from separatrix.traction import (
+    bonded_layer,
+    film_compliance,
+    shear_field,
+    solve_strip,
+    traction_curve,
+    traction_slope,
+)
+from separatrix.traction import strip as strip_module
+from separatrix.traction.compiled import SOURCES
+from separatrix.traction.ellipse import resultant
+
+ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
+CREEP = Creep(spin=5.0, curvature=-2e4)
+GOOD = {"race_friction": 0.1, "film_compliance": 1e-15}
+STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285)
+PTFE = Material(name="PTFE", elastic_modulus=2e9, poisson_ratio=0.4)
+
+
+@pytest.mark.parametrize("name", ["race_friction", "film_compliance", "film_thickness"])
+@pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])
+def test_a_negative_or_endless_number_is_refused(name, value):
+    """The message names the quantity, the rule and the value."""
+    with pytest.raises(
+        InputError, match=rf"traction: {name} must be finite and >= 0 \[.*\]; got {value:g}\."
+    ):
+        traction_curve(ELLIPSE, CREEP, **{**GOOD, name: value})
+    with pytest.raises(InputError):
+        traction_slope(ELLIPSE, CREEP, **{**GOOD, name: value})
+
+
+def test_film_compliance_is_thickness_over_shear_modulus():
+    """h/G = 2 h (1 + nu)/E; bare races have none."""
+    film = Film(race_friction=0.1, material=PTFE, thickness=1e-6)
+    assert film_compliance(film) == pytest.approx(1e-6 / (2e9 / 2.8), rel=1e-15)
+    assert film_compliance(Film(race_friction=0.1)) == 0.0
+
+
+def test_a_thick_film_in_series_is_warned_of():
+    """Above 0.03 of the semi-minor axis; the number is returned. A layer needs no warning."""
+    thick = 0.031 * ELLIPSE.semi_minor
+    with pytest.warns(ValidityWarning, match=r"0\.031 of the semi-minor axis.*holds up to 0\.03 \(docs"):
+        slope, _ = traction_slope(ELLIPSE, CREEP, film_thickness=thick, **GOOD)
+    assert slope > 0.0
+    traction_slope(ELLIPSE, CREEP, film_thickness=0.029 * ELLIPSE.semi_minor, **GOOD)
+
+
+def test_the_default_increments_can_be_replaced():
+    """Any increments, in any order."""
+    curve = traction_curve(ELLIPSE, CREEP, creep_increments=np.array([0.01, -0.01, 0.0]), **GOOD)
+    assert curve.creep_increment.tolist() == [0.01, -0.01, 0.0]
+    assert curve.traction_coefficient[0] > 0.0 > curve.traction_coefficient[1]
+    assert curve.spin_roll_ratio == pytest.approx(CREEP.spin / 200.0, rel=1e-15)
+
+
+def test_one_strip_can_be_drawn():
+    """One strip is the middle one; shapes are (strip, node)."""
+    field = shear_field(ELLIPSE, CREEP, strips=1, nodes=30, creep_increment=0.001, **GOOD)
+    assert field.across.tolist() == [0.0]
+    assert field.shear.shape == field.along.shape == field.pressure.shape == field.slip.shape == (1, 30)
+    assert field.along[0, 0] > 0.0 > field.along[0, -1]  # leading edge first
+
+
+def test_a_field_without_friction_is_empty():
+    """No friction, no shear; the pressure stays."""
+    field = shear_field(ELLIPSE, CREEP, strips=3, nodes=10, race_friction=0.0, film_compliance=0.0)
+    assert not field.shear.any()
+    assert field.pressure.min() > 0.0
+
+
+def test_a_layer_needs_a_film():
+    """Bare races have no layer."""
+    bearing = BallBearing(
+        ball_diameter=0.01,
+        pitch_diameter=0.06,
+        ball_count=12,
+        contact_angle=0.4,
+        inner_conformity=0.52,
+        outer_conformity=0.52,
+        ball_material=STEEL,
+        ring_material=STEEL,
+    )
+    with pytest.raises(InputError, match="needs a material and a thickness"):
+        bonded_layer(bearing, Film(race_friction=0.1))
+    layer = bonded_layer(bearing, Film(race_friction=0.1, material=PTFE, thickness=1e-6))
+    assert (layer.film_modulus, layer.ring_modulus, layer.thickness) == (2e9, 205e9, 1e-6)
+
+
+def test_an_unsettled_strip_says_so(monkeypatch):
+    """The error carries the sweeps and crosses process borders."""
+    monkeypatch.setattr(strip_module, "active_set", lambda *given: (given[1], given[1], -17))
+    with pytest.raises(ConvergenceError, match=r"Strip of 20 elements: .* after 17 sweeps") as caught:
+        solve_strip(0.5, nodes=20)
+    assert pickle.loads(pickle.dumps(caught.value)).iterations == 17  # noqa: S301
+
+
+def test_least_index_steps_end_too(monkeypatch):
+    """One change at a time, the way out of a cycle, finds the same traction."""
+    expected = solve_strip(0.4, 0.5, nodes=40).shear
+    monkeypatch.setitem(strip_module.active_set.py_func.__globals__, "BLOCK_SWEEPS", 0)
+    t, p = strip_module.strip_influence(40, 0.5), strip_module.node_pressure(40)
+    q, _, sweeps = strip_module.active_set.py_func(t, p, np.full(40, 1.6 / 40))
+    assert sweeps > 4
+    assert q == pytest.approx(expected, abs=1e-13)  # rounding
+
+
+def test_compiled_code_is_kept_by_all_sources():
+    """A change in another file of the package must not leave old code in numba's cache."""
+    assert resultant._cache._index_key((), resultant.targetctx.codegen())[-1] == SOURCES
+
+
+def test_the_records_are_frozen():
+    """A curve cannot be changed."""
+    curve = traction_curve(ELLIPSE, CREEP, **GOOD)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        curve.slope = 1.0
