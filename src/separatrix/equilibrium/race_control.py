@@ -16,10 +16,19 @@ from separatrix.equilibrium.problem import Problem, Work
 from separatrix.units import Array
 
 
+STEEPEST = 1.4
+"""Largest contact angle for which kinematics are asked [rad]."""
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def controlled_kinematics(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float, float]:
-    """Orbit m and spin (axial, radial) for rolling at both races without spin at the controlling one."""
+    """Orbit m and spin (axial, radial) for rolling at both races without spin at the controlling one.
+
+    No groove reaches to 80 degrees: beyond, the kinematics stay as they are there, so that a search may pass.
+    """
     ratio = p.ball_diameter / p.pitch_diameter
+    angle_i = min(max(angle_i, -STEEPEST), STEEPEST)
+    angle_o = min(max(angle_o, -STEEPEST), STEEPEST)
     if p.inner_share < 1.0:
         pitch = math.atan2(math.sin(angle_o), math.cos(angle_o) + ratio)
     else:

@@ -153,9 +153,11 @@ def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve_ring(
-    p: Problem, q: Array, setup: Balls, states: Array, method: Method, tolerance: float, limit: int
+    p: Problem, q: Array, setup: Balls, states: Array, method: Method, tolerance: float, limit: int, boldness: float
 ) -> tuple[float, int, float, int]:
     """Damped Newton (Levenberg) on the ring from `q` and `states`, both in place.
+
+    A step may raise the unbalance by the factor `boldness`: along a curved valley that is faster.
 
     Returns the unbalance [N], iterations, the smoothing at which a ball failed (0: none) and its number.
     """
@@ -166,7 +168,7 @@ def solve_ring(
     if failed > 0.0:
         return math.inf, 0, failed, ball
     rest, good_q, good_states = unbalance(balance, dofs, arm), q.copy(), states.copy()
-    good_balance, good_slopes, damping = balance.copy(), slopes.copy(), 0.0
+    good_balance, good_slopes, damping, lost = balance.copy(), slopes.copy(), 0.0, 0
     for iteration in range(limit):
         if rest <= tolerance:
             return rest, iteration, 0.0, -1
@@ -180,14 +182,15 @@ def solve_ring(
             states[:] = good_states
             failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
             now = unbalance(balance, dofs, arm) if failed == 0.0 else math.inf
-        if now < rest:
+        lost = 0 if now < math.inf else lost + 1
+        if now < boldness * rest:
             rest = now
             good_q[:], good_states[:] = q, states
             good_balance[:], good_slopes[:] = balance, slopes
             damping = 0.1 * damping if damping > 1e-9 else 0.0
-        elif damping > 1e4:
+        elif damping > 1e4 or lost > 6:
             break
         else:
-            damping = max(6.0 * damping, 1e-5)
+            damping = max((6.0 if now < math.inf else 100.0) * damping, 1e-5)
     q[:], states[:] = good_q, good_states
     return rest, limit, failed if rest > 1e3 * tolerance else 0.0, ball

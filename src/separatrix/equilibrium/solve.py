@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from separatrix.equilibrium.groove import static_split
 from separatrix.equilibrium.problem import Method, Problem, problem
 from separatrix.equilibrium.race_control import inertia_loads
 from separatrix.equilibrium.record import Equilibrium
@@ -20,8 +21,11 @@ from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio
 CELLS, NODES, COARSE_CELLS, COARSE_NODES = 48, chebyshev_nodes(24), 16, chebyshev_nodes(8)
 """Quadrature over an ellipse: strips across the groove and places along rolling; the same, for a first approach."""
 
-LIMIT = 150
+LIMIT = 80
 """Newton steps of the ring; a usual case takes 3 to 8."""
+
+BOLD = 1e4
+"""Factor by which one step of the ring may raise the unbalance; monotone steps are the second choice."""
 
 
 def equilibrium(
@@ -114,45 +118,70 @@ def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment:
     )
 
 
-def _solve(p: Problem, setup: _Setup, q: Array, states: Array) -> tuple[float, int, float, int]:
+def _solve(p: Problem, setup: _Setup, q: Array, states: Array, limit: int = LIMIT, boldness: float = BOLD) -> tuple[float, int, float, int]:
     answer: tuple[float, int, float, int] = solve_ring(
-        p, q, setup.balls, states, setup.method, setup.tolerance, LIMIT
+        p, q, setup.balls, states, setup.method, setup.tolerance, limit, boldness
     )
     return answer
 
 
+def _first_place(p: Problem, setup: _Setup, angle: Radian) -> Array:
+    """Where the ring would stand if every ball took an even share along the load, and ball 0 at `angle`."""
+    arm, loads = 0.5 * p.pitch_diameter, setup.balls.loads
+    units = np.array([1.0, 1.0, 1.0, arm, arm])
+    size, trial = float(np.abs(loads / units).max()), 1e-3 * p.ball_diameter
+    span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
+    hard = static_split(p, (span + trial) * p.free_sine, (span + trial) * p.free_cosine)[2]
+    q: Array = loads / units**2 / size * trial * (2.0 * size / setup.ball_count / hard) ** (2.0 / 3.0)
+    q[0] += span * (math.sin(angle) - p.free_sine)
+    q[1] += span * (math.cos(angle) - p.free_cosine)
+    if setup.held_tilt:
+        q[4] = -setup.held_tilt
+    held = [k for k in range(4) if k not in setup.balls.dofs]
+    q[held] = 0.0
+    return q
+
+
 def _static(p: Problem, setup: _Setup) -> tuple[Array, int, Newton, Array]:
-    """Ring and balls without inertia: a convex problem, solved from a ring pressed along its load."""
-    q, states = np.zeros(5), np.zeros((setup.balls.azimuths.size, STATIC))
-    q[4] = -setup.held_tilt
-    rest, iterations, _, _ = _solve(p, setup, q, states)
-    if rest > 1e3 * setup.tolerance:
-        raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
-    return q, iterations, rest, states
+    """Ring and balls without inertia: a convex problem, from several places of the ring.
+
+    Where the radial load prevails the ring leaves the free angle for the middle of its axial play, along a
+    curved valley that Newton's method follows slowly: then it starts nearer.
+    """
+    free, total = math.asin(p.free_sine), 0
+    leaning = math.atan2(setup.balls.loads[0], setup.balls.loads[1])
+    angles = [free] if len(setup.balls.dofs) == 1 else [free, min(leaning, free), 0.0]
+    for limit, boldness in ((40, BOLD), (LIMIT, 1.0)):
+        for angle in angles:
+            q, states = _first_place(p, setup, angle), np.zeros((setup.balls.azimuths.size, STATIC))
+            rest, iterations, _, _ = _solve(p, setup, q, states, limit, boldness)
+            total += iterations
+            if rest <= 1e3 * setup.tolerance:
+                return q, total, rest, states
+    raise ConvergenceError(_unbalanced(rest, total, setup), total, rest)
 
 
 def _controlled(
     p: Problem, setup: _Setup, q: Array, states: Array, iterations: int
 ) -> tuple[Array, int, Newton, Array]:
     """Ring and balls under race control: at once, or by raising the inertia in steps from the static answer."""
-    start_q, start_states = q.copy(), states.copy()
-    rest, count, failed, _ = _solve(p, setup, q, states)
-    iterations += count
-    factor, step = 0.0, 0.2
-    good_q, good_states = start_q, start_states
-    while rest > 1e3 * setup.tolerance:
-        if step < 1e-3 or factor >= 1.0:
-            raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
+    good_q, good_states = q.copy(), states.copy()
+    factor, step = 0.0, 1.0
+    while factor < 1.0:
         trial = min(factor + step, 1.0)
-        q, states = good_q.copy(), good_states.copy()
-        rest, count, failed, _ = _solve(p._replace(inertia_factor=trial), setup, q, states)
-        iterations += count
+        for boldness in (BOLD, 1.0):
+            q, states = good_q.copy(), good_states.copy()
+            rest, count, _, _ = _solve(p._replace(inertia_factor=trial), setup, q, states, LIMIT, boldness)
+            iterations += count
+            if rest <= 1e3 * setup.tolerance:
+                break
         if rest <= 1e3 * setup.tolerance:
-            factor, good_q, good_states = trial, q.copy(), states.copy()
-            step *= 1.5
-            rest = rest if factor >= 1.0 else math.inf
+            factor, step = trial, 1.5 * step
+            good_q, good_states = q, states
+        elif step > 0.03:
+            step *= 0.3
         else:
-            step *= 0.4
+            raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
     return q, iterations, rest, states
 
 
@@ -160,14 +189,16 @@ def _free(
     p: Problem, setup: _Setup, q: Array, states: Array, iterations: int
 ) -> tuple[Array, int, Newton, Array]:
     """Ring and balls without race control, from the answer under outer race control."""
-    full = controlled_states(p, q, setup.balls.azimuths, states)
-    rest, count, failed, ball = _solve(p, setup, q, full)
-    iterations += count
+    start = q
+    for boldness in (BOLD, 1.0):
+        q, full = start.copy(), controlled_states(p, start, setup.balls.azimuths, states)
+        rest, count, failed, ball = _solve(p, setup, q, full, LIMIT, boldness)
+        iterations += count
+        if rest <= 1e3 * setup.tolerance:
+            return q, iterations, rest, full
     if failed > 0.0:
         raise ConvergenceError(_not_free(failed, ball), iterations, rest)
-    if rest > 1e3 * setup.tolerance:
-        raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
-    return q, iterations, rest, full
+    raise ConvergenceError(_unbalanced(rest, iterations, setup), iterations, rest)
 
 
 def _unbalanced(rest: Newton, iterations: int, setup: _Setup) -> str:
