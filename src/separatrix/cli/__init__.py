@@ -2,6 +2,29 @@
 
 from __future__ import annotations
 
-from separatrix.cli.app import main
+from collections.abc import Sequence
 
 __all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the program's name; by default what the process was given.
+
+    Returns
+    -------
+    int
+        0 answered, 1 a fault of ours, 2 a wrong input (one line on standard error), 130 interrupted.
+    """
+    try:
+        from separatrix.cli.app import run_command_line
+
+        return run_command_line(arguments)
+    except KeyboardInterrupt:
+        from separatrix.cli.console import interrupted
+
+        return interrupted("nothing was written.")

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from separatrix.cli.console import complain
+from separatrix.cli.console import complain, interrupted
 from separatrix.cli.run import Options, make_study, run
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
 
-ANSWERED, FAULT, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
 Out = Annotated[
-    Path | None,
+    str | None,
     typer.Option(metavar="DIR", help="Folder for figures and data [default: named after the study]."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
@@ -56,6 +55,19 @@ def threads(jobs: int | None) -> int:
     return jobs or processors()
 
 
+def folder(out: str | None) -> Path | None:
+    """Return the folder asked for; an empty name, as from an unset variable, is refused.
+
+    Raises
+    ------
+    InputError
+        The name is empty.
+    """
+    if out is not None and not out.strip():
+        raise InputError("--out", "needs the name of a folder", value='""', cure="The current one is .")
+    return None if out is None else Path(out)
+
+
 def _command(verb: Verb) -> Callable[..., int]:
     """Return the function behind the command of one verb."""
 
@@ -66,7 +78,11 @@ def _command(verb: Verb) -> Callable[..., int]:
         quiet: Quiet = False,
         jobs: Jobs = None,
     ) -> int:
-        return run(verb, study, Options(json=json, out=out, quiet=quiet, jobs=threads(jobs)))
+        options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs))
+        try:
+            return run(verb, study, options)
+        except KeyboardInterrupt:  # here, for typer would swallow it
+            return interrupted("nothing was written.")
 
     return command
 
@@ -105,19 +121,8 @@ def _start(
         raise InputError("The command line", f"lacks a verb: {verbs}", cure='Try "separatrix --help".')
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        What follows the program's name; by default what the process was given.
-
-    Returns
-    -------
-    int
-        0 answered, 1 a fault of ours, 2 a wrong input (one line on standard error), 130 interrupted.
-    """
+def run_command_line(arguments: Sequence[str] | None) -> int:
+    """Run the command line; return its exit status, as `separatrix.cli.main` says."""
     command = typer.main.get_command(_application())
     try:
         status = command.main(arguments, prog_name="separatrix", standalone_mode=False)
@@ -127,15 +132,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SeparatrixError as error:
         complain(str(error))
         return WRONG_INPUT if isinstance(error, ValueError | LookupError) else FAULT
-    except KeyboardInterrupt:
-        complain("interrupted; nothing was written.")
-        return INTERRUPTED
     return int(status or ANSWERED)
 
 
 def _usage(message: str) -> str:
     return f'{message.rstrip(". ")}. Try "separatrix --help".'
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -6,14 +6,13 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable, Iterator
-from typing import Protocol, TextIO
+from typing import TextIO
+
+from separatrix.errors import InputError
 
 
-class Progress(Protocol):
-    """Called as work gets done, with the share done between 0 and 1."""
-
-    def __call__(self, done: int, total: int) -> None:
-        """Say that `done` of `total` pieces are finished."""
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
 
 
 def one_line(text: str) -> str:
@@ -26,6 +25,12 @@ def complain(message: str) -> None:
     """Write one line to standard error; a closed one is not a reason to fail."""
     with contextlib.suppress(OSError, ValueError):
         write(sys.stderr, f"separatrix: {one_line(message)}\n")
+
+
+def interrupted(what: str) -> int:
+    """Say in one line that the work was interrupted, and return the exit status for it."""
+    complain(f"interrupted; {what}")
+    return INTERRUPTED
 
 
 def write(stream: TextIO | None, text: str) -> None:
@@ -42,13 +47,16 @@ def answer(text: str) -> None:
 
     Raises
     ------
-    OSError
-        The output could not be written, for instance on a full disk.
+    InputError
+        The output cannot be written, for instance to a full disk.
     """
     try:
         write(sys.stdout, text)
     except BrokenPipeError:
         _discard_standard_output()
+    except OSError as error:
+        _discard_standard_output()
+        raise InputError("Standard output", f"cannot be written ({error.strerror or error})") from error
 
 
 def _discard_standard_output() -> None:

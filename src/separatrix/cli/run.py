@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.answers import Work
-from separatrix.cli.console import answer, complain, progress_bar
+from separatrix.cli.console import answer, interrupted, progress_bar
 from separatrix.cli.files import staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
@@ -19,7 +19,7 @@ from separatrix.errors import InputError, ValidityWarning
 if TYPE_CHECKING:
     from separatrix.study import Study
 
-ANSWERED, INTERRUPTED = 0, 130
+ANSWERED = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,8 +64,7 @@ def _status(document: Mapping[str, Any]) -> int:
     """Return the exit status; an answer cut short says so on standard error."""
     if document.get("complete", True):
         return ANSWERED
-    complain("interrupted; what was finished is in the answer, marked complete: false.")
-    return INTERRUPTED
+    return interrupted("what was finished is in the answer, marked complete: false.")
 
 
 def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:

@@ -34,6 +34,8 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     data : Dataset
         From `results.dataset` or `results.load`.
     """
+    if verb == "rank" and data.sizes.get("restitution_factor", 0) == 0:
+        return  # interrupted before the stability curve had a point
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
             yield name, draw(data)

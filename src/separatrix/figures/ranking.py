@@ -37,7 +37,7 @@ def file_name(text: str) -> str:
 
 
 def environment(data: xr.Dataset, top: float) -> Figure:
-    """Stability curve up to a friction `top` with the candidates of one environment, and the paper's bound."""
+    """Stability curve up to a friction `top`, with the candidates of one environment on it."""
     figure, axes = canvas(PAGE, 4.3)
     measured = data.isel(material=np.isfinite(data["material_friction"].values))
     frame(axes, data, top)

@@ -75,7 +75,7 @@ def paragraph(text: str, *, indent: str = "  ", first: str | None = None) -> str
 
 def number(value: float | None, digits: int = 3) -> str:
     """Return a pure number with so many decimals, or a dash if it is absent."""
-    return ABSENT if value is None else f"{value:.{digits}f}"
+    return ABSENT if value is None else f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def significant(value: float | None, digits: int = 4) -> str:
