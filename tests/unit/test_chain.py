@@ -1,0 +1,109 @@
+"""What the chain takes from a study, and what it refuses."""
+
+from dataclasses import replace
+
+import pytest
+
+from separatrix.chain import (
+    bearing_state,
+    cage_state,
+    lubrication,
+    pocket_friction,
+    pocket_stiffness,
+    restitution_state,
+    traction_state,
+)
+from separatrix.errors import InputError
+from separatrix.restitution import ball_pocket_stiffness
+from separatrix.study import Film, Material
+from separatrix.study_file import read_study
+
+STUDY = read_study("cryogenic-turbopump")
+POLYMER = Material(name="polymer", elastic_modulus=5e9, poisson_ratio=0.4)
+
+
+def study(**changes):
+    """The shipped study with one part changed."""
+    return replace(STUDY, **changes)
+
+
+def cage(**changes):
+    """Its cage with one field changed."""
+    return study(cage=replace(STUDY.cage, **changes))
+
+
+def test_a_bearing_at_rest_has_no_traction():
+    """Equilibrium answers at 0 rpm; traction and restitution say in one line that they cannot."""
+    still = study(operation=replace(STUDY.operation, inner_speed=0.0))
+    assert bearing_state(still).inner.load > 0.0
+    with pytest.raises(InputError, match="inner_speed must differ from outer_speed"):
+        traction_state(still)
+    with pytest.raises(InputError, match="inner_speed must differ from outer_speed"):
+        cage_state(still)
+
+
+def test_races_without_friction_are_refused():
+    """They hold no ball."""
+    with pytest.raises(InputError, match="race_friction must be > 0"):
+        traction_state(study(film=Film(race_friction=0.0)))
+
+
+def test_a_study_without_a_cage_is_refused():
+    """The section is named."""
+    with pytest.raises(InputError, match=r"lacks the section \[cage\]"):
+        restitution_state(study(cage=None))
+
+
+def test_an_unknown_pocket_stiffness_is_refused_with_the_cure():
+    """Neither a stiffness nor a material to compute it from."""
+    with pytest.raises(InputError, match=r"ball_cage_stiffness is missing.*elastic_modulus"):
+        pocket_stiffness(cage(ball_cage_stiffness=None, material=None))
+
+
+def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_middle_kick():
+    """A given stiffness wins; else the candidate's material, else the cage's."""
+    assert pocket_stiffness(STUDY, POLYMER) == (3e6, "given in the study")
+    expected = ball_pocket_stiffness(
+        STUDY.bearing.ball_diameter,
+        STUDY.bearing.ball_material,
+        POLYMER,
+        cage_mass=STUDY.cage.mass,
+        impact_speed=0.5,
+    )
+    other = replace(POLYMER, name="other", elastic_modulus=9e9)
+    assert pocket_stiffness(cage(ball_cage_stiffness=None, material=POLYMER))[0] == expected
+    stiffness, source = pocket_stiffness(cage(ball_cage_stiffness=None, material=other), POLYMER)
+    assert stiffness == expected
+    assert source == "Hertz, ball on a flat wall of polymer at 0.5 m/s"
+
+
+def test_the_cage_has_the_numbers_of_the_chain():
+    """Thin ring at the pitch radius, orbital speed of the balls, race damping of the film."""
+    state = cage_state(STUDY)
+    found = state.cage
+    assert found.moment_of_inertia == pytest.approx(0.025 * 0.0325**2)
+    assert found.race_damping == state.restitution.restitution.race_damping
+    orbit = state.restitution.traction.bearing.equilibrium.orbital_speed
+    assert found.cage_speed == pytest.approx(orbit.mean())
+    assert found.pitch_radius == STUDY.bearing.pitch_diameter / 2
+
+
+def test_the_traction_of_a_study_is_not_computed_twice():
+    """A known traction state is used as it is."""
+    known = traction_state(STUDY)
+    assert restitution_state(STUDY, traction=known).traction is known
+
+
+def test_pocket_friction_is_given_or_the_first_candidates():
+    """The study's own, else the first measured one of the first candidate, else a refusal."""
+    assert pocket_friction(cage(ball_cage_friction=0.2)) == 0.2
+    first = next(f for f in STUDY.ranking.candidates[0].friction.values() if f is not None)
+    assert pocket_friction(STUDY) == first.mean
+    with pytest.raises(InputError, match="ball_cage_friction is missing"):
+        pocket_friction(study(ranking=None))
+
+
+def test_bare_races_have_no_lubrication_curve():
+    """Which film it would be is not known."""
+    bare = study(film=Film(race_friction=0.1))
+    assert lubrication(bare, restitution_state(bare)) is None

@@ -1,0 +1,165 @@
+"""Ranks, ties, means, reasons and gaps of a ranking, on a cage whose ensemble takes no time."""
+
+from dataclasses import replace
+
+import pytest
+
+from separatrix.cage import Judgement, Verdict
+from separatrix.errors import InputError
+from separatrix.ranking import rank, ranks
+from separatrix.ranking.friction import measured, overall
+from separatrix.ranking.reason import disagreement, reason
+from separatrix.stability import RestitutionThreshold
+from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
+from separatrix.study_file import read_study
+
+QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
+
+
+def quick_study(**changes):
+    """The shipped study with an ensemble of no weight."""
+    return replace(read_study("cryogenic-turbopump"), **{"stability": QUICK} | changes)
+
+
+def asked(*candidates, environments=("air",)):
+    """A question about candidates given as (name, friction or None)."""
+    return RankingQuestion(
+        environments=environments,
+        candidates=tuple(Candidate(name=n, friction=dict.fromkeys(environments, f)) for n, f in candidates),
+    )
+
+
+def judgement(verdict):
+    """A verdict with evidence that the sentences do not use."""
+    return Judgement(
+        verdict=verdict, probability_stable=1.0, probability_low=0.9, probability_high=1.0,
+        reason="So it is.",
+        largest_offset=0.0, drift_rate=0.0, largest_contact_force=0.0, whirl_frequency=0.0, whirl_direction=0,
+        energy_growth=0.0, energy_imbalance=0.0, duration=0.3, runs=64,
+    )  # fmt: skip
+
+
+def test_ties_share_the_lowest_rank():
+    """Two overlap, the third does not, the fourth was not measured: 1, 1, 3, nothing."""
+    assert ranks([(0.8, 0.7, 0.9), (0.75, 0.65, 0.85), (0.3, 0.2, 0.4), None]) == [1, 1, 3, None]
+
+
+def test_a_chain_of_small_steps_does_not_tie_the_first_with_the_last():
+    """Each overlaps its neighbour; the third does not reach the first and leads its own group."""
+    assert ranks([(0.80, 0.7, 0.9), (0.65, 0.55, 0.75), (0.5, 0.4, 0.6)]) == [1, 1, 3]
+
+
+def test_equal_thresholds_without_scatter_tie():
+    """Intervals that touch are enough."""
+    assert ranks([(0.5, 0.5, 0.5), (0.5, 0.5, 0.5), (0.4, 0.4, 0.4)]) == [1, 1, 3]
+
+
+def test_the_mean_takes_the_measured_environments_only():
+    """A blank of the table is absent, never 0."""
+    assert overall([None, Friction(mean=0.2), Friction(mean=0.4)]).mean == pytest.approx(0.3)
+    assert overall([None, None]) is None
+
+
+def test_scatter_of_the_friction_becomes_a_standard_error():
+    """Standard deviation over the root of the count; without a count the deviation itself."""
+    assert measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).error == pytest.approx(0.01)
+    assert measured(Friction(mean=0.12, standard_deviation=0.02)).error == pytest.approx(0.02)
+    low, high = measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).interval()
+    assert (low, high) == pytest.approx((0.12 - 0.0196, 0.12 + 0.0196))
+
+
+def test_the_papers_word_is_printed_where_it_differs():
+    """Stable below 0.6, or unstable above it: the paper says the opposite of the verdict."""
+    assert "would call it inapt" in disagreement(0.5, 0.27, Verdict.STABLE)
+    assert "would keep it" in disagreement(0.7, 0.9, Verdict.UNSTABLE)
+    assert disagreement(0.7, 0.27, Verdict.STABLE) == ""
+    assert disagreement(0.5, 0.9, Verdict.UNSTABLE) == ""
+    assert disagreement(0.5, 0.27, Verdict.UNDECIDED) == ""
+
+
+def test_the_reason_holds_the_numbers():
+    """Friction, threshold with its interval, the film's restitution factor, the margin, the verdict."""
+    threshold = RestitutionThreshold(value=0.65, low=0.61, high=0.68)
+    said = reason(0.09, threshold, 0.27, judgement(Verdict.STABLE))
+    assert said == (
+        "With a friction of 0.09 it needs a restitution factor below 0.65 (0.61 to 0.68); "
+        "the film gives 0.27, 0.38 below that. So it is."
+    )
+
+
+def test_a_missing_measurement_is_shown_as_missing():
+    """Everything is None but the name and a reason; the others are ranked without it."""
+    question = RankingQuestion(
+        environments=("air", "vacuum"),
+        candidates=(
+            Candidate(name="B", friction={"air": None, "vacuum": Friction(mean=0.3)}),
+            Candidate(name="A", friction={"air": Friction(mean=0.9), "vacuum": Friction(mean=0.1)}),
+        ),
+    )
+    found = rank(quick_study(ranking=question))
+    a, b = found.environments[0].materials
+    assert (a.name, a.rank, b.name, b.rank) == ("A", 1, "B", None)
+    assert b.friction is b.restitution_threshold is b.margin is b.probability_stable is b.verdict is None
+    assert b.reason == "not measured in air"
+    assert [(row.name, row.friction) for row in found.overall] == [("B", 0.3), ("A", 0.5)]
+
+
+def test_equal_frictions_tie_with_equal_numbers():
+    """Two materials with the same friction cannot be told apart."""
+    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))), jobs=2)
+    a, b = found.overall
+    assert (a.rank, b.rank) == (1, 1)
+    assert replace(a, name="B") == b
+
+
+def test_scatter_of_the_friction_widens_the_threshold():
+    """A friction known to 0.04 leaves a wider threshold than one taken as exact."""
+    exact, scattered = (
+        rank(quick_study(ranking=asked(("A", friction)))).overall[0]
+        for friction in (Friction(mean=0.12), Friction(mean=0.12, standard_deviation=0.04, count=4))
+    )
+    assert scattered.restitution_threshold == exact.restitution_threshold
+    assert scattered.restitution_threshold_low < exact.restitution_threshold_low
+    assert scattered.restitution_threshold_high > exact.restitution_threshold_high
+
+
+def test_the_number_of_threads_changes_nothing():
+    """One thread and two give the same record, to the last bit."""
+    study = quick_study(ranking=asked(("A", Friction(mean=0.08)), ("B", Friction(mean=0.2))))
+    assert rank(study, jobs=1) == rank(study, jobs=2)
+
+
+def test_an_interrupt_leaves_a_ranking_that_says_so():
+    """What was finished stays, what was not is None with that reason, and complete is False."""
+
+    def stop(done, total):
+        if done == 1:
+            raise KeyboardInterrupt
+
+    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.1)))), progress=stop)
+    assert not found.complete
+    assert found.overall[0].friction == 0.1
+    assert found.overall[0].verdict is None
+    assert found.overall[0].reason == "interrupted before this was computed"
+
+
+def test_each_candidate_has_the_stiffness_of_its_own_pocket():
+    """Without a given stiffness a stiffer material has a stiffer pocket and gets back less speed."""
+    study = quick_study()
+    soft = Material(name="soft", elastic_modulus=2e9, poisson_ratio=0.4)
+    candidates = tuple(
+        Candidate(name=m.name, friction={"air": Friction(mean=0.3)}, material=m)
+        for m in (soft, replace(soft, name="stiff", elastic_modulus=4e9))
+    )
+    cage = replace(study.cage, ball_cage_stiffness=None, material=None)
+    question = RankingQuestion(environments=("air",), candidates=candidates)
+    found = rank(replace(study, cage=cage, ranking=question)).overall
+    soft_one, stiff_one = sorted(found, key=lambda row: row.ball_cage_stiffness)
+    assert (soft_one.name, stiff_one.name) == ("soft", "stiff")
+    assert soft_one.restitution_factor > stiff_one.restitution_factor
+
+
+def test_a_study_without_candidates_is_refused():
+    """One line with the section that is missing."""
+    with pytest.raises(InputError, match=r"lacks the section \[ranking\]"):
+        rank(quick_study(ranking=None))
