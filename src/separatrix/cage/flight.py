@@ -72,9 +72,12 @@ def lean(p, s, impulse_x, impulse_y, moment):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def clear_time(p, s, reach, longest):  # type: ignore[no-untyped-def]
+def clear_time(p, s, slack, longest):  # type: ignore[no-untyped-def]
     """Time in which nothing can touch, from the gaps left and a bound on the speed; at most `longest` [s]."""
     x, y = centre(p, s)
+    reach = 0.0
+    for u in slack:
+        reach = max(reach, abs(u))
     gap = min(p.half_play - reach, p.land_gap - np.sqrt(x * x + y * y))
     if gap <= 0.0:
         return 0.0

@@ -99,7 +99,7 @@ def kinetic_energy(p, s):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def record(p, s, ledger, lead, load, land_force, rows, filled):  # type: ignore[no-untyped-def]
+def record(p, cos, sin, s, ledger, place, slack, load, land_force, rows, filled):  # type: ignore[no-untyped-def]
     """Write a row of the history if one is due; return how many there are."""
     if filled >= rows.shape[0] or s[STEP] < rows[filled, 0]:
         return filled
@@ -108,29 +108,30 @@ def record(p, s, ledger, lead, load, land_force, rows, filled):  # type: ignore[
     row[STEP] = s[STEP] * p.unit
     row[STATE:LAND_FORCE] = ledger
     row[LAND_FORCE] = land_force
-    row[BALLS : BALLS + lead.size] = lead
-    row[BALLS + lead.size : BALLS + 2 * lead.size] = load
+    balls = slack.size
+    row[BALLS : BALLS + balls] = place[1] * cos - place[0] * sin + place[2] - slack
+    row[BALLS + balls : BALLS + 2 * balls] = load
     return filled + 1
 
 
 @kernel
-def units_of_step(p, counts, s, touching, reach, calm, left):  # type: ignore[no-untyped-def]
+def units_of_step(p, counts, s, slack, touching, calm, left):  # type: ignore[no-untyped-def]
     """Units in the next step: what the contacts ask for, more in flight and in lasting contact."""
     count = counts[touching] * (CALM_STRIDE if calm > p.calm_after else 1)
     if touching == 0:
-        count = max(count, int(clear_time(p, s, reach, p.longest_flight) / p.unit))
+        count = max(count, int(clear_time(p, s, slack, p.longest_flight) / p.unit))
     return min(count, left)
 
 
 @kernel
-def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, ceiling, rows, filled):  # type: ignore[no-untyped-def]
+def advance(p, cos, sin, counts, s, place, slack, load, ledger, tally, units, ceiling, rows, filled):  # type: ignore[no-untyped-def]
     """Advance the cage by a time, in place; return how many rows of the history are filled.
 
     Parameters
     ----------
     p : Coefficients
         The cage and its unit of time.
-    cos, sin, seat, lead, load : ndarray
+    cos, sin, place, slack, load : ndarray
         As in `press`.
     counts : ndarray
         Units in a step by the number of balls in touch, shape (ball + 1,).
@@ -146,12 +147,12 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, ceil
     filled : int
         Rows filled so far.
     """
-    f = press(p, cos, sin, s, seat, lead, load, 0.0, 1.0, 1.0)
+    f = press(p, cos, sin, s, place, slack, load, 0.0, 1.0, 1.0)
     energy = kinetic_energy(p, s)
     done, length, calm, land_force = 0, -1, 0, 0.0
     now = pace(p, 1)
     while done < units and energy < ceiling:
-        count = units_of_step(p, counts, s, f.touching, f.reach, calm, units - done)
+        count = units_of_step(p, counts, s, slack, f.touching, calm, units - done)
         if count != length:
             now = pace(p, count)
             length = count
@@ -164,7 +165,7 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, ceil
         else:
             land_force = 0.0
             drift(p, s[STEP] * p.unit, s, ledger, dt, c, i)
-        f = press(p, cos, sin, s, seat, lead, load, a, kept, followed)
+        f = press(p, cos, sin, s, place, slack, load, a, kept, followed)
         calm = calm + count if f.changes == 0 and f.touching > 0 else 0
         if f.touching > 0 or f.changes > 0:
             kick(p, s, ledger, f.cos + f.edge_cos, f.sin + f.edge_sin, f.total + f.edge, 0.5 * dt)
@@ -175,5 +176,5 @@ def advance(p, cos, sin, counts, s, seat, lead, load, ledger, tally, units, ceil
         energy = enter(p, s, tally, vx, vy, energy, f.peak, dt)
         done += count
         s[STEP] += count
-        filled = record(p, s, ledger, lead, load, land_force, rows, filled)
+        filled = record(p, cos, sin, s, ledger, place, slack, load, land_force, rows, filled)
     return filled

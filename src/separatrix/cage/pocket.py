@@ -21,7 +21,6 @@ class Press(NamedTuple):
     edge_sin: float
     edge: float
     squares: float  # sum of N^2 [N2]
-    reach: float  # largest excursion |u| of a ball in its pocket [m]
     peak: float  # largest |N| [N]
     touching: int
     changes: int  # balls that touched or parted inside the step
@@ -74,7 +73,7 @@ def settle(gap_start, gap_end, a, kept, followed):  # type: ignore[no-untyped-de
 
 
 @kernel
-def press(p, cos, sin, s, seat, lead, load, a, kept, followed):  # type: ignore[no-untyped-def]
+def press(p, cos, sin, s, place, slack, load, a, kept, followed):  # type: ignore[no-untyped-def]
     """Let every ball yield to the cage's new place; return what its forces sum to.
 
     Parameters
@@ -83,10 +82,13 @@ def press(p, cos, sin, s, seat, lead, load, a, kept, followed):  # type: ignore[
         Directions of the balls, shape (ball,) [-].
     s : ndarray
         State of the cage.
-    seat : ndarray
-        Circumferential place of each pocket, w = r.e_t + R theta, shape (ball,) [m]; brought up to date.
-    lead, load : ndarray
-        Lead y of each ball [m] and force N of the pocket on it [N], shape (ball,); brought up to date.
+    place : ndarray
+        Centre and R theta at the start of the step, shape (3,) [m]; brought up to date.
+    slack, load : ndarray
+        Place u of each pocket against its ball [m] and force N of the pocket on it [N], shape (ball,); brought
+        up to date.
+    a, kept, followed : float
+        As in `settle`, for the step.
 
     Returns
     -------
@@ -95,31 +97,32 @@ def press(p, cos, sin, s, seat, lead, load, a, kept, followed):  # type: ignore[
     """
     x, y = centre(p, s)
     turned = p.radius * s[THETA]
+    dx, dy, dr = x - place[0], y - place[1], turned - place[2]
+    place[0], place[1], place[2] = x, y, turned
     c = p.half_play
-    sum_cos = sum_sin = total = squares = reach = peak = 0.0
+    sum_cos = sum_sin = total = squares = peak = 0.0
     edge_cos = edge_sin = edge = 0.0
     touching = changes = 0
     for j in range(cos.size):
-        w = y * cos[j] - x * sin[j] + turned
-        old, new = seat[j] - lead[j], w - lead[j]
-        seat[j] = w
-        n = 0.0
+        old, was = slack[j], load[j]
+        new = old + (dy * cos[j] - dx * sin[j] + dr)
+        slack[j] = new
+        if was == 0.0 and c > 0.0 and -c <= new <= c:
+            continue
         if c == 0.0:
-            q = old * kept + (new - old) * followed
-            lead[j] = w - q
-            n = p.stiffness * q
-        elif abs(old) > c or abs(new) > c:
-            side = 1.0 if (old > c or (new > c and old >= -c)) else -1.0
+            slack[j] = old * kept + (new - old) * followed
+            n = p.stiffness * slack[j]
+        else:
+            side = np.sign(was) if was != 0.0 else np.sign(new)
             q, gave, share = settle(side * old - c, side * new - c, a, kept, followed)
-            lead[j] += side * gave
+            slack[j] = new - side * gave
             n = side * p.stiffness * q
             if share < 1.0:
-                miss = (n + load[j]) * (share - 1.0)
+                miss = (n + was) * (share - 1.0)
                 edge_cos += miss * cos[j]
                 edge_sin += miss * sin[j]
                 edge += miss
                 changes += 1
-        reach = max(reach, abs(w - lead[j]))
         load[j] = n
         if n != 0.0:
             sum_cos += n * cos[j]
@@ -128,7 +131,7 @@ def press(p, cos, sin, s, seat, lead, load, a, kept, followed):  # type: ignore[
             squares += n * n
             peak = max(peak, abs(n))
             touching += 1
-    return Press(sum_cos, sum_sin, total, edge_cos, edge_sin, edge, squares, reach, peak, touching, changes)
+    return Press(sum_cos, sum_sin, total, edge_cos, edge_sin, edge, squares, peak, touching, changes)
 
 
 @kernel

@@ -73,8 +73,8 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
     tuple
         Outcome or `UNKNOWN`, the last window looked at, its length [s], and the rows of history filled.
     """
-    seat, load = np.zeros(cos.size), np.zeros(cos.size)
-    filled = record(p, s, ledger, lead, load, 0.0, rows, 0)
+    place, slack, load = np.zeros(3), -lead, np.zeros(cos.size)
+    filled = record(p, cos, sin, s, ledger, place, slack, load, 0.0, rows, 0)
     _, grows_above, dies_below = limits
     step = (fifth + LOOKS - 1) // LOOKS
     for window in range(FIFTHS):
@@ -82,7 +82,7 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
         while done < fifth:
             units = min(fifth - done, step)
             filled = advance(
-                p, cos, sin, counts, s, seat, lead, load, ledger, tally[window], units, CEILING * grows_above,
+                p, cos, sin, counts, s, place, slack, load, ledger, tally[window], units, CEILING * grows_above,
                 rows, filled,
             )  # fmt: skip
             done = s[STEP] - window * fifth
@@ -140,7 +140,7 @@ def _run_chunk(stamp: int) -> Callable[..., Any]:
         if stamp < 0:
             return
         for i in range(starts.shape[0]):
-            lead = starts[i, 1:].copy()
+            lead = starts[i, 1:]
             run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, rows, out[i])
 
     return run_chunk
