@@ -44,7 +44,7 @@ def row_scales(p: Problem, A: Array, state: Array, force: float, scales: Array) 
     if state.shape[0] == 6:
         i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
         o = touch(p, 1.0, state[0], state[1], 0.0)
-        grip = p.friction * max(turning_loads(p, i, o)[1], 1e-9 * force)
+        grip = 100.0 * p.friction * max(turning_loads(p, i, o)[1], 1e-9 * force)  # rounding is coarser here
         scales[2] = grip
         scales[3:] = 0.5 * p.ball_diameter * grip
 

@@ -9,7 +9,12 @@ from numba import njit
 from separatrix.equilibrium.ball import TOLERANCE, newton_ball
 from separatrix.equilibrium.groove import static_split, touch
 from separatrix.equilibrium.problem import Method, Problem, Work
-from separatrix.equilibrium.race_control import controlled_kinematics, inertia_loads, rest_on_outer
+from separatrix.equilibrium.race_control import (
+    controlled_kinematics,
+    inertia_loads,
+    inner_share,
+    rest_on_outer,
+)
 from separatrix.units import Array
 
 
@@ -64,5 +69,6 @@ def kinematic_start(p: Problem, A: Array, state: Array) -> None:
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
     angle_i, angle_o = math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine)
-    state[2], state[3], state[4] = controlled_kinematics(p, angle_i, angle_o)
+    share, _ = inner_share(p, i.load)
+    state[2], state[3], state[4] = controlled_kinematics(p, angle_i, angle_o, share)
     state[5] = 0.0

@@ -21,18 +21,21 @@ STEEPEST = 1.4
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def controlled_kinematics(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float, float]:
+def controlled_kinematics(
+    p: Problem, angle_i: float, angle_o: float, share: float
+) -> tuple[float, float, float]:
     """Orbit m and spin (axial, radial) for rolling at both races without spin at the controlling one.
 
-    No groove reaches to 80 degrees: beyond, the kinematics stay as they are there, so that a search may pass.
+    `share` 0 is outer race control, 2 inner; between them the pitch angle is too. No groove reaches to 80
+    degrees: beyond, the kinematics stay as they are there, so that a search may pass.
     """
     ratio = p.ball_diameter / p.pitch_diameter
     angle_i = min(max(angle_i, -STEEPEST), STEEPEST)
     angle_o = min(max(angle_o, -STEEPEST), STEEPEST)
-    if p.inner_share < 1.0:
-        pitch = math.atan2(math.sin(angle_o), math.cos(angle_o) + ratio)
-    else:
-        pitch = math.atan2(math.sin(angle_i), math.cos(angle_i) - ratio)
+    pitch = math.atan2(math.sin(angle_o), math.cos(angle_o) + ratio)
+    if share > 0.0:
+        inner = math.atan2(math.sin(angle_i), math.cos(angle_i) - ratio)
+        pitch += 0.5 * share * (inner - pitch)
     roll_o = (1.0 / ratio + math.cos(angle_o)) / math.cos(pitch - angle_o)
     roll_i = (1.0 / ratio - math.cos(angle_i)) / math.cos(pitch - angle_i)
     m = roll_i / (roll_i + roll_o)
@@ -48,20 +51,24 @@ def inertia_loads(p: Problem, m: float, spin_radial: float) -> tuple[float, floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _inertia_at(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float]:
-    m, _, spin_radial = controlled_kinematics(p, angle_i, angle_o)
+def _inertia_at(p: Problem, angle_i: float, angle_o: float, share: float) -> tuple[float, float]:
+    m, _, spin_radial = controlled_kinematics(p, angle_i, angle_o, share)
     return inertia_loads(p, m, spin_radial)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _inertia_slopes(p: Problem, angle_i: float, angle_o: float) -> tuple[float, float, float, float]:
-    """Slopes of centrifugal force and gyroscopic term with the inner, then the outer angle."""
+def _inertia_slopes(p: Problem, angle_i: float, angle_o: float, share: float, slopes: Array) -> None:
+    """Slopes of centrifugal force and gyroscopic term, shape (2, 3): inner angle, outer angle, share."""
     step = 1e-5
-    Fi, Gi = _inertia_at(p, angle_i + step, angle_o)
-    fi, gi = _inertia_at(p, angle_i - step, angle_o)
-    Fo, Go = _inertia_at(p, angle_i, angle_o + step)
-    fo, go = _inertia_at(p, angle_i, angle_o - step)
-    return (Fi - fi) / (2 * step), (Gi - gi) / (2 * step), (Fo - fo) / (2 * step), (Go - go) / (2 * step)
+    F, G = _inertia_at(p, angle_i, angle_o, share)
+    Fi, Gi = _inertia_at(p, angle_i + step, angle_o, share)
+    Fo, Go = _inertia_at(p, angle_i, angle_o + step, share)
+    slopes[0, 0], slopes[1, 0] = (Fi - F) / step, (Gi - G) / step
+    slopes[0, 1], slopes[1, 1] = (Fo - F) / step, (Go - G) / step
+    slopes[0, 2], slopes[1, 2] = 0.0, 0.0
+    if p.inner_share > 0.0:
+        Fs, Gs = _inertia_at(p, angle_i, angle_o, share + step)
+        slopes[0, 2], slopes[1, 2] = (Fs - F) / step, (Gs - G) / step
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -75,7 +82,7 @@ def normal_slopes(t: Touch, slopes: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def inner_share(p: Problem, load: float) -> tuple[float, float]:
-    """Share lambda_i of the gyroscopic friction and its slope with the inner load.
+    """Share lambda_i of the gyroscopic friction (and of the control) and its slope with the inner load.
 
     A ball that leaves the inner race cannot be controlled by it: where the inner load is less than the
     centrifugal force (taken at 0.45 of the ring speed) the share falls smoothly to 0.
@@ -97,8 +104,8 @@ def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Wo
     D, push = p.ball_diameter, out.push
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
-    F, G = _inertia_at(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine))
     share, _ = inner_share(p, i.load)
+    F, G = _inertia_at(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine), share)
     T_i, T_o = share * G / D, (2.0 - share) * G / D  # friction across the grooves carries the moment
     push[:] = 0.0
     push[0] = i.load * i.sine + T_i * i.cosine
@@ -113,8 +120,9 @@ def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Wo
 def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> None:
     """Slopes of the balance; with w = A - V they enter V negative and A positive."""
     D, push_by, by_state = p.ball_diameter, out.push_by, out.by_state
-    F_i, G_i, F_o, G_o = _inertia_slopes(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine))
     share, share_slope = inner_share(p, i.load)
+    inertia = np.empty((2, 3))
+    _inertia_slopes(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine), share, inertia)
     T_i, T_o = share * G / D, (2.0 - share) * G / D
     H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
     normal_slopes(i, H_i)
@@ -123,9 +131,11 @@ def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> N
     for k in range(2):
         a_i = (i.cosine if k == 0 else -i.sine) / i.length  # slopes of the angles with w and V
         a_o = (o.cosine if k == 0 else -o.sine) / o.length
-        moved = share_slope * i.load_slope * (i.sine if k == 0 else i.cosine) * G / D
-        Ti_w, Ti_v = share * G_i * a_i / D + moved, share * G_o * a_o / D
-        To_w, To_v = (2.0 - share) * G_i * a_i / D - moved, (2.0 - share) * G_o * a_o / D
+        handed = share_slope * i.load_slope * (i.sine if k == 0 else i.cosine)  # of the share with w
+        F_w, F_v = inertia[0, 0] * a_i + inertia[0, 2] * handed, inertia[0, 1] * a_o
+        G_w, G_v = inertia[1, 0] * a_i + inertia[1, 2] * handed, inertia[1, 1] * a_o
+        Ti_w, Ti_v = (share * G_w + handed * G) / D, share * G_v / D
+        To_w, To_v = ((2.0 - share) * G_w - handed * G) / D, (2.0 - share) * G_v / D
         push_by[0, 2 + k] = H_i[0, k] + Ti_w * i.cosine - T_i * i.sine * a_i
         push_by[1, 2 + k] = H_i[1, k] - Ti_w * i.sine - T_i * i.cosine * a_i
         push_by[4, 2 + k] = 0.5 * D * Ti_w
@@ -133,11 +143,11 @@ def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> N
         push_by[1, k] = -Ti_v * i.sine - push_by[1, 2 + k]
         push_by[4, k] = 0.5 * D * Ti_v - push_by[4, 2 + k]
         by_state[0, 2 + k] = push_by[0, 2 + k] - To_w * o.cosine
-        by_state[1, 2 + k] = push_by[1, 2 + k] + To_w * o.sine + F_i * a_i
+        by_state[1, 2 + k] = push_by[1, 2 + k] + To_w * o.sine + F_w
         outer_x = H_o[0, k] + To_v * o.cosine - T_o * o.sine * a_o
-        outer_r = H_o[1, k] - To_v * o.sine - T_o * o.cosine * a_o - F_o * a_o
+        outer_r = H_o[1, k] - To_v * o.sine - T_o * o.cosine * a_o - F_v
         by_state[0, k] = push_by[0, k] - outer_x + To_w * o.cosine
-        by_state[1, k] = push_by[1, k] - outer_r - To_w * o.sine - F_i * a_i
+        by_state[1, k] = push_by[1, k] - outer_r - To_w * o.sine - F_w
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -149,6 +159,6 @@ def rest_on_outer(p: Problem, A: Array, state: Array) -> bool:
     state[0], state[1] = 0.0, bottom
     for _ in range(3):  # the orbit depends on the inner angle, that on the approach: a weak loop
         i = touch(p, -1.0, A[0], A[1] - state[1], 0.0)
-        F, _ = _inertia_at(p, math.atan2(i.sine, i.cosine), 0.0)
+        F, _ = _inertia_at(p, math.atan2(i.sine, i.cosine), 0.0, 0.0)
         state[1] = bottom + trial * (F / load) ** (2.0 / 3.0)
     return math.hypot(A[0], A[1] - state[1]) <= (p.inner_conformity - 0.5) * p.ball_diameter

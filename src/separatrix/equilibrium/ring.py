@@ -153,7 +153,14 @@ def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve_ring(
-    p: Problem, q: Array, setup: Balls, states: Array, method: Method, tolerance: float, limit: int, boldness: float
+    p: Problem,
+    q: Array,
+    setup: Balls,
+    states: Array,
+    method: Method,
+    tolerance: float,
+    limit: int,
+    boldness: float,
 ) -> tuple[float, int, float, int]:
     """Damped Newton (Levenberg) on the ring from `q` and `states`, both in place.
 

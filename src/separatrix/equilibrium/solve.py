@@ -118,7 +118,9 @@ def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment:
     )
 
 
-def _solve(p: Problem, setup: _Setup, q: Array, states: Array, limit: int = LIMIT, boldness: float = BOLD) -> tuple[float, int, float, int]:
+def _solve(
+    p: Problem, setup: _Setup, q: Array, states: Array, limit: int = LIMIT, boldness: float = BOLD
+) -> tuple[float, int, float, int]:
     answer: tuple[float, int, float, int] = solve_ring(
         p, q, setup.balls, states, setup.method, setup.tolerance, limit, boldness
     )
