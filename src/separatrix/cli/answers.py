@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from separatrix.cage import History
     from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
+    from separatrix.lubrication import LubricationCurve
     from separatrix.ranking import Ranking
     from separatrix.stability import StabilityCurve
     from separatrix.study import Study
     from separatrix.traction import ShearField, TractionCurve
-    from separatrix.units import MetrePerSecond, Ratio
+    from separatrix.units import Metre, MetrePerSecond, Ratio
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
@@ -45,6 +46,15 @@ class TractionAnswer:
     outer_others: tuple[TractionCurve, ...]
     inner_shear: ShearField
     outer_shear: ShearField
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionAnswer:
+    """Restitution factor, and what it would be with other films; None without a film material."""
+
+    state: RestitutionState
+    film_thickness: Metre
+    lubrication: LubricationCurve | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,11 +154,14 @@ def shear(study: Study, at: RaceContact) -> ShearField:
     )
 
 
-def restitution(study: Study, work: Work) -> RestitutionState:  # noqa: ARG001
-    """Restitution factor from the traction slopes."""
-    from separatrix.chain import restitution_state
+def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
+    """Restitution factor from the traction slopes, and what other films would give."""
+    from separatrix.chain import lubrication, restitution_state
 
-    return restitution_state(study)
+    state = restitution_state(study)
+    return RestitutionAnswer(
+        state=state, film_thickness=study.film.thickness or 0.0, lubrication=lubrication(study, state)
+    )
 
 
 def stability(study: Study, work: Work) -> StabilityAnswer:

@@ -10,7 +10,6 @@ from typing import TextIO
 
 from separatrix.errors import InputError
 
-
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 

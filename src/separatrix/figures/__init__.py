@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.figures import bearing, ranking, simulation, stability, traction
+from separatrix.figures import bearing, ranking, restitution, simulation, stability, traction
 from separatrix.figures.style import journal, save
 
 __all__ = ["figures", "save"]
@@ -17,11 +17,16 @@ Draw = Callable[[xr.Dataset], Figure]
 FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "bearing": {"bearing-balls": bearing.balls, "bearing-contacts": bearing.contact},
     "traction": {"traction-curves": traction.curves, "traction-shear": traction.shear},
+    "restitution": {"restitution-film": restitution.lubrication},
     "stability": {"stability-curve": stability.stability},
     "simulate": {"simulation": simulation.run},
     "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
 }
 """Verb -> name of the file -> what draws it."""
+
+
+NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness"}
+"""Verb -> dimension without which nothing is drawn: an interrupted ranking, bare races without a film."""
 
 
 def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -34,8 +39,8 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     data : Dataset
         From `results.dataset` or `results.load`.
     """
-    if verb == "rank" and data.sizes.get("restitution_factor", 0) == 0:
-        return  # interrupted before the stability curve had a point
+    if verb in NEEDED and NEEDED[verb] not in data.sizes:
+        return
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
             yield name, draw(data)

@@ -60,13 +60,9 @@ def _title(axes: Axes, data: xr.Dataset) -> None:
     axes.set_title(name[:1].upper() + name[1:])
     absent = data["material"].values[~np.isfinite(data["material_friction"].values)]
     if absent.size:
-        axes.text(
-            0.99, 1.015, f"not measured: {', '.join(absent)}", fontsize=7, **_RIGHT, transform=axes.transAxes
-        )
+        note = f"not measured: {', '.join(absent)}"
+        axes.text(0.99, 1.015, note, fontsize=7, color=GREY, ha="right", transform=axes.transAxes)
     axes.text(1.005, 1.015, "rank  candidate", fontsize=7, color=GREY, transform=axes.transAxes)
-
-
-_RIGHT = {"ha": "right", "color": GREY}
 
 
 def _candidate(axes: Axes, data: xr.Dataset) -> None:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, PAGE, VERMILION, canvas, label_lines
+from separatrix.units import Array
 
 
 def run(data: xr.Dataset) -> Figure:
@@ -97,7 +98,7 @@ def _spectrum(axes: Axes, data: xr.Dataset) -> None:
     axes.set_xlim(-reach, reach)
 
 
-def whirl_spectrum(time: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:  # type: ignore[type-arg]
+def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
     """Amplitude of the complex velocity over frequency, the largest being 1.
 
     Parameters

@@ -108,7 +108,7 @@ def label_lines(axes: Axes, labels: Sequence[tuple[float, float, str, str]], *, 
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
-    """Return places at least `gap` apart, in the same order, as near to the wanted ones as a sweep gets."""
+    """Return places in 0 to 1, `gap` apart and in the same order, near to the wanted ones."""
     order = np.argsort(wanted, kind="stable")
     places = np.array(wanted, dtype=float)[order]
     for _ in range(200):
@@ -117,6 +117,7 @@ def spread(wanted: Sequence[float], gap: float) -> list[float]:
             if lack > 1e-9:
                 places[low] -= lack / 2
                 places[high] += lack / 2
+        np.clip(places, 0.02, 0.98, out=places)
     result = np.empty(len(places))
     result[order] = places
     return [float(value) for value in result]

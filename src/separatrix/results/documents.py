@@ -69,7 +69,7 @@ def contact(at: Any) -> Document:
     """Return one contact: everything in one level."""
     flat = plain_record(at, "contact")
     ellipse, creep = flat.pop("ellipse"), flat.pop("creep")
-    return flat | ellipse | {f"creep_{name}": value for name, value in creep.items()}
+    return {**flat, **ellipse, **{f"creep_{name}": value for name, value in creep.items()}}
 
 
 def traction(record: Any) -> Document:
@@ -90,6 +90,17 @@ def _curve(at: Any, curve: Any, others: Sequence[Any], shear: Any) -> Document:
 
 
 def restitution(record: Any) -> Document:
+    """Return the restitution factor with its intermediates, and what other films would give."""
+    other = record.lubrication
+    curve = {} if other is not None else {"lubrication_reason": "The study names no film material."}
+    return (
+        before_cage(record.state)
+        | {"film_thickness_here": record.film_thickness, "lubrication": plain(other, "lubrication")}
+        | curve
+    )
+
+
+def before_cage(record: Any) -> Document:
     """Return the restitution factor, the damping behind it, and the contacts with their slopes."""
     links = record.traction
     races = {"inner": links.inner, "outer": links.outer}
@@ -112,7 +123,7 @@ def stability(record: Any) -> Document:
 
 def cage(state: Any) -> Document:
     """Return the cage, and what the chain found before it moves."""
-    return {"chain": restitution(state.restitution), "cage": plain_record(state.cage, "cage")}
+    return {"chain": before_cage(state.restitution), "cage": plain_record(state.cage, "cage")}
 
 
 def simulation(record: Any) -> Document:
