@@ -1,4 +1,4 @@
-"""Speed of the planar cage: simulated seconds per second and core, of the shipped class and of the reference case.
+"""Speed of the planar cage: simulated seconds per second and core, of the shipped class and others.
 
 Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
 second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`.

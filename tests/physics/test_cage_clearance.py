@@ -1,7 +1,7 @@
-"""With clearance: thresholds of the sub-critical instability, and what kick, turning frame and land do to them.
+"""With clearance: thresholds of the sub-critical instability, and what kick, turning and land do to them.
 
-The targets 0.078, 0.115, 0.165 were computed beforehand by other programs (100 seeds each); the linear law and
-the hard form are other roads.
+The targets 0.078, 0.115, 0.165 were computed beforehand by other programs (100 seeds each); the linear law
+and the hard form are other roads.
 """
 
 import math
@@ -123,7 +123,7 @@ def test_a_land_holds_the_same_cage(guidance):
 
 
 def test_turning_moves_the_threshold():
-    """With the ball set turning the balls bunch and the same friction grows more often (reported, not derived)."""
+    """With the ball set turning the balls bunch, and the same friction grows more often (not derived)."""
     settings = replace(SETTINGS, runs=96)
     rest, turning = (
         growth_probability(run_ensemble(cage_at(0.6, 0.14, cage_speed=speed), settings, jobs=2))[0]

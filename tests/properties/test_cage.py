@@ -80,7 +80,7 @@ def test_relabelling_the_balls_turns_the_picture(cage, direction, seed, shift):
 @few
 @given(cages(), st.integers(-3, 3), st.integers(-3, 3), st.integers(-3, 3))
 def test_other_units_change_nothing(cage, length, mass, time):
-    """Units that differ by powers of four: the same runs to the last bit, offsets and rates in the new units."""
+    """Units that differ by powers of four: the same runs to the last bit."""
     L, M, T = 4.0**length, 4.0**mass, 4.0**time
     scaled = replace(
         cage,
@@ -118,7 +118,7 @@ def test_without_friction_a_landless_cage_at_rest_only_loses_energy(cage, seed):
 @few
 @given(cages(), st.integers(0, 9))
 def test_the_ledger_closes(cage, seed):
-    """Every source and sink named explains the energy to 3 % of the work done, at the step chosen."""
+    """Sources and sinks explain the energy to 3 % of the work done, at the step chosen."""
     runs = run_ensemble(cage, StabilitySettings(kicks=(1.0,), runs=2, duration=0.02, seed=seed))
     assert runs.energy_imbalance.max() < 0.03
 

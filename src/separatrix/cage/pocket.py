@@ -85,8 +85,8 @@ def press(p, cos, sin, s, place, slack, load, a, kept, followed):  # type: ignor
     place : ndarray
         Centre and R theta at the start of the step, shape (3,) [m]; brought up to date.
     slack, load : ndarray
-        Place u of each pocket against its ball [m] and force N of the pocket on it [N], shape (ball,); brought
-        up to date.
+        Place u of each pocket against its ball [m], and its force N on it [N], shape (ball,); brought up to
+        date.
     a, kept, followed : float
         As in `settle`, for the step.
 
@@ -113,11 +113,15 @@ def press(p, cos, sin, s, place, slack, load, a, kept, followed):  # type: ignor
             slack[j] = old * kept + (new - old) * followed
             n = p.stiffness * slack[j]
         else:
-            side = np.sign(was) if was != 0.0 else np.sign(new)
-            q, gave, share = settle(side * old - c, side * new - c, a, kept, followed)
-            slack[j] = new - side * gave
-            n = side * p.stiffness * q
-            if share < 1.0:
+            side = 1.0 if (was if was != 0.0 else new) > 0.0 else -1.0
+            q = (side * old - c) * kept + side * (new - old) * followed
+            if was != 0.0 and q > 0.0:
+                slack[j] = side * (c + q)
+                n = side * p.stiffness * q
+            else:
+                q, gave, share = settle(side * old - c, side * new - c, a, kept, followed)
+                slack[j] = new - side * gave
+                n = side * p.stiffness * q
                 miss = (n + was) * (share - 1.0)
                 edge_cos += miss * cos[j]
                 edge_sin += miss * sin[j]

@@ -76,15 +76,28 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
     place, slack, load = np.zeros(3), -lead, np.zeros(cos.size)
     filled = record(p, cos, sin, s, ledger, place, slack, load, 0.0, rows, 0)
     _, grows_above, dies_below = limits
+    ceiling = CEILING * grows_above
     step = (fifth + LOOKS - 1) // LOOKS
     for window in range(FIFTHS):
         done = 0
         while done < fifth:
             units = min(fifth - done, step)
             filled = advance(
-                p, cos, sin, counts, s, place, slack, load, ledger, tally[window], units, CEILING * grows_above,
-                rows, filled,
-            )  # fmt: skip
+                p,
+                cos,
+                sin,
+                counts,
+                s,
+                place,
+                slack,
+                load,
+                ledger,
+                tally[window],
+                units,
+                ceiling,
+                rows,
+                filled,
+            )
             done = s[STEP] - window * fifth
             energy = kinetic_energy(p, s) + ledger[STORED]
             if energy > grows_above:
