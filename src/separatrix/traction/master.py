@@ -228,4 +228,4 @@ def master_traction(
             dF += weights[i] * (
                 d0 + u * (6.0 * rise - 4.0 * d0 - 2.0 * d1 + 3.0 * u * (d0 + d1 - 2.0 * rise))
             )
-    return math.copysign(F, c), dF / h * s * (1.0 - v) ** 2
+    return math.copysign(min(F, 1.0), c), dF / h * s * (1.0 - v) ** 2
