@@ -144,7 +144,7 @@ def ball_pocket_stiffness(
     Notes
     -----
     A flat wall, because the conformity of a bored pocket to its ball wears and is rarely known; a
-    cylindrical bore with 5 % of play is stiffer by about 1.5 (docs/theory/restitution.md).
+    cylindrical bore with 5 % of play is stiffer by 2.1 (docs/theory/restitution.md).
     """
     K = 4.0 / 3.0 * contact_modulus(ball_material, cage_material) * sqrt(ball_diameter / 2.0)
     delta = (1.25 * cage_mass * impact_speed**2 / K) ** 0.4

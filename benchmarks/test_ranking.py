@@ -1,0 +1,36 @@
+"""Speed of the stability curve and of the whole ranking on the shipped study."""
+
+import pytest
+
+from separatrix.chain import cage_state
+from separatrix.ranking import rank
+from separatrix.stability import GrowthCounter, critical_friction
+from separatrix.study_file import read_study
+
+
+@pytest.fixture(scope="module")
+def study():
+    """The shipped study, everything compiled."""
+    found = read_study("cryogenic-turbopump")
+    cage_state(found)
+    return found
+
+
+def test_chain_up_to_the_cage(benchmark, study):
+    """Equilibrium without race control, both traction curves, restitution."""
+    benchmark(cage_state, study)
+
+
+def test_one_point_of_the_stability_curve(benchmark, study):
+    """Critical friction with its band at a restitution factor of 0.6, on one core."""
+    cage, settings = cage_state(study).cage, study.stability
+
+    def point():
+        return critical_friction(cage, 0.6, settings, counter=GrowthCounter(cage, settings))
+
+    benchmark.pedantic(point, rounds=1, warmup_rounds=0)
+
+
+def test_rank(benchmark, study):
+    """The whole ranking of the shipped study, its whole ensemble, on two threads; aim: under 30 s."""
+    benchmark.pedantic(rank, args=(study,), kwargs={"jobs": 2}, rounds=1, warmup_rounds=0)

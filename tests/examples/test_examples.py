@@ -1,0 +1,32 @@
+"""Every script in examples/ runs, and gives its answer."""
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "examples"
+SCRIPTS = sorted(path.name for path in FOLDER.glob("*.py"))
+ANSWERS = {
+    "01_bearing.py": ("heavier", pytest.approx(70.0, abs=2.0)),  # as in the first working version; a few newtons
+    "02_traction.py": ("ratio", pytest.approx(0.7, abs=0.25)),  # a thick film softens the contact
+    "03_restitution.py": ("eta", pytest.approx(0.7367, abs=5e-5)),  # four digits computed independently
+    "04_stability.py": ("frictions", None),
+    "05_ranking.py": ("order", ["Armalon", "My compound", "PEEK 450 GL 30"]),
+}
+
+
+def test_every_script_has_its_answer():
+    """A new script comes with what it must give."""
+    assert set(SCRIPTS) == set(ANSWERS)
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_a_script_runs_and_gives_its_answer(script):
+    """Run top to bottom, as a reader would."""
+    left = runpy.run_path(str(FOLDER / script))
+    name, expected = ANSWERS[script]
+    if expected is None:
+        assert left[name] == sorted(left[name], reverse=True)  # more speed back, less friction allowed
+    else:
+        assert left[name] == expected
