@@ -109,7 +109,7 @@ def test_a_wrong_study_is_refused_in_one_line(case, verb, capsys):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [(b"", "bearing"), (b"\xff\xfe\x00", "UTF-8"), (b"# x\n" * 1_400_000, "")],
+    [(b"", "empty"), (b"\xff\xfe\x00", "UTF-8"), (b"# x\n" * 1_400_000, "")],
     ids=["empty", "not UTF-8", "5 MB"],
 )
 def test_a_file_that_is_no_study_is_refused(content, said, capsys):
@@ -162,8 +162,14 @@ def test_out_that_is_a_file_is_refused_before_the_work(capsys):
 
 def test_a_default_folder_that_is_a_file_is_refused(capsys):
     """Without `--out` the folder is named after the study; a file of that name is not touched."""
-    Path("le7").write_text("mine")
-    assert "--out" in refused(capsys, "bearing", "le7")
+    Path("study.toml").write_text(VALID)
+    Path("study").write_text("mine")
+    assert "--out" in refused(capsys, "bearing", "study.toml")
+
+
+def test_out_without_a_name_is_refused(capsys):
+    """`--out ""`, as from a variable that is not set."""
+    assert "--out" in refused(capsys, "bearing", "le7", "--out", "")
 
 
 def test_a_wrong_study_does_not_make_the_folder(capsys):

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.figures import bearing, ranking, restitution, simulation, stability, traction
-from separatrix.figures.style import journal, save
+from separatrix.figures.style import journal, save, settled
 
 __all__ = ["figures", "save"]
 
@@ -43,6 +43,6 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         return
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
-            yield name, draw(data)
+            yield name, settled(draw(data))
         if verb == "rank":
-            yield from ranking.environments(data)
+            yield from ((name, settled(figure)) for name, figure in ranking.environments(data))

@@ -73,6 +73,13 @@ def canvas(width: float = COLUMN, height: float = 2.6, **grid: Any) -> tuple[Fig
     return figure, figure.subplots(**grid)
 
 
+def settled(figure: Figure) -> Figure:
+    """Lay the figure out once for all, so that every format and every drawing of it is the same."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    return figure
+
+
 def save(figure: Figure, path: Path) -> None:
     """Write the figure in the format of the suffix; the same data give the same bytes."""
     metadata = {"Date": None, "Creator": None} if path.suffix == ".svg" else {"Software": None}

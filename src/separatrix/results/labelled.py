@@ -61,13 +61,16 @@ def _provenance(document: Mapping[str, Any]) -> dict[str, Any]:
 
 def _variable(name: str, dims: tuple[str, ...], values: Any) -> xr.Variable:
     unit = unit_of(name)
-    return xr.Variable(dims, _array(values), attrs={"units": unit} if unit else {})
+    return xr.Variable(dims, _array(values, is_text=unit is None), attrs={"units": unit} if unit else {})
 
 
-def _array(values: Any) -> Any:
-    """Return nested lists as an array; None becomes NaN among numbers and empty among texts."""
+def _array(values: Any, *, is_text: bool) -> Any:
+    """Return nested lists as an array; None becomes NaN among numbers and empty among texts.
+
+    If nothing but None is there, `is_text` tells which of them it would have been.
+    """
     found = list(_leaves(values))
-    if any(isinstance(leaf, str) for leaf in found):
+    if any(isinstance(leaf, str) for leaf in found) or (is_text and all(leaf is None for leaf in found)):
         return np.array(_fill(values, ""), dtype=object)
     if any(leaf is None for leaf in found):
         return np.array(_fill(values, np.nan), dtype=float)

@@ -147,7 +147,7 @@ def units() -> dict[str, str]:
     return known
 
 
-PREFIXES = tuple(sorted({group.prefix for group in GROUPS.values() if group.prefix}))
+PREFIXES = (*sorted({group.prefix for group in GROUPS.values() if group.prefix}), "cage_", "shear_", "work_")
 
 
 def unit_of(name: str) -> str | None:
@@ -155,5 +155,5 @@ def unit_of(name: str) -> str | None:
     known = units()
     if name in known:
         return known[name]
-    parts = [name[len(prefix) :] for prefix in (*PREFIXES, "cage_") if name.startswith(prefix)]
-    return next((unit_of(part) for part in parts), None)
+    parts = (name.removeprefix(prefix) for prefix in PREFIXES if name.startswith(prefix))
+    return next((unit for part in parts if (unit := unit_of(part)) is not None), None)

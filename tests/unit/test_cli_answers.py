@@ -1,0 +1,245 @@
+"""Each verb on a small study: keys that scripts rely on, one document on standard output, files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from separatrix import figures, results
+from separatrix.cli import main
+from separatrix.cli.verbs import VERBS
+
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small ensemble"
+
+[cage]
+ball_cage_friction = 0.1
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 4
+duration = "4 ms"
+restitution_factors = { from = 0.3, to = 0.9, count = 3 }
+
+[ranking]
+friction = "pin-on-disk-77K"
+materials = ["Armalon", "Meldin HTC 100"]
+"""
+ENVIRONMENTS = [
+    "gaseous nitrogen, Chromex 40",
+    "gaseous nitrogen, 440C",
+    "liquid nitrogen, Chromex 40",
+    "liquid nitrogen, 440C",
+]
+BALL = (
+    "contact_angle_inner contact_angle_outer load_inner load_outer orbital_speed pitch_angle "
+    "spin_roll_ratio_inner spin_roll_ratio_outer"
+)
+ELLIPSE = "semi_major semi_minor max_pressure approach rolling_speed"
+CURVE = "slope slope_error creep_increment traction_coefficient"
+DAMPING = "race_damping damping_ratio restitution_factor"
+CRITICAL = "restitution_factor critical_friction critical_friction_low critical_friction_high"
+MATERIAL = "name friction restitution_threshold margin probability_stable verdict rank reason"
+
+pytestmark = pytest.mark.usefixtures("elsewhere")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with the small study, and the answers of every verb in it."""
+    place = tmp_path_factory.mktemp("answers")
+    (place / "small.toml").write_text(SMALL)
+    for verb in VERBS:
+        assert main([verb.name, str(place / "small.toml"), "--out", str(place / verb.name), "--quiet"]) == 0
+    return place
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """Run in an empty folder, to see what is written."""
+    monkeypatch.chdir(tmp_path)
+
+
+def answer(folder: Path, verb: str) -> dict:
+    """Return the document of a verb, as it was written beside the figures."""
+    return json.loads((folder / verb / f"{verb}.json").read_text(), parse_constant=pytest.fail)
+
+
+def has(record: dict, names: str) -> bool:
+    """Whether all names are keys, each present or null."""
+    return set(names.split()) <= set(record)
+
+
+@pytest.mark.parametrize("verb", [verb.name for verb in VERBS])
+def test_json_is_one_document_and_writes_nothing(verb, folder, capsys):
+    """`--json` prints exactly what stands in the file, nothing else anywhere, and no NaN."""
+    assert main([verb, str(folder / "small.toml"), "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert json.loads(out, parse_constant=pytest.fail) == answer(folder, verb)
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize("verb", [verb.name for verb in VERBS])
+def test_every_answer_says_where_it_comes_from(verb, folder):
+    """Version, resolved study with its sources, seed and warnings are in every document."""
+    found = answer(folder, verb)
+    assert has(found, "separatrix_version verb name title study seed warnings")
+    assert found["verb"] == verb
+    assert found["study"]["bearing"]["ball_diameter"]["value"] == 0.0111125
+    assert "cryogenic-turbopump.toml" in found["study"]["bearing"]["ball_diameter"]["origin"]
+
+
+def test_bearing_has_the_keys_that_scripts_rely_on(folder):
+    """`bearing`: one row for each ball, the ring's displacements, both contacts of the most loaded ball."""
+    found = answer(folder, "bearing")
+    assert len(found["balls"]) == 13
+    assert all(has(ball, BALL) for ball in found["balls"])
+    assert has(found, "axial_displacement radial_displacement contacts")
+    assert all(has(found["contacts"][race], ELLIPSE) for race in ("inner", "outer"))
+
+
+def test_traction_has_the_keys_that_scripts_rely_on(folder):
+    """`traction`: slope, its error, and the curve, of equal length, for both races."""
+    found = answer(folder, "traction")
+    for race in ("inner", "outer"):
+        assert has(found[race], CURVE)
+        assert len(found[race]["creep_increment"]) == len(found[race]["traction_coefficient"])
+
+
+def test_restitution_has_the_keys_that_scripts_rely_on(folder):
+    """`restitution`: as printed, and the same with free ball spin."""
+    found = answer(folder, "restitution")
+    assert has(found, DAMPING)
+    assert has(found, " ".join(f"{name}_free_spin" for name in DAMPING.split()))
+
+
+def test_stability_has_the_keys_that_scripts_rely_on(folder):
+    """`stability`: a row for each restitution factor asked for, and the linear limit."""
+    found = answer(folder, "stability")
+    assert [row["restitution_factor"] for row in found["curve"]] == [0.3, 0.6, 0.9]
+    assert all(has(row, CRITICAL) for row in found["curve"])
+    assert all(has(row, "restitution_factor critical_friction") for row in found["linear_limit"])
+    assert found["complete"] is True
+
+
+def test_rank_has_the_keys_that_scripts_rely_on(folder):
+    """`rank`: the four environments under their names, each candidate in each, and overall."""
+    found = answer(folder, "rank")
+    assert has(found, "restitution_factor environments overall")
+    assert [environment["name"] for environment in found["environments"]] == ENVIRONMENTS
+    for rows in (found["overall"], *(environment["materials"] for environment in found["environments"])):
+        assert {row["name"] for row in rows} == {"Armalon", "Meldin HTC 100"}
+        assert all(has(row, MATERIAL) for row in rows)
+
+
+def test_a_missing_measurement_is_null_with_its_reason(folder):
+    """Meldin HTC 100 was not measured in gaseous nitrogen: nulls, and the reason says so."""
+    rows = answer(folder, "rank")["environments"][0]["materials"]
+    missing = next(row for row in rows if row["name"] == "Meldin HTC 100")
+    absent = ("friction", "restitution_threshold", "margin", "probability_stable", "verdict", "rank")
+    assert [missing[name] for name in absent] == [None] * 6
+    assert missing["reason"].startswith("not measured")
+
+
+def test_what_is_null_has_a_reason(folder):
+    """A stability point without a critical friction or without an end of its band says why."""
+    for row in answer(folder, "stability")["curve"]:
+        assert row["reason"] or None not in [row[name] for name in CRITICAL.split()]
+
+
+@pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
+def test_files_are_whole_and_nothing_else_is_left(verb, folder):
+    """Document, summary, dataset, and each figure as PNG and SVG; no temporary file stays."""
+    names = {path.name for path in (folder / verb).iterdir()}
+    pictures = {name for name in names if name.endswith(".png")}
+    assert pictures
+    assert names == pictures | {f"{p[:-4]}.svg" for p in pictures} | {
+        f"{verb}{suffix}" for suffix in (".json", ".txt", ".nc")
+    }
+
+
+@pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
+def test_a_saved_dataset_draws_the_same_figures(verb, folder, tmp_path):
+    """Every figure can be drawn again from the netCDF file alone, to the byte."""
+    data = results.load(folder / verb / f"{verb}.nc")
+    for name, figure in figures.figures(verb, data):
+        figures.save(figure, tmp_path / f"{name}.svg")
+        assert (tmp_path / f"{name}.svg").read_bytes() == (folder / verb / f"{name}.svg").read_bytes()
+
+
+@pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
+def test_the_summary_fits_a_terminal(verb, folder):
+    """The text is ASCII, 100 columns at most, and says where the figures are."""
+    text = (folder / verb / f"{verb}.txt").read_text(encoding="ascii")
+    assert max(len(line) for line in text.splitlines() if "Figures and data are in" not in line) <= 100
+    assert f"Figures and data are in {folder / verb}" in text
+
+
+def test_the_dataset_names_dimensions_and_units(folder):
+    """Ball and race, environment and material, are dimensions; quantities carry their unit."""
+    bearing = results.load(folder / "bearing" / "bearing.nc")
+    assert bearing["load_inner"].dims == ("ball",)
+    assert bearing["load_inner"].attrs["units"] == "N"
+    assert bearing["contact_max_pressure"].sel(race="inner").attrs["units"] == "Pa"
+    rank = results.load(folder / "rank" / "rank.nc")
+    assert rank["material_friction"].dims == ("environment", "material")
+    there = {"environment": "liquid nitrogen, 440C", "material": "Armalon"}
+    assert float(rank["material_friction"].sel(there)) == 0.08
+    assert json.loads(rank.attrs["study"])["bearing"]["ball_count"]["value"] == 13
+
+
+def test_the_dataset_holds_the_numbers_of_the_document(folder):
+    """The same curve in both."""
+    data = results.load(folder / "traction" / "traction.nc")
+    found = answer(folder, "traction")["outer"]["traction_coefficient"]
+    np.testing.assert_array_equal(data["traction_coefficient"].sel(race="outer"), found)
+
+
+def test_every_dimensional_variable_has_a_unit(folder):
+    """Whatever is a plain number without a unit is in this list of counts and names."""
+    counts = {
+        "most_loaded",
+        "iterations",
+        "ball",
+        "run",
+        "runs",
+        "nodes",
+        "sweeps",
+        "slip",
+        "rank",
+        "whirl_direction",
+    }
+    for verb in (verb.name for verb in VERBS if verb.writes_files):
+        data = results.load(folder / verb / f"{verb}.nc")
+        for name, variable in data.variables.items():
+            if variable.dtype.kind == "f":
+                known = "units" in variable.attrs or any(str(name).endswith(count) for count in counts)
+                assert known, f"{verb}: {name}"
+
+
+def test_the_default_folder_is_named_after_the_study(capsys):
+    """Without `--out` the files are in a folder beside, with the study's name."""
+    assert main(["bearing", "le7"]) == 0
+    assert (Path("le7") / "bearing.png").exists() or list(Path("le7").glob("*.png"))
+    assert "Figures and data are in le7/" in capsys.readouterr().out
+
+
+def test_jobs_do_not_change_the_answer(folder, capsys):
+    """The same numbers on one thread and on three."""
+    texts = []
+    for jobs in ("1", "3"):
+        assert main(["stability", str(folder / "small.toml"), "--json", "--jobs", jobs]) == 0
+        texts.append(capsys.readouterr().out)
+    assert texts[0] == texts[1]
+
+
+def test_what_new_writes_is_a_study(capsys):
+    """`new` writes a study that `check` accepts."""
+    assert main(["new", "mine.toml"]) == 0
+    assert "separatrix check mine.toml" in capsys.readouterr().out
+    assert main(["check", "mine.toml"]) == 0
