@@ -30,10 +30,15 @@ class Count:
         """Wilson's 95 % interval of P(grow)."""
         return wilson_interval(self.grown, self.runs)
 
+    @property
+    def unanimous(self) -> bool:
+        """True if all of many runs agree: more would tell nothing."""
+        return self.runs >= LOOKS[-1] and self.grown in (0, self.runs)
+
     def decides(self, target: Ratio) -> bool:
         """True if the target lies outside the 95 % interval, or all of many runs agree."""
         low, high = self.interval()
-        return not low <= target <= high or (self.runs >= LOOKS[-1] and self.grown in (0, self.runs))
+        return not low <= target <= high or self.unanimous
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
@@ -71,13 +76,14 @@ class GrowthCounter:
     ) -> Count:
         """Count at a point; with a target, only as many runs as tell on which side of it P lies.
 
-        `most` runs at the most; by default those of the settings.
+        `most` runs at the most, by default those of the settings; 24 that agree are enough.
         """
         key = (restitution_factor, friction, kick)
         most = self.settings.runs if most is None else most
         known = self._counts.get(key, Count(0, 0))
-        for runs in (*LOOKS, most) if target is not None else (most,):
-            if known.runs >= most or (known.runs and target is not None and known.decides(target)):
+        for runs in (*LOOKS, most):
+            told = known.decides(target) if known.runs and target is not None else known.unanimous
+            if known.runs >= most or told:
                 break
             known = self._extend(key, known, min(runs, most))
         return known

@@ -13,7 +13,7 @@ from separatrix.stability.pool import Progress, work_through
 from separatrix.study import StabilitySettings
 from separatrix.units import Ratio
 
-OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.975, 0.99, 1.0)
+OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.98, 1.0)
 """Restitution factors beside those of the settings, so that thresholds are solved over all of 0 to 1."""
 
 
