@@ -10,9 +10,23 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
+    "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
+    "linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
+    "chain": "BearingState CageState RaceContact RestitutionState TractionState bearing_state cage_state "
+    "restitution_state traction_state",
+    "creep": "Creep contact_creep",
+    "equilibrium": "Equilibrium contact",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
+    "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
+    "lubrication": "LubricationCurve lubrication_curve",
+    "ranking": "Ranking rank",
+    "restitution": "Restitution damping_ratio race_damping restitution_factor",
+    "results": "dataset document load save",
+    "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation Race "
     "RankingQuestion StabilitySettings Study",
+    "study_file": "read_study resolved shipped_studies template",
+    "traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
 }
 """Module -> the public names it holds."""
 

@@ -83,7 +83,7 @@ RECORD_CLASSES = {
     "chain": "RaceContact",
     "cage": "PlanarCage Judgement History",
     "stability": "CriticalFriction StabilityCurve",
-    "ranking": "RankedMaterial",
+    "ranking": "RankedMaterial Ranking",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""
 

@@ -1,0 +1,107 @@
+"""What no source file of the package may hold, and what every public function must."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import separatrix
+
+SOURCE = Path(separatrix.__file__).parent
+MODULES = sorted(SOURCE.rglob("*.py"))
+TEXTS = sorted(path for path in SOURCE.rglob("*") if path.suffix in {".py", ".toml", ".md", ".csv"})
+ROOT = SOURCE.parent.parent
+
+FORBIDDEN_CALLS = {"print", "eval", "exec", "breakpoint", "input"}
+FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "requests", "urllib", "http", "socket"}
+LIMIT = 400
+
+
+def calls(tree: ast.AST) -> set[str]:
+    """Return the names of the functions that are called by a bare name."""
+    return {n.func.id for n in ast.walk(tree) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
+
+
+def imported(tree: ast.AST) -> set[str]:
+    """Return the first parts of the names of imported modules."""
+    names = {alias.name for n in ast.walk(tree) if isinstance(n, ast.Import) for alias in n.names}
+    names |= {n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module}
+    return {name.split(".")[0] for name in names}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_module_keeps_the_rules(path):
+    """No assert, print, eval, pickle or network; no fast-math; no broad except; not too long."""
+    text = path.read_text(encoding="utf-8")
+    tree = ast.parse(text)
+    assert not [n.lineno for n in ast.walk(tree) if isinstance(n, ast.Assert)]
+    assert not calls(tree) & FORBIDDEN_CALLS
+    assert not imported(tree) & FORBIDDEN_MODULES
+    assert not re.search(r"fastmath\s*=\s*True|parallel\s*=\s*True|np\.random\.seed|\bTODO\b|\bFIXME\b", text)
+    broad = [n for n in ast.walk(tree) if isinstance(n, ast.ExceptHandler) and _is_broad(n.type)]
+    assert not broad
+    assert len(text.splitlines()) < LIMIT
+
+
+def _is_broad(kind: ast.expr | None) -> bool:
+    return kind is None or (isinstance(kind, ast.Name) and kind.id in {"Exception", "BaseException"})
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_what_is_public_is_explained(path):
+    """Every module, public class and public function has a docstring."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    kinds = (ast.FunctionDef, ast.ClassDef)
+    outer = [n for n in tree.body if isinstance(n, kinds)]
+    methods = [n for c in outer if isinstance(c, ast.ClassDef) for n in c.body if isinstance(n, kinds)]
+    public = [n for n in (*outer, *methods) if not n.name.startswith("_")]
+    for node in (tree, *public):
+        assert ast.get_docstring(node), getattr(node, "name", path.name)
+
+
+def test_nothing_names_a_machine_or_an_index():
+    """No path of a machine and no address of a package index, in sources or at the root."""
+    root = [p for p in ROOT.iterdir() if p.is_file() and p.suffix in {".toml", ".txt", ".md", ""}]
+    for path in (*TEXTS, *root):
+        text = path.read_text(encoding="utf-8", errors="replace")
+        assert not re.search(r"/(home|root|work|Users|tmp)/\w|index-url|https?://\S*/simple", text), path
+
+
+def test_most_functions_are_small():
+    """95 % of the functions of the package are under 40 lines, docstring not counted."""
+    sizes = sorted(size for path in MODULES for size in _sizes(ast.parse(path.read_text(encoding="utf-8"))))
+    assert sizes[int(0.95 * len(sizes))] < 40
+    assert sizes[len(sizes) // 2] <= 8
+
+
+def _sizes(tree: ast.AST) -> list[int]:
+    sizes = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            body = node.body[1:] if ast.get_docstring(node) else node.body
+            sizes.append(node.end_lineno - body[0].lineno + 1 if body else 0)
+    return sizes
+
+
+def test_importing_the_package_is_light():
+    """`import separatrix` and the command line's own modules load neither numpy nor matplotlib nor xarray."""
+    code = (
+        "import sys, separatrix, separatrix.cli.app\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'matplotlib', 'xarray', 'rich'}\n"
+        "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_public_name_can_be_imported():
+    """Each name in `separatrix.__all__` is there, and an unknown one is refused as Python does."""
+    for name in separatrix.__all__:
+        assert getattr(separatrix, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'separator'"):
+        separatrix.separator  # noqa: B018
