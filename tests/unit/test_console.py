@@ -1,0 +1,192 @@
+"""The real command, as a process: help, version, pipes, full disks, encodings, interrupts."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from separatrix.cli.console import one_line
+from separatrix.cli.files import staged, writable_folder
+from separatrix.errors import InputError
+
+COMMAND = [sys.executable, "-m", "separatrix"]
+VERBS = ["new", "check", "bearing", "traction", "restitution", "stability", "simulate", "rank"]
+ROOT = Path(__file__).parents[2]
+
+
+def run(*arguments: str, **options) -> subprocess.CompletedProcess:
+    """Run the command and return what it said."""
+    return subprocess.run(
+        [*COMMAND, *arguments], capture_output=True, timeout=120, check=False, **{"text": True} | options
+    )
+
+
+def test_help_names_every_verb_in_the_order_of_the_chain():
+    """`--help` answers with status 0 and lists the verbs; nothing on standard error."""
+    done = run("--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = re.findall(r"^  (\w+)  +\w", done.stdout.partition("Commands:")[2], re.MULTILINE)
+    assert found == VERBS
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_of_a_verb_names_its_options(verb):
+    """Each verb has help; all that take a study have the same four options."""
+    done = run(verb, "--help")
+    assert done.returncode == 0
+    options = ("--json", "--quiet") if verb == "new" else ("--json", "--out", "--quiet", "--jobs")
+    assert all(option in done.stdout for option in options)
+
+
+def test_version_is_one_line():
+    """`--version` says name and version."""
+    done = run("--version")
+    assert re.fullmatch(r"separatrix \d+\.\d+\.\d+\S*\n", done.stdout)
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    """`separatrix check ... | head -1`: status 0, no complaint."""
+    command = [*COMMAND, "check", "cryogenic-turbopump", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(60) == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_disk_is_said_in_one_line():
+    """Standard output on a full disk: status 2, one line."""
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [*COMMAND, "check", "le7"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert done.stderr.startswith("separatrix: Standard output cannot be written")
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [("check", "le7"), ("check", "le7", "--json"), ("check", "nothing")])
+def test_closed_streams_do_not_crash(arguments):
+    """Started with standard output and error closed, as some schedulers do."""
+    code = "import os, sys; os.close(1); os.close(2); os.execv(sys.executable, sys.argv[1:])"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *COMMAND, *arguments], capture_output=True, timeout=60, check=False
+    )
+    assert done.returncode == (2 if "nothing" in arguments else 0)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8", "cp1252"])
+def test_any_encoding_of_the_terminal_will_do(encoding, tmp_path):
+    """A title outside the terminal's alphabet is spelled out, not a crash."""
+    study = tmp_path / "study.toml"
+    study.write_text('extends = "le7"\ntitle = "Gr\u00f6\u00dfe \u03b7 \u6c34"\n', encoding="utf-8")
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = run("check", str(study), env=environment, encoding=encoding)
+    assert (done.returncode, done.stderr) == (0, "")
+    done = run("check", str(study), "--json", env=environment, encoding=encoding)
+    assert json.loads(done.stdout)["title"] == "Gr\u00f6\u00dfe \u03b7 \u6c34"
+
+
+def test_a_name_that_is_no_text_is_refused_in_one_line():
+    """A file name of bytes that are no UTF-8, and one with a line break and an escape."""
+    for name in (b"\xff\xfe.toml", b"a\nb\x1b[31m"):
+        done = run("check", os.fsdecode(name))
+        assert done.returncode == 2
+        assert done.stderr.count("\n") == 1
+        assert "\x1b" not in done.stderr
+
+
+def test_an_interrupt_is_one_line_and_status_130(tmp_path):
+    """Ctrl-C in the middle of a long ensemble: soon over, one line, no traceback, nothing half-written."""
+    study = tmp_path / "long.toml"
+    study.write_text('extends = "cryogenic-turbopump"\n[stability]\nruns = 5000\nduration = "1 s"\n')
+    out = tmp_path / "out"
+    process = subprocess.Popen(
+        [*COMMAND, "simulate" if os.name == "nt" else "stability", str(study), "--out", str(out)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    _wait_until(out.exists)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert said == "separatrix: interrupted; nothing was written.\n"
+    assert not out.exists()
+
+
+def _wait_until(happened) -> None:
+    for _ in range(600):
+        if happened():
+            return
+        time.sleep(0.05)
+    pytest.fail("waited 30 s in vain")
+
+
+def test_one_line_spells_out_what_a_terminal_should_not_get():
+    """Line breaks become blanks; control characters their code."""
+    assert one_line("a\nb\t c\x1b[0m\x00") == r"a b c\x1b[0m\x00"
+
+
+def write_half(folder: Path) -> None:
+    """Fail after the first of two files."""
+    with staged(folder) as stage:
+        (stage / "a").write_text("new")
+        raise RuntimeError
+
+
+def test_staged_files_come_all_or_none(tmp_path):
+    """A failure half-way leaves the old file and no new one."""
+    (tmp_path / "a").write_text("old")
+    with pytest.raises(RuntimeError):
+        write_half(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+    assert (tmp_path / "a").read_text() == "old"
+    with staged(tmp_path) as stage:
+        (stage / "a").write_text("new")
+        (stage / "b").write_text("new")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "new", "b": "new"}
+
+
+def test_a_folder_that_stays_empty_is_taken_away(tmp_path):
+    """Folders made for an answer that never came are removed, older ones stay."""
+    with pytest.raises(RuntimeError), writable_folder(tmp_path / "a" / "b"):
+        raise RuntimeError
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "mine").mkdir()
+    with pytest.raises(RuntimeError), writable_folder(tmp_path / "mine"):
+        raise RuntimeError
+    assert (tmp_path / "mine").is_dir()
+
+
+def test_a_folder_below_a_file_is_refused(tmp_path):
+    """A file in the way is named as such."""
+    (tmp_path / "file").write_text("")
+    with (
+        pytest.raises(InputError, match=r"--out .* cannot be written"),
+        writable_folder(tmp_path / "file" / "x"),
+    ):
+        pytest.fail("must not get here")
+
+
+def test_the_commands_of_the_readme_exist():
+    """Every `separatrix VERB` of README and docs is a verb."""
+    texts = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    named = {
+        verb for path in texts for verb in re.findall(r"^ *\$? ?separatrix (\w+)", path.read_text(), re.M)
+    }
+    assert named
+    assert named <= set(VERBS)
