@@ -31,10 +31,9 @@ def evaluate(
     """Balance of one ball by the model that the length of its state implies: 2 race control, 6 free."""
     if state.shape[0] == 2:
         controlled_ball(p, A, state, residual, out)
-    elif fine:
-        free_ball(p, A, state, smoothing, method.cells, method.nodes, residual, out)
-    else:
-        free_ball(p, A, state, smoothing, method.coarse_cells, method.coarse_nodes, residual, out)
+        return
+    cells, nodes = (method.cells, method.nodes) if fine else (method.coarse_cells, method.coarse_nodes)
+    free_ball(p, A, state, smoothing, cells, nodes, residual, out)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -109,4 +108,5 @@ def newton_ball(
             return min(norm, tolerance) if norm <= 100.0 * tolerance else norm  # rounding: as good as it gets
         state[:] = trial
     row_scales(p, A, state, method.force, scales)
-    return scaled_norm(residual, scales)
+    norm = scaled_norm(residual, scales)
+    return min(norm, tolerance) if norm <= 100.0 * tolerance else norm

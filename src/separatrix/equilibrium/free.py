@@ -15,7 +15,7 @@ from separatrix.equilibrium.race_control import inertia_loads, normal_slopes
 from separatrix.equilibrium.slip import friction_resultants
 from separatrix.units import Array
 
-LEAST_SHARE = 1e-3
+LEAST_SHARE = 1e-2
 """Share of the outer load with which the inner race still turns a ball that it hardly touches."""
 
 

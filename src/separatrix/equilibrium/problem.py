@@ -71,22 +71,23 @@ def problem(bearing: BallBearing, operation: Operation, inner_share: float, fric
         cure = "Centrifugal force needs it; add it, or set the speeds to 0."
         raise InputError("[bearing] ball_material", "needs a density", "kg/m3", "", cure)
     mass = (ball.density or 0.0) * math.pi * D**3 / 6.0
-    return Problem(
-        ball_diameter=D,
-        pitch_diameter=bearing.pitch_diameter,
-        inner_conformity=bearing.inner_conformity,
-        outer_conformity=bearing.outer_conformity,
-        free_sine=math.sin(bearing.contact_angle),
-        free_cosine=math.cos(bearing.contact_angle),
-        modulus=contact_modulus(ball, bearing.ring_material),
-        ball_mass=mass,
-        ball_inertia=0.1 * mass * D * D,
-        outer_speed=operation.outer_speed,
-        speed=operation.inner_speed - operation.outer_speed,
-        inner_share=inner_share,
-        friction=friction,
-        inertia_factor=1.0 if turning else 0.0,
+    numbers = (
+        D,
+        bearing.pitch_diameter,
+        bearing.inner_conformity,
+        bearing.outer_conformity,
+        math.sin(bearing.contact_angle),
+        math.cos(bearing.contact_angle),
+        contact_modulus(ball, bearing.ring_material),
+        mass,
+        0.1 * mass * D * D,
+        operation.outer_speed,
+        operation.inner_speed - operation.outer_speed,
+        inner_share,
+        friction,
+        1.0 if turning else 0.0,
     )
+    return Problem(*(float(number) for number in numbers))  # an int would compile every kernel anew
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

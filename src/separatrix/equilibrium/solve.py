@@ -102,12 +102,14 @@ class _Setup(NamedTuple):
 def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Setup:
     """Collect the loads; one ball stands for all where load and ring make them alike."""
     Z, arm = bearing.ball_count, 0.5 * bearing.pitch_diameter
-    loads = np.array([operation.axial_load, operation.radial_load, 0.0, cross_moment, -operation.moment])
-    tilt = operation.tilt or 0.0
+    loads = np.array(
+        (operation.axial_load, operation.radial_load, 0.0, cross_moment, -operation.moment), dtype=float
+    )
+    tilt = float(operation.tilt or 0.0)
     alike = not loads[1:].any() and tilt == 0.0
     dofs = [0] if alike else [0, 1, 2] if operation.tilt is not None else [0, 1, 2, 3, 4]
     carried = float(np.abs(loads / (1.0, 1.0, 1.0, arm, arm)).max())
-    force = carried / Z + inertia_loads(p, 0.45, 0.0)[0]
+    force = float(carried / Z + inertia_loads(p, 0.45, 0.0)[0])
     azimuths = 2.0 * np.pi * np.arange(1 if alike else Z) / Z
     return _Setup(
         balls=Balls(loads, np.array(dofs, dtype=np.int64), azimuths, float(Z) if alike else 1.0),

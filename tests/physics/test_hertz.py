@@ -1,0 +1,123 @@
+"""Hertz contact against exact limits, Carlson's integrals and a quadrature without elliptic functions."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import elliprd, elliprf
+
+from separatrix.hertz import (
+    axis_ratio,
+    contact_ellipse,
+    contact_modulus,
+    elliptic_integrals,
+    race_curvatures,
+)
+from separatrix.study import BallBearing, Material, Race
+
+STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
+NITRIDE = Material(name="nitride", elastic_modulus=310e9, poisson_ratio=0.27, density=3210.0)
+ROUNDING = 1e-12  # some thousand operations in double precision
+
+
+@pytest.mark.parametrize(
+    ("ratio", "axes"),
+    [(1.0, 1.0), (2.0, 1.58580), (5.0, 2.89018), (10.0, 4.49945), (20.0, 6.92868), (50.0, 12.07115)],
+)
+def test_axis_ratio_meets_the_table(ratio: float, axes: float) -> None:
+    """Computed twice independently, given to five decimals."""
+    assert 1.0 / axis_ratio(ratio) == pytest.approx(axes, abs=5e-6)  # the last digit given
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.0 + 1e-12, 1.0001, 1.5, 30.0, 1e3, 1e6, 1e9])
+def test_shape_solves_carlsons_equation(ratio: float) -> None:
+    """R_y/R_x = R_D(0, 1, q)/R_D(0, q, 1) holds to rounding from circles to needles."""
+    k = axis_ratio(ratio)
+    assert elliprd(0, 1, k * k) / elliprd(0, k * k, 1) == pytest.approx(ratio, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("k", [1.0, 0.999999, 0.5, 0.1, 1e-3, 1e-6])
+def test_integrals_are_carlsons(k: float) -> None:
+    """K, (K - E)/m and (E - q K)/m from the arithmetic-geometric mean equal Carlson's forms."""
+    q = k * k
+    expected = (elliprf(0, q, 1), elliprd(0, q, 1) / 3.0, q * elliprd(0, 1, q) / 3.0)
+    assert elliptic_integrals(k) == pytest.approx(expected, rel=ROUNDING)
+
+
+def test_circular_limit() -> None:
+    """Equal curvatures give Hertz's sphere: a^3 = 3 Q R/(4 E*), approach = a^2/R, p0 = 3 Q/(2 pi a^2)."""
+    Q, R, modulus = 100.0, 5e-3, 110e9
+    ellipse = contact_ellipse(Q, 1.0 / R, 1.0 / R, modulus)
+    a = (0.75 * Q * R / modulus) ** (1.0 / 3.0)
+    assert ellipse.semi_major == pytest.approx(a, rel=ROUNDING)
+    assert ellipse.semi_minor == ellipse.semi_major
+    assert ellipse.approach == pytest.approx(a * a / R, rel=ROUNDING)
+    assert ellipse.max_pressure == pytest.approx(1.5 * Q / (math.pi * a * a), rel=ROUNDING)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 3.0, 26.0, 400.0])
+def test_approach_is_the_integral_of_boussinesq(ratio: float) -> None:
+    """The central displacement by quadrature of the pressure over angle, without elliptic integrals.
+
+    Along a ray at angle t the pressure integrates to pi p0 rho(t)/4 (the 1/r of Boussinesq cancels r).
+    """
+    ellipse = contact_ellipse(1000.0, 200.0, 200.0 / ratio, 110e9)
+    a, b = ellipse.semi_major, ellipse.semi_minor
+
+    def ray(t: float) -> float:
+        return 0.25 * math.pi * ellipse.max_pressure / math.hypot(math.sin(t) / a, math.cos(t) / b)
+
+    displacement = 4.0 * quad(ray, 0.0, 0.5 * math.pi, epsrel=1e-12, limit=200)[0] / (math.pi * 110e9)
+    assert displacement == pytest.approx(ellipse.approach, rel=1e-9)  # the quadrature's own error
+
+
+@pytest.mark.parametrize("ratio", [1.0, 26.0])
+def test_gap_closes_inside_the_ellipse(ratio: float) -> None:
+    """Displacement at the ends of the axes falls short of the approach by the gap there."""
+    ellipse = contact_ellipse(1000.0, 200.0, 200.0 / ratio, 110e9)
+    a, b, k = ellipse.semi_major, ellipse.semi_minor, ellipse.semi_minor / ellipse.semi_major
+    K, over_m, other = elliptic_integrals(k)
+    factor = ellipse.max_pressure * b / 110e9
+    assert factor * over_m == pytest.approx(a * a * ellipse.curvature_transverse / 2.0, rel=ROUNDING)
+    assert factor * other / k**2 == pytest.approx(
+        b * b * ellipse.curvature_rolling / (2.0 * k * k), rel=ROUNDING
+    )
+    assert factor * K == pytest.approx(ellipse.approach, rel=ROUNDING)
+
+
+def test_pair_modulus_of_different_materials() -> None:
+    """Compliances add; two equal bodies give E/(2 (1 - nu^2)) = G/(1 - nu)."""
+    G = STEEL.elastic_modulus / (2.0 * (1.0 + STEEL.poisson_ratio))
+    assert contact_modulus(STEEL, STEEL) == pytest.approx(G / (1.0 - STEEL.poisson_ratio), rel=ROUNDING)
+    mixed = 1.0 / contact_modulus(STEEL, NITRIDE)
+    halves = 0.5 / contact_modulus(STEEL, STEEL) + 0.5 / contact_modulus(NITRIDE, NITRIDE)
+    assert mixed == pytest.approx(halves, rel=ROUNDING)
+
+
+def test_race_curvatures_use_the_operating_angle() -> None:
+    """1/R_x is (2/D)/(1 -+ D cos(alpha)/d_m): at 90 degrees both races are flat along rolling."""
+    bearing = BallBearing(
+        ball_diameter=0.01,
+        pitch_diameter=0.05,
+        ball_count=8,
+        contact_angle=0.4,
+        inner_conformity=0.52,
+        outer_conformity=0.53,
+        ball_material=STEEL,
+        ring_material=STEEL,
+    )
+    assert race_curvatures(bearing, Race.INNER, 0.0)[0] == pytest.approx(200.0 / 0.8, rel=ROUNDING)
+    assert race_curvatures(bearing, Race.OUTER, 0.0)[0] == pytest.approx(200.0 / 1.2, rel=ROUNDING)
+    for race in Race:
+        assert race_curvatures(bearing, race, math.pi / 2)[0] == pytest.approx(200.0, rel=ROUNDING)
+    transverse = race_curvatures(bearing, Race.OUTER, 0.3)[1]
+    assert transverse == pytest.approx(1.0 / 0.005 - 1.0 / 0.0053, rel=ROUNDING)
+
+
+def test_pressure_carries_the_load() -> None:
+    """The semi-ellipsoid of pressure has the volume 2/3 pi a b p0."""
+    e = contact_ellipse(321.0, 150.0, 10.0, 110e9)
+    assert 2.0 / 3.0 * np.pi * e.semi_major * e.semi_minor * e.max_pressure == pytest.approx(
+        321.0, rel=ROUNDING
+    )
