@@ -11,7 +11,7 @@ from separatrix.equilibrium.groove import static_split
 from separatrix.equilibrium.problem import Method, Problem, problem
 from separatrix.equilibrium.race_control import inertia_loads
 from separatrix.equilibrium.record import Equilibrium
-from separatrix.equilibrium.ring import FREE, STATIC, Balls, solve_ring
+from separatrix.equilibrium.ring import FREE, STATIC, Balls, ring_balance, solve_ring
 from separatrix.equilibrium.slip import chebyshev_nodes
 from separatrix.equilibrium.speeds import ball_table, controlled_states, settle_free_states
 from separatrix.errors import ConvergenceError, InputError
@@ -80,13 +80,14 @@ def equilibrium(
         q, iterations, rest, states = _controlled(p, setup, q, states[:, :2].copy(), iterations)
         if model is KinematicModel.FREE:
             q, iterations, rest, states = _free(p, setup, q, states, iterations)
+    solved = states
     if states.shape[1] != FREE:
         states = controlled_states(p, q, setup.balls.azimuths, states)
         if model is KinematicModel.FREE:
             ball = settle_free_states(p, q, setup.balls.azimuths, states, setup.method)
             if ball >= 0:
                 raise ConvergenceError(_not_free(math.inf, ball), iterations, rest)
-    return _finished(p, setup, model, q, states, iterations, rest)
+    return _finished(p, setup, model, q, states, solved, iterations, rest)
 
 
 class _Setup(NamedTuple):
@@ -229,9 +230,26 @@ def _check(model: KinematicModel, race_friction: Ratio) -> None:
         raise InputError("[film] race_friction", rule, "-", f"{race_friction:g}", cure)
 
 
+def _carried_moment(p: Problem, setup: _Setup, q: Array, solved: Array) -> NewtonMetre:
+    """Give the moment asked for, or what the balls return to a held tilt [N m]."""
+    if 4 in setup.balls.dofs or len(setup.balls.dofs) == 1:
+        return float(-setup.balls.loads[4])
+    balance, slopes = np.empty(5), np.empty((5, 5))
+    ring_balance(p, q, setup.balls, solved.copy(), setup.method, balance, slopes)
+    return float(balance[4] - setup.balls.loads[4])
+
+
 def _finished(
-    p: Problem, setup: _Setup, model: KinematicModel, q: Array, states: Array, iterations: int, rest: Newton
+    p: Problem,
+    setup: _Setup,
+    model: KinematicModel,
+    q: Array,
+    states: Array,
+    solved: Array,
+    iterations: int,
+    rest: Newton,
 ) -> Equilibrium:
+    """Put the answer into a record, one row for each ball of the bearing."""
     table = ball_table(p, q, setup.balls.azimuths, states)
     Z = setup.ball_count
     rows = np.broadcast_to(table, (Z, table.shape[1])) if table.shape[0] == 1 else table
@@ -260,7 +278,7 @@ def _finished(
         transverse_displacement=float(q[2]),
         tilt=float(-q[4]),
         cross_tilt=float(q[3]),
-        moment=float(-setup.balls.loads[4]),
+        moment=_carried_moment(p, setup, q, solved),
         iterations=iterations,
         residual=float(rest),
     )

@@ -41,12 +41,23 @@ def _speeds_at(p: Problem, side: float, t: Touch, state: Array) -> tuple[float, 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None:
+    """Groove vector of a ball; one that floats at rest is put between the grooves at their first touch."""
+    groove_vector(p, q, azimuth, A)
+    touching = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
+    length = math.hypot(A[0], A[1])
+    if p.inertia_factor == 0.0 and length < touching:
+        A *= touching / length
+        state[:2] = A * ((p.outer_conformity - 0.5) * p.ball_diameter / touching)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def ball_table(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
     """One row a ball: angles, loads, orbit, spin, pitch, yaw, ratios, rolling speeds, inertia, control."""
     table, A = np.empty((azimuths.size, COLUMNS)), np.empty(2)
     for j in range(azimuths.size):
-        groove_vector(p, q, azimuths[j], A)
         row, s = table[j], states[j]
+        _place(p, q, azimuths[j], s, A)
         i = touch(p, -1.0, A[0] - s[0], A[1] - s[1], 0.0)
         o = touch(p, 1.0, s[0], s[1], 0.0)
         row[0], row[1] = math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine)
@@ -72,8 +83,8 @@ def controlled_states(p: Problem, q: Array, azimuths: Array, states: Array) -> A
     """Complete V, shape (ball, 2 or more), with orbit and spin under race control, shape (ball, 6)."""
     full, A = np.empty((azimuths.size, 6)), np.empty(2)
     for j in range(azimuths.size):
-        groove_vector(p, q, azimuths[j], A)
         full[j, 0], full[j, 1] = states[j, 0], states[j, 1]
+        _place(p, q, azimuths[j], full[j], A)
         kinematic_start(p, A, full[j])
     return full
 
@@ -83,7 +94,7 @@ def settle_free_states(p: Problem, q: Array, azimuths: Array, states: Array, met
     """Bring orbit and spin of every ball to the free balance with V held; -1, or the first ball that fails."""
     A = np.empty(2)
     for j in range(azimuths.size):
-        groove_vector(p, q, azimuths[j], A)
+        _place(p, q, azimuths[j], states[j], A)
         if not solve_kinematics(p, A, states[j], method):
             return j
     return -1

@@ -1,0 +1,256 @@
+"""Equilibrium against cases computed twice independently, exact identities and balances."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+from separatrix.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.hertz import contact_modulus, race_curvatures
+from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
+from separatrix.units import Array
+
+OUTER, INNER, FREE = (
+    KinematicModel.OUTER_RACE_CONTROL,
+    KinematicModel.INNER_RACE_CONTROL,
+    KinematicModel.FREE,
+)
+RPM = 2.0 * math.pi / 60.0
+STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
+BALANCED = 2e-6  # the ring stops at 1e-6 of its load, the balls far below
+
+
+def ball_218(**changes: object) -> BallBearing:
+    """The 218 bearing of the rolling-bearing books."""
+    bearing = BallBearing(
+        ball_diameter=22.23e-3,
+        pitch_diameter=125.26e-3,
+        ball_count=16,
+        contact_angle=math.radians(40.0),
+        inner_conformity=0.523167,
+        outer_conformity=0.523167,
+        ball_material=STEEL,
+        ring_material=STEEL,
+    )
+    return dataclasses.replace(bearing, **changes)  # type: ignore[arg-type]
+
+
+def le7() -> BallBearing:
+    """A turbopump bearing."""
+    steel = Material(name="440C", elastic_modulus=199.948e9, poisson_ratio=0.25, density=7750.37)
+    return BallBearing(
+        ball_diameter=7.938e-3,
+        pitch_diameter=38.5e-3,
+        ball_count=10,
+        contact_angle=math.radians(20.0),
+        inner_conformity=0.56,
+        outer_conformity=0.52,
+        ball_material=steel,
+        ring_material=steel,
+    )
+
+
+SPINNING = Operation(inner_speed=10_000 * RPM, axial_load=22_250.0)
+COMBINED = Operation(inner_speed=50_000 * RPM, axial_load=2670.0, radial_load=800.0, moment=1.0)
+
+
+@pytest.mark.parametrize(
+    ("model", "angles", "loads", "ratio"),
+    [
+        (OUTER, (48.705, 33.615), (1850.9, 2304.8), 0.4492),
+        (INNER, (44.044, 39.185), (1783.1, 2201.0), None),
+        (FREE, (48.40, 34.01), None, 0.4440),
+    ],
+)
+def test_218_bearing(
+    model: KinematicModel,
+    angles: tuple[float, float],
+    loads: tuple[float, float] | None,
+    ratio: float | None,
+) -> None:
+    """The three kinematic models at 22 250 N and 10 000 rpm, friction 0.15; digits as given."""
+    result = equilibrium(ball_218(), SPINNING, model, 0.15)
+    digit = 0.01 if model is FREE else 0.001
+    assert math.degrees(result.contact_angle_inner[0]) == pytest.approx(angles[0], abs=digit)
+    assert math.degrees(result.contact_angle_outer[0]) == pytest.approx(angles[1], abs=digit)
+    if loads:
+        assert (result.load_inner[3], result.load_outer[3]) == pytest.approx(loads, abs=0.06)
+    if ratio:
+        assert result.orbital_speed[0] / SPINNING.inner_speed == pytest.approx(ratio, abs=6e-5)
+    if model is FREE:
+        assert math.degrees(result.pitch_angle[0]) == pytest.approx(32.40, abs=0.02)
+
+
+def test_218_bearing_at_rest() -> None:
+    """17 800 N without speed: angle, load, displacement and inner pressure, digits as given."""
+    result = equilibrium(ball_218(), Operation(inner_speed=0.0, axial_load=17_800.0), OUTER, 0.15)
+    assert math.degrees(result.contact_angle_inner[0]) == pytest.approx(41.500, abs=6e-4)
+    assert result.load_outer[5] == pytest.approx(1678.96, abs=0.006)
+    assert result.axial_displacement == pytest.approx(35.99e-6, abs=6e-9)
+    pressure = contact(result, ball_218(), Race.INNER, 0).max_pressure
+    assert pressure == pytest.approx(1522.4e6, abs=0.06e6)
+
+
+def test_turbopump_bearing() -> None:
+    """50 000 rpm and 2670 N under outer race control, digits as given."""
+    result = equilibrium(le7(), Operation(inner_speed=50_000 * RPM, axial_load=2670.0), OUTER, 0.1)
+    assert math.degrees(result.contact_angle_inner[0]) == pytest.approx(26.2326, abs=6e-5)
+    assert math.degrees(result.contact_angle_outer[0]) == pytest.approx(18.6054, abs=6e-5)
+    assert result.axial_displacement == pytest.approx(51.93e-6, abs=6e-9)
+    assert result.load_inner[0] == pytest.approx(604.05, abs=0.006)
+    assert result.load_outer[0] == pytest.approx(768.82, abs=0.006)
+    assert result.orbital_speed[0] == pytest.approx(2143.3, abs=0.06)
+    assert set(result.race_control) == {Race.OUTER}
+
+
+@pytest.mark.parametrize("model", [OUTER, INNER, FREE])
+def test_at_rest_both_angles_are_equal(model: KinematicModel) -> None:
+    """0 rpm: one line through both contacts, no inertia, and speed ratios in the limit of slow turning."""
+    operation = Operation(inner_speed=0.0, axial_load=500.0, radial_load=1500.0)
+    result = equilibrium(ball_218(), operation, model, 0.15)
+    assert result.contact_angle_inner == pytest.approx(result.contact_angle_outer, abs=1e-12)
+    assert not result.centrifugal_force.any()
+    assert not result.orbital_speed.any()
+    assert np.isfinite(result.spin_roll_ratio_inner).all()
+
+
+@pytest.mark.parametrize("speeds", [(100.0, 0.0), (0.0, 100.0), (300.0, -120.0), (-50.0, 80.0)])
+@pytest.mark.parametrize("model", [OUTER, INNER])
+def test_orbit_for_equal_angles(model: KinematicModel, speeds: tuple[float, float]) -> None:
+    """Slow turning: w_m = (w_i (1 - g) + w_o (1 + g))/2 with g = D cos(alpha)/d_m, whichever rings turn."""
+    inner, outer = (rpm * RPM for rpm in speeds)
+    result = equilibrium(
+        ball_218(), Operation(inner_speed=inner, outer_speed=outer, axial_load=2e4), model, 0.1
+    )
+    g = 22.23 / 125.26 * math.cos(result.contact_angle_inner[0])
+    expected = 0.5 * (inner * (1.0 - g) + outer * (1.0 + g))
+    # the angles differ by about 1e-6 from the centrifugal force at these speeds
+    assert result.orbital_speed[0] == pytest.approx(expected, rel=1e-4, abs=1e-4)
+
+
+def test_sign_of_the_gyroscopic_moment() -> None:
+    """The moment opens the angles further (48.7/33.6); with the wrong sign the inner falls to 44.9."""
+    result = equilibrium(ball_218(), SPINNING, OUTER, 0.15)
+    assert result.contact_angle_inner[0] > math.radians(48.0)
+    J = STEEL.density * math.pi * 0.02223**5 / 60.0
+    spin = np.linalg.norm(result.ball_spin[0])
+    expected = J * spin * result.orbital_speed[0] * math.sin(result.pitch_angle[0])
+    assert result.gyroscopic_moment[0] == pytest.approx(expected, rel=1e-9)
+    assert result.ball_spin[0, 0] < 0.0 < result.pitch_angle[0]  # the ball turns against its orbit
+
+
+@pytest.mark.parametrize(("model", "still"), [(OUTER, "outer"), (INNER, "inner")])
+def test_controlling_race_has_no_spin(model: KinematicModel, still: str) -> None:
+    """Race control is the absence of spin at that race; the other one has some."""
+    result = equilibrium(ball_218(), SPINNING, model, 0.15)
+    ratios = {"inner": result.spin_roll_ratio_inner[0], "outer": result.spin_roll_ratio_outer[0]}
+    assert abs(ratios.pop(still)) < 1e-12
+    assert abs(ratios.popitem()[1]) > 0.3
+
+
+def ring_loads(result: Equilibrium, bearing: BallBearing) -> Array:
+    """Axial, radial force and tilting moment of the normal loads and the shared gyroscopic friction."""
+    share = 2.0 if result.model is INNER else 0.0
+    T = share * result.gyroscopic_moment / bearing.ball_diameter
+    s, c = np.sin(result.contact_angle_inner), np.cos(result.contact_angle_inner)
+    axial, outward = result.load_inner * s + T * c, result.load_inner * c - T * s
+    lever, around = 0.5 * bearing.pitch_diameter, np.cos(result.azimuth)
+    couple = 0.5 * bearing.ball_diameter * T
+    return np.array(
+        (axial.sum(), (outward * around).sum(), ((lever * axial - couple) * around).sum()), dtype=float
+    )
+
+
+@pytest.mark.parametrize("model", [OUTER, INNER])
+def test_ring_carries_its_loads(model: KinematicModel) -> None:
+    """Forces and moments of the balls, summed here, are the loads asked for."""
+    result = equilibrium(le7(), COMBINED, model, 0.1)
+    assert ring_loads(result, le7()) == pytest.approx((2670.0, 800.0, 1.0), rel=BALANCED)
+
+
+def test_held_tilt_returns_its_moment() -> None:
+    """Rings held at the tilt that a moment makes need that moment."""
+    free = equilibrium(le7(), COMBINED, OUTER, 0.1)
+    held = dataclasses.replace(COMBINED, moment=0.0, tilt=free.tilt)
+    result = equilibrium(le7(), held, OUTER, 0.1)
+    assert result.load_inner == pytest.approx(free.load_inner, rel=1e-6)
+    assert result.moment == pytest.approx(1.0, rel=1e-5)
+
+
+def test_second_road_by_a_general_solver() -> None:
+    """All balls and the ring at once, force balances written anew, solved by MINPACK."""
+    bearing, Z = le7(), 10
+    result = equilibrium(bearing, COMBINED, OUTER, 0.1)
+    psi, D, dm = result.azimuth, bearing.ball_diameter, bearing.pitch_diameter
+    fi, fo, a0 = bearing.inner_conformity, bearing.outer_conformity, bearing.contact_angle
+    modulus = contact_modulus(bearing.ball_material, bearing.ring_material)
+    mass = 7750.37 * math.pi * D**3 / 6.0
+
+    def hertz(length: Array, f: float, race: Race, angle: Array) -> Array:
+        from separatrix.hertz import contact_ellipse
+
+        loads = []
+        for gap, alpha in zip(length - (f - 0.5) * D, angle, strict=True):
+            one = contact_ellipse(1.0, *race_curvatures(bearing, race, float(alpha)), modulus)
+            loads.append((max(gap, 0.0) / one.approach) ** 1.5)
+        return np.array(loads)
+
+    def unbalance(u: Array) -> Array:
+        x, y, tilt = u[0] * 1e-5, u[1] * 1e-5, u[2] * 1e-3
+        V1, V2 = u[3 : 3 + Z] * 1e-5, u[3 + Z :] * 1e-5
+        A1 = (fi + fo - 1.0) * D * math.sin(a0) + x + 0.5 * dm * tilt * np.cos(psi)
+        A2 = (fi + fo - 1.0) * D * math.cos(a0) + y * np.cos(psi)
+        ai, ao = np.arctan2(A1 - V1, A2 - V2), np.arctan2(V1, V2)
+        Qi = hertz(np.hypot(A1 - V1, A2 - V2), fi, Race.INNER, ai)
+        Qo = hertz(np.hypot(V1, V2), fo, Race.OUTER, ao)
+        g = D / dm
+        beta = np.arctan2(np.sin(ao), np.cos(ao) + g)  # Harris: tan(beta) = sin/(cos + g)
+        away, near = np.cos(beta - ao) / (1 + g * np.cos(ao)), np.cos(beta - ai) / (1 - g * np.cos(ai))
+        wr = -COMBINED.inner_speed / ((away + near) * g)
+        wm = COMBINED.inner_speed * away / (away + near)
+        Mg = mass * D**2 / 10.0 * wr * wm * np.sin(beta)  # negative, as in the standard equations
+        Fc = 0.5 * mass * dm * wm**2
+        T = 2.0 * Mg / D
+        axial = Qo * np.sin(ao) - Qi * np.sin(ai) - T * np.cos(ao)
+        outward = Qo * np.cos(ao) - Qi * np.cos(ai) + T * np.sin(ao) - Fc
+        ring = (
+            2670.0 - np.sum(Qi * np.sin(ai)),
+            800.0 - np.sum(Qi * np.cos(ai) * np.cos(psi)),
+            (1.0 - 0.5 * dm * np.sum(Qi * np.sin(ai) * np.cos(psi))) * 100.0,
+        )
+        return np.concatenate((ring, axial, outward)) / 100.0
+
+    span = (fi + fo - 1.0) * D * 1e5
+    start = np.concatenate(
+        ([4.0, 2.0, -1.5], np.full(Z, 0.27 * span * math.sin(a0)), np.full(Z, 0.27 * span * math.cos(a0)))
+    )
+    answer = root(unbalance, start, method="hybr", options={"maxfev": 20_000, "xtol": 1e-13})
+    assert np.abs(answer.fun).max() < 1e-7  # N/100
+    assert result.axial_displacement == pytest.approx(answer.x[0] * 1e-5, rel=1e-6)
+    assert result.radial_displacement == pytest.approx(answer.x[1] * 1e-5, rel=1e-6)
+    assert result.tilt == pytest.approx(answer.x[2] * 1e-3, rel=1e-6)
+
+
+def test_balls_that_leave_the_inner_race_rest_on_the_outer() -> None:
+    """Radial load with play at speed: unloaded balls press outward with their centrifugal force alone."""
+    bearing = ball_218(contact_angle=math.radians(8.0))
+    operation = Operation(inner_speed=6000 * RPM, axial_load=0.0, radial_load=5000.0)
+    for model in (OUTER, INNER, FREE):
+        result = equilibrium(bearing, operation, model, 0.1)
+        lost = ~result.inner_contact
+        assert lost.any()
+        assert not lost.all()
+        assert not result.load_inner[lost].any()
+        # the outer load turns the ball by friction, hence a part in 1e6 in the free model
+        assert result.load_outer[lost] == pytest.approx(result.centrifugal_force[lost], rel=1e-5)
+        assert np.abs(result.contact_angle_outer[lost]).max() < 1e-3
+        for name in ("contact_angle_inner", "orbital_speed", "spin_roll_ratio_inner", "pitch_angle"):
+            assert np.isfinite(getattr(result, name)).all()
+
+
+def test_most_loaded_ball_lies_under_the_radial_load() -> None:
+    """Ball 0 has azimuth 0, where the radial load points."""
+    result = equilibrium(le7(), dataclasses.replace(COMBINED, moment=0.0), OUTER, 0.1)
+    assert result.most_loaded == 0
