@@ -53,7 +53,10 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
         lw=0,
         label=f"10 to 90 % of the runs grow, {span}",
     )
-    label = f"half of {int(data['runs'])} runs grow, kick {float(data['middle_kick']):g} m/s"
+    axes.fill_between(
+        eta, data["scatter_low"].values, data["scatter_high"].values, color=BLUE, alpha=0.3, lw=0
+    )
+    label = f"half of {int(data['runs'])} runs grow (95 % scatter), kick {float(data['middle_kick']):g} m/s"
     axes.plot(eta, middle, color=BLUE, label=label)
     limit = data["linear_limit_critical_friction"].values
     axes.plot(

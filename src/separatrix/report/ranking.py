@@ -20,7 +20,7 @@ def rank(document: Document) -> list[str]:
         *chain_facts(document["chain"]),
         *ensemble_facts(document),
         *_evidence([row for environment in environments for row in environment["materials"]]),
-        ("The paper", document["paper_statement"]),
+        ("The paper's bound", document["paper_statement"]),
         *_disagreement(document),
     ]
     return [
@@ -70,17 +70,21 @@ def _reasons(rows: Iterable[Document]) -> list[str]:
 
 
 def _evidence(rows: Sequence[Document]) -> list[tuple[str, str]]:
-    """Return the extremes of the evidence over all candidates and environments."""
-
-    def most(key: str) -> float | None:
-        return max((abs(row[key]) for row in rows if row[key] is not None), default=None)
-
-    drift = most("drift_rate")
+    """Return the extremes of the evidence, among the stable candidates and among all."""
+    stable = [row for row in rows if row["verdict"] == "STABLE"]
     return [
-        ("Largest offset", f"{quantity(most('largest_offset'), 'm')} of the cage centre, in any run"),
-        ("Largest drift rate", ABSENT if drift is None else f"{drift:.3g} 1/s, median of a candidate's runs"),
-        ("Largest force", f"{quantity(most('largest_contact_force'), 'N')} between a ball and its pocket"),
+        (label, f"{_most(stable, key, unit)} among the stable, {_most(rows, key, unit)} among all candidates")
+        for label, key, unit in (
+            ("Largest offset", "largest_offset", "m"),
+            ("Largest drift rate", "drift_rate", "1/s"),
+            ("Largest pocket force", "largest_contact_force", "N"),
+        )
     ]
+
+
+def _most(rows: Sequence[Document], key: str, unit: str) -> str:
+    """Return the largest magnitude of a quantity; a growing run has no limit but the end of its time."""
+    return quantity(max((abs(row[key]) for row in rows if row[key] is not None), default=None), unit)
 
 
 def _disagreement(document: Document) -> list[tuple[str, str]]:
@@ -89,4 +93,4 @@ def _disagreement(document: Document) -> list[tuple[str, str]]:
     if eta >= limit:
         return []
     text = f"The contact model gives {number(eta, 2)} for this film, below that {limit:g}. Both are shown."
-    return [("And here", text)]
+    return [("This film", text)]
