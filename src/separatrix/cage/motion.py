@@ -22,6 +22,7 @@ from separatrix.cage.slots import (
     LAND,
     LAND_FORCE,
     LAND_MAX,
+    LEDGER,
     OFFSET_MAX,
     OFFSET_X,
     OFFSET_Y,
@@ -104,14 +105,23 @@ def record(p, cos, sin, s, ledger, place, slack, load, land_force, rows, filled)
     if filled >= rows.shape[0] or s[STEP] < rows[filled, 0]:
         return filled
     row = rows[filled]
-    row[:STATE] = s
+    for j in range(STATE):
+        row[j] = s[j]
     row[STEP] = s[STEP] * p.unit
-    row[STATE:LAND_FORCE] = ledger
+    for j in range(LEDGER):
+        row[STATE + j] = ledger[j]
     row[LAND_FORCE] = land_force
     balls = slack.size
-    row[BALLS : BALLS + balls] = place[1] * cos - place[0] * sin + place[2] - slack
-    row[BALLS + balls : BALLS + 2 * balls] = load
+    for j in range(balls):
+        row[BALLS + j] = place[1] * cos[j] - place[0] * sin[j] + place[2] - slack[j]
+        row[BALLS + balls + j] = load[j]
     return filled + 1
+
+
+@kernel
+def next_due(rows, filled):  # type: ignore[no-untyped-def]
+    """Time from which the next row is due, in units; infinite when all are filled."""
+    return rows[filled, 0] if filled < rows.shape[0] else np.inf
 
 
 @kernel
@@ -151,6 +161,7 @@ def advance(p, cos, sin, counts, s, place, slack, load, ledger, tally, units, ce
     energy = kinetic_energy(p, s)
     done, length, calm, land_force = 0, -1, 0, 0.0
     now = pace(p, 1)
+    due = next_due(rows, filled)
     while done < units and energy < ceiling:
         count = units_of_step(p, counts, s, slack, f.touching, calm, units - done)
         if count != length:
@@ -176,5 +187,7 @@ def advance(p, cos, sin, counts, s, place, slack, load, ledger, tally, units, ce
         energy = enter(p, s, tally, vx, vy, energy, f.peak, dt)
         done += count
         s[STEP] += count
-        filled = record(p, cos, sin, s, ledger, place, slack, load, land_force, rows, filled)
+        if s[STEP] >= due:
+            filled = record(p, cos, sin, s, ledger, place, slack, load, land_force, rows, filled)
+            due = next_due(rows, filled)
     return filled
