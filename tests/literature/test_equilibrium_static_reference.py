@@ -2,7 +2,7 @@
 
 Source: sources/static_load_distribution.csv (its header says how it was made and checked). Mapping: their
 balls are 11.5 mm; the moment vector of B6, B7 lies along the radial load (our `cross_moment`); their tilt is
-a size; their axial displacement counts from the middle of the play, ours from first contact at the free angle.
+a size; their axial displacement counts from mid-play, ours from first contact at the free angle.
 
 Tolerance: the program takes the curvature of the races at the angle without load (here 0), ours at the
 operating angle, up to 20 deg: 6e-5 on displacements and 1.1e-4 on the tilt. With the curvature held at 0 deg

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from scipy.special import ellipe
 
-from separatrix.equilibrium import Equilibrium, equilibrium
+from separatrix.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.equilibrium.free import contact_actions, contact_friction, slip_coefficients
+from separatrix.equilibrium.groove import touch
+from separatrix.equilibrium.problem import problem
 from separatrix.equilibrium.slip import chebyshev_nodes, friction_resultants
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
 from separatrix.units import Array
 
 RPM = 2.0 * math.pi / 60.0
@@ -97,6 +100,33 @@ def test_balls_alike_are_solved_alike() -> None:
     one, many = free(10_000.0), free(10_000.0, radial_load=1e-3)
     assert many.load_inner == pytest.approx(one.load_inner, rel=1e-5)  # 1e-3 N over 16 balls of 1850 N
     assert many.spin_roll_ratio_inner == pytest.approx(one.spin_roll_ratio_inner, rel=1e-5)
+
+
+@pytest.mark.parametrize("speeds", [(10_000.0, 0.0), (0.0, 6000.0), (-7000.0, 3000.0)])
+def test_power_of_the_rings_is_lost_in_sliding(speeds: tuple[float, float]) -> None:
+    """What both rings put into a ball equals friction times slip: the inertia of steady motion does no work."""
+    result = free(*speeds)
+    operation = Operation(inner_speed=speeds[0] * RPM, outer_speed=speeds[1] * RPM, axial_load=22_250.0)
+    p = problem(BEARING, operation, 0.0, 0.15)
+    orbit = (result.orbital_speed[0] - p.outer_speed) / p.speed
+    given, lost = 0.0, 0.0
+    rings = ((-1.0, operation.inner_speed, Race.INNER), (1.0, operation.outer_speed, Race.OUTER))
+    for side, ring, race in rings:
+        angle = (result.contact_angle_inner if side < 0 else result.contact_angle_outer)[0]
+        load = (result.load_inner if side < 0 else result.load_outer)[0]
+        length = 0.023167 * 22.23e-3 + contact(result, BEARING, race, 0).approach
+        at = touch(p, side, length * math.sin(angle), length * math.cos(angle), 0.0)
+        state = np.array((0.0, 0.0, orbit, *(result.ball_spin[0] / p.speed)))
+        smoothing, force, slopes = 1e-4 * 0.25 * p.pitch_diameter, np.empty(6), np.empty((6, 6))
+        nodes = chebyshev_nodes(24)
+        contact_actions(p, side, at, load, 0.0, state, smoothing, 48, nodes, force, slopes)
+        given += ring * (0.5 * p.pitch_diameter * force[2] + force[3])
+        per_unit, c = np.empty((5, 6)), np.empty(4)
+        contact_friction(p, side, at, load, state, smoothing, 48, nodes, per_unit)
+        slip_coefficients(p, side, at, state, c, np.empty(2))
+        lost += 0.15 * load * abs(p.speed) * float(c @ per_unit[:4, 0])
+    assert lost > 0.0
+    assert given == pytest.approx(lost, rel=1e-6)  # the balls balance to 1e-9 of their friction
 
 
 def test_friction_cannot_hold_what_it_has_not() -> None:

@@ -1,4 +1,4 @@
-"""Quasi-static equilibrium: loads, contact angles, spin and orbit of every ball (paper, 2.2 and its reference 3)."""
+"""Quasi-static equilibrium: loads, angles, spin and orbit of every ball (paper, 2.2, and its ref. 3)."""
 
 from separatrix.equilibrium.contacts import contact
 from separatrix.equilibrium.record import Equilibrium

@@ -83,30 +83,24 @@ def newton_ball(
 ) -> float:
     """Newton with step halving from `state`; returns the scaled unbalance reached (good if <= tolerance)."""
     n = state.shape[0]
-    residual, scales, step, trial = np.empty(n), np.empty(n), np.empty((n, 1)), np.empty(n)
+    residual, scales, step, trial = np.empty(n), np.empty(n), np.zeros((n, 1)), state.copy()
     reach = 0.3 * (min(p.inner_conformity, p.outer_conformity) - 0.5) * p.ball_diameter
-    evaluate(p, A, state, smoothing, fine, method, residual, out)
-    for _ in range(limit):
-        row_scales(p, A, state, method.force, scales)
-        norm = scaled_norm(residual, scales)
-        if norm <= tolerance:
-            return norm
-        if not newton_step(out.by_state, residual, scales, step):
-            return norm
-        stride = min(1.0, reach / max(math.hypot(step[0, 0], step[1, 0]), 1e-300))
-        now = math.inf
-        for _ in range(12):
-            for row in range(n):
-                trial[row] = state[row] + stride * step[row, 0]
-            evaluate(p, A, trial, smoothing, fine, method, residual, out)
-            now = scaled_norm(residual, scales)
-            if now <= (1.0 - 0.1 * stride) * norm:
-                break
-            stride *= 0.5
-        if not now < norm:
-            evaluate(p, A, state, smoothing, fine, method, residual, out)
-            return min(norm, tolerance) if norm <= 100.0 * tolerance else norm  # rounding: as good as it gets
-        state[:] = trial
+    norm, stride, steps = math.inf, 1.0, 0
     row_scales(p, A, state, method.force, scales)
-    norm = scaled_norm(residual, scales)
-    return min(norm, tolerance) if norm <= 100.0 * tolerance else norm
+    while True:  # one call of `evaluate`, for each copy of it takes seconds to compile
+        evaluate(p, A, trial, smoothing, fine, method, residual, out)
+        if scaled_norm(residual, scales) <= (1.0 - 0.1 * stride) * norm or steps == 0:
+            state[:] = trial
+            row_scales(p, A, state, method.force, scales)
+            norm = scaled_norm(residual, scales)
+            if norm <= tolerance or steps == limit or not newton_step(out.by_state, residual, scales, step):
+                break
+            steps += 1
+            stride = min(1.0, reach / max(math.hypot(step[0, 0], step[1, 0]), 1e-300))
+        else:
+            stride *= 0.5
+            if stride < 2e-4:
+                break
+        for row in range(n):
+            trial[row] = state[row] + stride * step[row, 0]
+    return min(norm, tolerance) if norm <= 100.0 * tolerance else norm  # rounding: as good as it gets

@@ -8,7 +8,7 @@ from separatrix.study import BallBearing, Race
 
 
 def contact(result: Equilibrium, bearing: BallBearing, race: Race, ball: int) -> ContactEllipse:
-    """Ellipse of one ball on one race, with the curvatures at its operating angle; no size where it is unloaded."""
+    """Ellipse of one ball on one race, curvatures at its operating angle; no size where it is unloaded."""
     inner = race is Race.INNER
     load = (result.load_inner if inner else result.load_outer)[ball]
     angle = (result.contact_angle_inner if inner else result.contact_angle_outer)[ball]

@@ -1,4 +1,4 @@
-"""A ball without race control: the smoothing of sliding friction is followed down to where it no longer matters."""
+"""A ball without race control: the smoothing of Coulomb's corner, lowered till it no longer matters."""
 
 from __future__ import annotations
 
@@ -40,25 +40,25 @@ def lower_smoothing(
 def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) -> float:
     """Ball without race control; returns the smoothing reached, `SMOOTHING` if all went well.
 
-    From `state` at once; else from the kinematics of race control down from a little, then from much smoothing,
-    first with the coarse quadrature and then with the fine one.
+    From `state` at once; else from the kinematics of race control down from a little, then from much
+    smoothing, first with the coarse quadrature and then with the fine one.
     """
     aim = SMOOTHING * 0.25 * p.pitch_diameter
-    place = state[:2].copy()
-    if newton_ball(p, A, state, aim, True, method, out, 8, TOLERANCE) <= TOLERANCE:
-        return SMOOTHING
-    best = math.inf
-    for attempt in range(4):
-        state[:2] = place
-        kinematic_start(p, A, state)
-        fine = attempt % 2 == 1
-        reached = lower_smoothing(p, A, state, 0.03 if attempt < 2 else 3.0, fine, method, out)
-        if (
-            reached <= SMOOTHING
-            and newton_ball(p, A, state, aim, True, method, out, 30, TOLERANCE) <= TOLERANCE
-        ):
-            return SMOOTHING
-        best = min(best, 2.0 * reached if reached <= SMOOTHING else reached)
+    place, best = state[:2].copy(), math.inf
+    for attempt in range(-1, 4):
+        reached = SMOOTHING
+        if attempt >= 0:
+            state[:2] = place
+            kinematic_start(p, A, state)
+            start = 0.03 if attempt < 2 else 3.0
+            reached = lower_smoothing(p, A, state, start, attempt % 2 == 1, method, out)
+        if reached <= SMOOTHING:
+            limit = 8 if attempt < 0 else 30
+            if newton_ball(p, A, state, aim, True, method, out, limit, TOLERANCE) <= TOLERANCE:
+                return SMOOTHING
+            reached = 2.0 * SMOOTHING
+        if attempt >= 0:
+            best = min(best, reached)
     return best
 
 
@@ -66,21 +66,20 @@ def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) ->
 def _turn_until_balanced(p: Problem, A: Array, state: Array, smoothing: float, method: Method) -> float:
     """Newton on orbit and spin at a held V; returns the unbalance in units of the friction."""
     out, residual, scales, trial = work(6), np.empty(6), np.empty(6), state.copy()
-    step, norm = np.empty((4, 1)), math.inf
-    for _ in range(60):
-        evaluate(p, A, state, smoothing, True, method, residual, out)
-        row_scales(p, A, state, 0.0, scales)
-        norm = scaled_norm(residual[2:], scales[2:])
-        if norm <= TOLERANCE or not newton_step(out.by_state[2:, 2:6], residual[2:], scales[2:], step):
-            break
-        stride = 1.0
-        for _ in range(8):
-            trial[2:] = state[2:] + stride * step[:, 0]
-            evaluate(p, A, trial, smoothing, True, method, residual, out)
-            if scaled_norm(residual[2:], scales[2:]) < (1.0 - 0.1 * stride) * norm:
+    step, norm, stride = np.zeros((4, 1)), math.inf, 1.0
+    row_scales(p, A, state, 0.0, scales)
+    for _ in range(200):
+        evaluate(p, A, trial, smoothing, True, method, residual, out)
+        now = scaled_norm(residual[2:], scales[2:])
+        if now <= (1.0 - 0.1 * stride) * norm:
+            state[:], norm, stride = trial, now, 1.0
+            if norm <= TOLERANCE or not newton_step(out.by_state[2:, 2:6], residual[2:], scales[2:], step):
                 break
+        else:
             stride *= 0.5
-        state[:] = trial
+            if stride < 2e-3:
+                break
+        trial[2:] = state[2:] + stride * step[:, 0]
     return norm
 
 
@@ -98,7 +97,7 @@ def solve_kinematics(p: Problem, A: Array, state: Array, method: Method) -> bool
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def slopes_with_ring(out: Work, by_ring: Array) -> bool:
-    """Slopes of what the ball gives with A, shape (5, 2), the ball following in balance; False if singular."""
+    """Slopes of what the ball gives with A, shape (5, 2), the ball kept in balance; False if singular."""
     n = out.by_state.shape[0]
     answer = out.by_state[:, n:].copy()
     if not solve_linear(out.by_state[:, :n].copy(), answer):

@@ -20,7 +20,7 @@ from separatrix.units import Array
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def wedged(p: Problem, A: Array, load_i: float, load_o: float, state: Array) -> None:
-    """Put the ball where it is pressed into both grooves by these loads: two circles meet, the outward place."""
+    """Put the ball where it is pressed into both grooves by these loads: where two circles meet."""
     D, trial = p.ball_diameter, 1e-3 * p.ball_diameter
     rest_i, rest_o = (p.inner_conformity - 0.5) * D, (p.outer_conformity - 0.5) * D
     hard_i = touch(p, -1.0, 0.0, rest_i + trial, 0.0).load
@@ -36,30 +36,27 @@ def wedged(p: Problem, A: Array, load_i: float, load_o: float, state: Array) -> 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _attempt(p: Problem, A: Array, state: Array, method: Method, out: Work, limit: int) -> bool:
-    return newton_ball(p, A, state, 0.0, True, method, out, limit, TOLERANCE) <= TOLERANCE
+def controlled_start(p: Problem, A: Array, attempt: int, state: Array) -> None:
+    """Put the ball where the search may start: at rest, on its static line, or wedged."""
+    static_x, static_r, load = static_split(p, A[0], A[1])
+    F, _ = inertia_loads(p, 0.45, 0.0)
+    if attempt == 0:
+        if not rest_on_outer(p, A, state) and load > 0.0:
+            state[0], state[1] = static_x, static_r
+        return
+    share = 0.2 ** (attempt - 1)
+    wedged(p, A, load + share * F, load + (1.0 + share) * F, state)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve_controlled(p: Problem, A: Array, state: Array, method: Method, out: Work) -> bool:
-    """Ball under race control: from `state`, from its static place, then wedged with several loads."""
-    if _attempt(p, A, state, method, out, 15):
-        return True
-    static_x, static_r, load = static_split(p, A[0], A[1])
-    F, _ = inertia_loads(p, 0.45, 0.0)
-    if rest_on_outer(p, A, state):
-        if _attempt(p, A, state, method, out, 40):
+    """Ball under race control: from `state`, then from the starts above."""
+    for attempt in range(-1, 7):
+        if attempt >= 0:
+            controlled_start(p, A, attempt, state)
+        limit = 15 if attempt < 0 else 40
+        if newton_ball(p, A, state, 0.0, True, method, out, limit, TOLERANCE) <= TOLERANCE:
             return True
-    elif load > 0.0:
-        state[0], state[1] = static_x, static_r
-        if _attempt(p, A, state, method, out, 40):
-            return True
-    share = 1.0
-    for _ in range(6):
-        wedged(p, A, load + share * F, load + (1.0 + share) * F, state)
-        if _attempt(p, A, state, method, out, 40):
-            return True
-        share *= 0.2
     return False
 
 

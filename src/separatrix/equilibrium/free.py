@@ -21,7 +21,7 @@ LEAST_SHARE = 1e-2
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def slip_coefficients(p: Problem, side: float, t: Touch, state: Array, c: Array, normal: Array) -> None:
-    """Coefficients of the slip field, shape (4,) [m and -], and the normal (axial, radial) away from the ball."""
+    """Coefficients of the slip field, shape (4,) [-, m], and the normal (axial, radial) out of the ball."""
     ring = 1.0 - state[2] if side < 0.0 else -state[2]
     normal[0], normal[1] = side * t.sine, side * t.cosine
     turn_x, turn_r = state[3] - ring, state[4]
@@ -43,7 +43,7 @@ def contact_friction(
     nodes: Array,
     out: Array,
 ) -> None:
-    """Resultants of the slip field of one contact per unit of friction and load; see `friction_resultants`."""
+    """Resultants of the slip field of one contact per unit of friction and load: `friction_resultants`."""
     c, normal = np.empty(4), np.empty(2)
     slip_coefficients(p, side, t, state, c, normal)
     f = p.inner_conformity if side < 0.0 else p.outer_conformity
@@ -112,8 +112,8 @@ def free_ball(
 ) -> None:
     """Force and moment balance of one ball, shape (6,), its slopes, and what the inner race gives it.
 
-    Forces (axial, outward, orbital) [N], then couples [N m]. `out.by_state`, shape (6, 8): slopes with the state,
-    then with A; `out.push` and `out.push_by`, shape (5, 8), as in `controlled_ball`.
+    Forces (axial, outward, orbital) [N], then couples [N m]. `out.by_state`, shape (6, 8): slopes with the
+    state, then with A; `out.push` and `out.push_by`, shape (5, 8), as in `controlled_ball`.
     """
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)

@@ -29,7 +29,7 @@ class Touch(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def touch(p: Problem, side: float, axial: float, radial: float, guess: float) -> Touch:
-    """Contact of a ball whose centre lies (axial, radial) from the groove's centre; side -1 inner, +1 outer."""
+    """Contact of a ball whose centre lies (axial, radial) from the groove's; side -1 inner, +1 outer."""
     D = p.ball_diameter
     f = p.inner_conformity if side < 0.0 else p.outer_conformity
     length = math.hypot(axial, radial)

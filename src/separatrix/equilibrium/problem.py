@@ -15,7 +15,7 @@ from separatrix.units import Array
 
 
 class Problem(NamedTuple):
-    """Bearing and speeds as plain floats [SI]; `speed` is inner minus outer, `inertia_factor` scales inertia."""
+    """Bearing and speeds as plain floats [SI]; `speed` is inner less outer, `inertia_factor` scales it."""
 
     ball_diameter: float
     pitch_diameter: float
@@ -44,7 +44,7 @@ class Method(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Room for one ball of n unknowns: slopes of its balance, (n, n + 2), what it gives, (5,), and (5, n + 2)."""
+    """Room for one ball of n unknowns: slopes of its balance, (n, n + 2); its push, (5,), and (5, n + 2)."""
 
     by_state: Array
     push: Array

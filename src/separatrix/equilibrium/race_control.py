@@ -15,7 +15,6 @@ from separatrix.equilibrium.groove import Touch, touch
 from separatrix.equilibrium.problem import Problem, Work
 from separatrix.units import Array
 
-
 STEEPEST = 1.4
 """Largest contact angle for which kinematics are asked [rad]."""
 
@@ -98,8 +97,9 @@ def inner_share(p: Problem, load: float) -> tuple[float, float]:
 def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Work) -> None:
     """Force balance of one ball, shape (2,) [N], its slopes, and what the inner race gives the ball.
 
-    `out.by_state`, shape (2, 4): slopes of the balance with V and with A. `out.push`: (axial, outward, orbital
-    force, outward couple, orbital couple) of the inner race on the ball; `out.push_by`, shape (5, 4), its slopes.
+    `out.by_state`, shape (2, 4): slopes of the balance with V and with A. `out.push`: (axial, outward,
+    orbital force, outward couple, orbital couple) of the inner race on the ball; `out.push_by`, shape (5, 4),
+    its slopes.
     """
     D, push = p.ball_diameter, out.push
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
@@ -152,7 +152,7 @@ def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> N
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rest_on_outer(p: Problem, A: Array, state: Array) -> bool:
-    """Put the ball at the bottom of the outer groove by its centrifugal force; True if it misses the inner."""
+    """Put the ball at the bottom of the outer groove by its own inertia; True if it misses the inner race."""
     bottom = (p.outer_conformity - 0.5) * p.ball_diameter
     trial = 0.01 * bottom
     load = touch(p, 1.0, 0.0, bottom + trial, 0.0).load

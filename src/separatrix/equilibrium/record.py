@@ -15,14 +15,18 @@ from separatrix.units import Array, Metre, Newton, NewtonMetre, Radian
 class Equilibrium:
     """Loads, angles and speeds of every ball, and where the inner ring stands; arrays have shape (ball,).
 
-    `azimuth` is counted from the radial load, turning as the +x axis says; x is the bearing axis along positive
-    axial load. Angles [rad], loads [N], speeds [rad/s] or [m/s]. `ball_spin`, shape (ball, 3), is the spin in the
-    frame that turns with the ball's orbit: along x, outward, and along the orbit [rad/s]. `pitch_angle` leans the
-    spin axis in the plane of the ball, positive as a contact angle is; `yaw_angle` out of it, along the orbit.
-    `gyroscopic_moment` is a magnitude [N m]. A ball that does not touch the inner race has `inner_contact` False
-    and `load_inner` 0; its inner angle, orbit and spin are those it would have at the first touch.
-    `moment` is what the balls carry: the load, or the reaction to a held tilt. `cross_tilt` and
-    `transverse_displacement` lie across the plane of the radial load. `residual` is the largest unbalanced force of
+    `azimuth` is counted from the radial load, turning as the +x axis says; x is the bearing axis along
+    positive axial load. Angles [rad], loads [N], speeds [rad/s] or [m/s]. `ball_spin`, shape (ball, 3), is
+    the spin in the frame that turns with the ball's orbit: along x, outward, and along the orbit [rad/s].
+    `pitch_angle` leans the spin axis in the plane of the ball, positive as a contact angle is; `yaw_angle`
+    out of it, along the orbit. `spin_roll_ratio_*` are the paper's Eq. 16, `rolling_speed_*` the mean speed
+    of both surfaces through the contact. `gyroscopic_moment` is a magnitude [N m].
+
+    A ball that does not touch the inner race has `inner_contact` False and `load_inner` 0; its inner angle,
+    orbit and spin are those it would have at the first touch. `axial_displacement` counts from first contact
+    at the free angle. `moment` is what the balls carry: the load, or the reaction to a held tilt; positive
+    loads the balls at azimuth 0, as positive `tilt` does. `cross_tilt` (about the radial load) and
+    `transverse_displacement` lie across the plane of the radial load. `residual` is the unbalanced force of
     the ring [N]. `race_control` says which race Jones's criterion would let control the ball.
     """
 

@@ -1,7 +1,7 @@
 """Equilibrium of the inner ring in five degrees of freedom, over balls that are each in balance.
 
-Ring displacement q = (x, y, z) [m] and small turns about y and z [rad]; y lies along the radial load, ball j at
-azimuth psi_j from y towards z. Loads are conjugate to q.
+Ring displacement q = (x, y, z) [m] and small turns about y and z [rad]; y lies along the radial load, ball j
+at azimuth psi_j from y towards z. Loads are conjugate to q.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Friction of one contact from the whole slip field over its ellipse.
 
-Axes of the contact: t along rolling (orbital direction), n outward from the ball, y = t x n across the groove.
+Axes of the contact: t along rolling (orbital direction), n outward from the ball, y = t x n across the
+groove.
 The slip of the ball over the race at height h(y) above the ball centre (deformed surface of radius R_d) is
     v_t = c0 y + c1 h + c2,   v_y = c3 h - c0 x,
 linear in the four coefficients c; the resultants below are conjugate to them.
@@ -56,8 +57,8 @@ def friction_resultants(
 ) -> None:
     """Resultants of v/sqrt(|v|^2 + smoothing^2) weighted by the Hertz pressure, per unit load.
 
-    `out`, shape (5, 6): rows spin moment, moment of h v_t, force along t, moment of h v_y, force along y; column
-    0 the value, 1 to 4 its slopes with c, 5 its slope with ln(load) through a and b.
+    `out`, shape (5, 6): rows spin moment, moment of h v_t, force along t, moment of h v_y, force along y;
+    column 0 the value, 1 to 4 its slopes with c, 5 its slope with ln(load) through a and b.
 
     `cells` strips across the groove, in each the slip along t is taken linear in y and averaged exactly, so
     that a line of no slip may lie anywhere. `nodes`, shape (2, node): places and weights along rolling.
@@ -140,6 +141,6 @@ def friction_resultants(
 
 
 def chebyshev_nodes(count: int) -> Array:
-    """Places (as a fraction of the half chord) and weights, shape (2, node), of the semi-ellipse's quadrature."""
+    """Places (fractions of the half chord) and weights, shape (2, node), of a semi-ellipse's quadrature."""
     theta = np.pi * np.arange(1, count + 1) / (count + 1)
     return np.stack((np.cos(theta), np.sin(theta) ** 2 * 2.0 / (count + 1)))

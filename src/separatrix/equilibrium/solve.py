@@ -9,7 +9,7 @@ import numpy as np
 
 from separatrix.equilibrium.groove import static_split
 from separatrix.equilibrium.problem import Method, Problem, problem
-from separatrix.equilibrium.race_control import inertia_loads
+from separatrix.equilibrium.race_control import STEEPEST, inertia_loads
 from separatrix.equilibrium.record import Equilibrium
 from separatrix.equilibrium.ring import FREE, STATIC, Balls, ring_balance, solve_ring
 from separatrix.equilibrium.slip import chebyshev_nodes
@@ -19,7 +19,7 @@ from separatrix.study import BallBearing, KinematicModel, Operation, Race
 from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio
 
 CELLS, NODES, COARSE_CELLS, COARSE_NODES = 48, chebyshev_nodes(24), 16, chebyshev_nodes(8)
-"""Quadrature over an ellipse: strips across the groove and places along rolling; the same, for a first approach."""
+"""Quadrature over an ellipse: strips across the groove, places along rolling; the same, coarse."""
 
 LIMIT = 80
 """Newton steps of the ring; a usual case takes 3 to 8."""
@@ -62,14 +62,15 @@ def equilibrium(
     Raises
     ------
     InputError
-        A load that lifts the inner ring off, no load at all, no friction in the free model, no density.
+        No friction in the free model, no density, or loads that leave a ball beside its grooves.
     ConvergenceError
         The forces on a ball or on the ring did not balance.
 
     Notes
     -----
-    Jones and Harris for race control, the gyroscopic friction split 0 to 2; without it the slip fields over both
-    ellipses decide (docs/theory/equilibrium.md). Rigid rings, steady speeds, dry Coulomb friction, no cage force.
+    Jones and Harris for race control, the gyroscopic friction split 0 to 2; without it the slip fields over
+    both ellipses decide (docs/theory/equilibrium.md). Rigid rings, steady speeds, dry Coulomb friction, no
+    force of the cage.
     """
     _check(model, race_friction)
     share = 2.0 if model is KinematicModel.INNER_RACE_CONTROL else 0.0
@@ -169,7 +170,7 @@ def _static(p: Problem, setup: _Setup) -> tuple[Array, int, Newton, Array]:
 def _controlled(
     p: Problem, setup: _Setup, q: Array, states: Array, iterations: int
 ) -> tuple[Array, int, Newton, Array]:
-    """Ring and balls under race control: at once, or by raising the inertia in steps from the static answer."""
+    """Ring and balls under race control: at once, or from the static answer by raising the inertia."""
     good_q, good_states = q.copy(), states.copy()
     factor, step = 0.0, 1.0
     while factor < 1.0:
@@ -214,10 +215,11 @@ def _unbalanced(rest: Newton, iterations: int, setup: _Setup) -> str:
 
 
 def _not_free(reached: float, ball: int) -> str:
-    where = f"stopped at {reached:.2g}" if math.isfinite(reached) else "found no start"
+    where = f"stopped at {reached:.2g}" if math.isfinite(reached) else "found no start at 3"
     return (
-        f"Ball {ball}: sliding friction without race control did not settle (smoothing of the slip speed {where} of "
-        "w d_m/4, limit 0.0001). Lower the speed, raise race_friction or the axial load, or use race control."
+        f"Ball {ball}: sliding friction without race control did not settle (smoothing of the slip speed "
+        f"{where} of w d_m/4, limit 0.0001). Lower the speed, raise race_friction or the axial load, or use "
+        "race control."
     )
 
 
@@ -228,6 +230,16 @@ def _check(model: KinematicModel, race_friction: Ratio) -> None:
             "Without friction nothing turns the balls; use race control.",
         )
         raise InputError("[film] race_friction", rule, "-", f"{race_friction:g}", cure)
+
+
+def _in_grooves(table: Array) -> None:
+    """Refuse balls that press beside their grooves: a contact angle that no groove reaches."""
+    steepest = np.abs(table[:, :2] * (table[:, 2:4] > 0.0)).max()
+    if steepest > STEEPEST:
+        angle = f"{math.degrees(steepest):.0f} deg"
+        rule = f"cannot hold the balls in their grooves at this speed: a contact angle reaches {angle}"
+        cure = "Raise it, lower the speed or the other loads."
+        raise InputError("[operation] axial_load", rule, "", "", cure)
 
 
 def _carried_moment(p: Problem, setup: _Setup, q: Array, solved: Array) -> NewtonMetre:
@@ -251,6 +263,7 @@ def _finished(
 ) -> Equilibrium:
     """Put the answer into a record, one row for each ball of the bearing."""
     table = ball_table(p, q, setup.balls.azimuths, states)
+    _in_grooves(table)
     Z = setup.ball_count
     rows = np.broadcast_to(table, (Z, table.shape[1])) if table.shape[0] == 1 else table
     column = [np.ascontiguousarray(rows[:, k]) for k in range(rows.shape[1])]

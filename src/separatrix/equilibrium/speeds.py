@@ -91,7 +91,7 @@ def controlled_states(p: Problem, q: Array, azimuths: Array, states: Array) -> A
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def settle_free_states(p: Problem, q: Array, azimuths: Array, states: Array, method: Method) -> int:
-    """Bring orbit and spin of every ball to the free balance with V held; -1, or the first ball that fails."""
+    """Bring orbit and spin of every ball to the free balance, V held; -1, or the first ball that fails."""
     A = np.empty(2)
     for j in range(azimuths.size):
         _place(p, q, azimuths[j], states[j], A)
