@@ -111,9 +111,12 @@ def _write_files(verb: Verb, document: dict[str, Any], folder: Path, texts: Mapp
 
 
 def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> None:
-    """Write the dataset and the figures made from it."""
+    """Write the dataset and the figures made from it; matplotlib keeps its remarks on fonts to itself."""
+    import logging
+
     from separatrix import figures, results
 
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     data = results.dataset(document)
     results.save(data, folder / f"{verb.name}.nc")
     for name, figure in figures.figures(verb.name, data):
