@@ -104,7 +104,7 @@ def test_balls_alike_are_solved_alike() -> None:
 
 @pytest.mark.parametrize("speeds", [(10_000.0, 0.0), (0.0, 6000.0), (-7000.0, 3000.0)])
 def test_power_of_the_rings_is_lost_in_sliding(speeds: tuple[float, float]) -> None:
-    """What both rings put into a ball equals friction times slip: the inertia of steady motion does no work."""
+    """What both rings put into a ball equals friction times slip: steady inertia does no work."""
     result = free(*speeds)
     operation = Operation(inner_speed=speeds[0] * RPM, outer_speed=speeds[1] * RPM, axial_load=22_250.0)
     p = problem(BEARING, operation, 0.0, 0.15)
