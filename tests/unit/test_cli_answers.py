@@ -213,6 +213,7 @@ def test_every_dimensional_variable_has_a_unit(folder):
         "slip",
         "rank",
         "whirl_direction",
+        "within_reach",
     }
     for verb in (verb.name for verb in VERBS if verb.writes_files):
         data = results.load(folder / verb / f"{verb}.nc")
