@@ -245,12 +245,16 @@ def test_ending_early_changes_no_outcome(monkeypatch):
     ]
     settings = StabilitySettings(runs=56, duration=0.1)
     early = [run_ensemble(cage, settings, kicks=(kick,), jobs=2).outcome for cage, kick in cases]
+    growth = [
+        run_ensemble(cage, settings, kicks=(kick,), growth_only=True, jobs=2).outcome for cage, kick in cases
+    ]
     monkeypatch.setattr(ensemble, "GROWN", 1e30)
     monkeypatch.setattr(ensemble, "DEAD", 0.0)
     late = [run_ensemble(cage, settings, kicks=(kick,), jobs=2).outcome for cage, kick in cases]
     assert np.size(early) == 1008
     assert 200 < np.count_nonzero(np.array(early) == RunOutcome.GROWS) < 800
     assert np.array_equal(early, late)
+    assert np.array_equal(np.array(growth) == RunOutcome.GROWS, np.array(late) == RunOutcome.GROWS)
 
 
 @pytest.mark.parametrize("jobs", [2, 8])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.random import Generator, Philox
@@ -49,8 +49,17 @@ if TYPE_CHECKING:
 FIFTHS = 5
 LOOKS = 10  # looks at the energy in each fifth
 UNKNOWN = -1
-CEILING = 1e6  # multiple of the energy that is growth: between two looks no run goes on beyond
 DIES, GROWS, DRIFT = int(RunOutcome.DIES), int(RunOutcome.GROWS), int(RunOutcome.DRIFT)
+
+
+class Limits(NamedTuple):
+    """Where a run is drift, or its end known before its time: an offset [m], and energies [J]."""
+
+    drift: float
+    grows_above: float
+    dies_below: float
+    mean_grows_above: float  # of the mean over a fifth, from the second on
+    mean_dies_below: float
 
 
 def random_start(seed: int, run: int, ball_count: int) -> Array:
@@ -75,8 +84,6 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
     """
     place, slack, load = np.zeros(3), -lead, np.zeros(cos.size)
     filled = record(p, cos, sin, s, ledger, place, slack, load, 0.0, rows, 0)
-    _, grows_above, dies_below = limits
-    ceiling = CEILING * grows_above
     step = (fifth + LOOKS - 1) // LOOKS
     for window in range(FIFTHS):
         done = 0
@@ -94,16 +101,21 @@ def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # 
                 ledger,
                 tally[window],
                 units,
-                ceiling,
+                limits.grows_above,
                 rows,
                 filled,
             )
             done = s[STEP] - window * fifth
             energy = kinetic_energy(p, s) + ledger[STORED]
-            if energy > grows_above:
+            if energy > limits.grows_above:
                 return GROWS, window, done * p.unit, filled
-            if energy < dies_below:
+            if energy < limits.dies_below:
                 return DIES, window, done * p.unit, filled
+        mean = tally[window, KINETIC] / (fifth * p.unit)
+        if window > 0 and mean > limits.mean_grows_above:
+            return GROWS, window, fifth * p.unit, filled
+        if window > 0 and mean < limits.mean_dies_below:
+            return DIES, window, fifth * p.unit, filled
     return UNKNOWN, FIFTHS - 1, fifth * p.unit, filled
 
 
@@ -126,8 +138,7 @@ def imbalance(p, s, ledger, start):  # type: ignore[no-untyped-def]
 def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
     """Run from one kick; write outcome and evidence into `out`, shape (evidence,).
 
-    `limits`: offset of drift [m], and the energies above which a run is known to grow, and below which to die
-    [J].
+    `limits` are `Limits`.
     """
     s, ledger, tally = np.zeros(STATE), np.zeros(LEDGER), np.zeros((FIFTHS, TALLY))
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
@@ -138,7 +149,7 @@ def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, ro
     out[GROWTH] = end[KINETIC] / length / start
     if outcome == UNKNOWN:
         out[DRIFT_RATE] = drift_rate(tally, length)
-        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits[0] else DIES)
+        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits.drift else DIES)
     whirl = end[TURNING] / end[SPEED_SQUARED] if end[SPEED_SQUARED] > 0.0 else 0.0
     out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)

@@ -92,7 +92,9 @@ class GrowthCounter:
         more = runs - known.runs
         if more > 0:
             cage = cage_at(self.cage, key[0], key[1])
-            found = run_ensemble(cage, self.settings, kicks=(key[2],), runs=more, first_run=known.runs)
+            found = run_ensemble(
+                cage, self.settings, kicks=(key[2],), runs=more, first_run=known.runs, growth_only=True
+            )
             known = Count(known.grown + int(found.count(RunOutcome.GROWS)[0]), runs)
             self._counts[key] = known
         return known
