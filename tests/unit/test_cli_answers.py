@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import image
 
 from separatrix import figures, results
 from separatrix.cli import main
@@ -170,6 +171,16 @@ def test_a_saved_dataset_draws_the_same_figures(verb, folder, tmp_path):
     for name, figure in figures.figures(verb, data):
         figures.save(figure, tmp_path / f"{name}.svg")
         assert (tmp_path / f"{name}.svg").read_bytes() == (folder / verb / f"{name}.svg").read_bytes()
+
+
+def test_no_figure_is_clipped(folder):
+    """The outermost pixels of every picture are white: no label runs over the edge."""
+    for path in folder.rglob("*.png"):
+        pixels = image.imread(path)[..., :3]
+        edges = [pixels[:2], pixels[-2:], pixels[:, :2], pixels[:, -2:]]
+        assert min(edge.min() for edge in edges) > 0.98, (
+            path.name
+        )  # white is 1; a grey hint of antialiasing passes
 
 
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])

@@ -128,9 +128,8 @@ def overview(data: xr.Dataset) -> Figure:
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
     chain_lines(axes, data)
-    axes.axvline(
-        float(data["solid_lubrication_limit"]), color=GREY, lw=1.0, ls="-.", label="the paper's least"
-    )
+    limit = float(data["solid_lubrication_limit"])
+    axes.axvline(limit, color=GREY, lw=1.0, ls="-.", label=rf"$\eta$ = {limit:g}, the paper's least")
     axes.set(xlim=(0, 1), ylim=(-0.6, count - 0.4), xlabel=f"threshold of the {ETA_LABEL}: larger is better")
     axes.set_yticks(places, [_ranked(data, i) for i in range(count)])
     axes.tick_params(axis="y", length=0)

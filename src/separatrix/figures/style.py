@@ -52,7 +52,7 @@ STYLE: Any = {
     "ytick.labelsize": 7.5,
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
-    "figure.dpi": 100.0,
+    "figure.dpi": 200.0,
     "savefig.dpi": 200.0,
     "svg.hashsalt": "separatrix",
     "svg.fonttype": "path",
@@ -75,7 +75,8 @@ def canvas(width: float = COLUMN, height: float = 2.6, **grid: Any) -> tuple[Fig
 
 def settled(figure: Figure) -> Figure:
     """Lay the figure out once for all, so that every format and every drawing of it is the same."""
-    figure.draw_without_rendering()
+    for _ in range(2):  # the labels beside the axes are known after the first
+        figure.draw_without_rendering()
     figure.set_layout_engine("none")
     return figure
 
