@@ -28,6 +28,8 @@ class Coefficients(NamedTuple):
     unit: float
     mass: float
     inertia: float
+    lightness: float  # 1 / mass
+    swiftness: float  # 1 / inertia
     radius: float
     turning: float
     stiffness: float
@@ -88,6 +90,8 @@ def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
         unit=dt,
         mass=m,
         inertia=cage.moment_of_inertia,
+        lightness=1.0 / m,
+        swiftness=1.0 / cage.moment_of_inertia,
         radius=cage.pitch_radius,
         turning=cage.cage_speed,
         stiffness=k,

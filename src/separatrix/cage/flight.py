@@ -63,7 +63,7 @@ def lean(p, s, impulse_x, impulse_y, moment):  # type: ignore[no-untyped-def]
     e = p.eccentricity
     if e != 0.0:
         moment -= e * (np.cos(s[THETA]) * impulse_y - np.sin(s[THETA]) * impulse_x)
-    dvx, dvy, dw = impulse_x / p.mass, impulse_y / p.mass, moment / p.inertia
+    dvx, dvy, dw = impulse_x * p.lightness, impulse_y * p.lightness, moment * p.swiftness
     work = impulse_x * (s[VX] + 0.5 * dvx) + impulse_y * (s[VY] + 0.5 * dvy) + moment * (s[SPIN] + 0.5 * dw)
     s[VX] += dvx
     s[VY] += dvy

@@ -73,13 +73,13 @@ def land_impulse(p, x, y, vx, vy, spin, dt):  # type: ignore[no-untyped-def]
         share = deepest / abs(last - first)
         mean = 0.5 * deepest * share
     damping = p.land_damping * share * dt
-    normal = (p.land_stiffness * mean * dt + damping * closing) / (1.0 + 0.5 * damping / p.mass)
+    normal = (p.land_stiffness * mean * dt + damping * closing) / (1.0 + 0.5 * damping * p.lightness)
     if normal <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     # Outer land: the cage touches on the side of its offset; inner land: on the opposite side.
     side = p.land_side
     sliding = -ny * vx + nx * vy + side * (spin * p.radius - p.ring_slide)
-    yielding = 1.0 / p.mass + p.radius * p.radius / p.inertia
+    yielding = p.lightness + p.radius * p.radius * p.swiftness
     limit = p.land_friction * normal
     tangent = -min(max(sliding / yielding, -limit), limit)
     return -normal * nx - tangent * ny, -normal * ny + tangent * nx, side * tangent * p.radius, normal

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from separatrix.cage.compiled import kernel
-from separatrix.cage.flight import centre, lean
-from separatrix.cage.slots import GROSS, POCKET_FRICTION, THETA
+from separatrix.cage.flight import centre
+from separatrix.cage.slots import GROSS, POCKET_FRICTION, SPIN, THETA, VX, VY
 
 
 class Press(NamedTuple):
@@ -141,9 +141,18 @@ def press(p, cos, sin, s, place, slack, load, a, kept, followed):  # type: ignor
 @kernel
 def kick(p, s, ledger, sum_cos, sum_sin, total, dt):  # type: ignore[no-untyped-def]
     """Kick the cage with -N e_t and the moment -N R of every ball, and the friction -sigma f N e_r."""
-    f = p.friction
-    normal = lean(p, s, sum_sin * dt, -sum_cos * dt, -total * p.radius * dt)
-    rubbed = lean(p, s, -f * sum_cos * dt, -f * sum_sin * dt, 0.0)
+    rub_x, rub_y, rub_moment = -p.friction * sum_cos * dt, -p.friction * sum_sin * dt, 0.0
+    impulse_x, impulse_y = sum_sin * dt + rub_x, -sum_cos * dt + rub_y
+    moment = -total * p.radius * dt
+    e = p.eccentricity
+    if e != 0.0:
+        c, i = e * np.cos(s[THETA]), e * np.sin(s[THETA])
+        moment -= c * impulse_y - i * impulse_x
+        rub_moment = i * rub_x - c * rub_y
+    dvx, dvy, dw = impulse_x * p.lightness, impulse_y * p.lightness, moment * p.swiftness
+    rubbed = rub_x * (s[VX] + 0.5 * dvx) + rub_y * (s[VY] + 0.5 * dvy) + rub_moment * (s[SPIN] + 0.5 * dw)
+    s[VX] += dvx
+    s[VY] += dvy
+    s[SPIN] += dw
     ledger[POCKET_FRICTION] += rubbed
     ledger[GROSS] += abs(rubbed)
-    return normal
