@@ -19,7 +19,6 @@ from separatrix.cage import (
     simulate,
     wilson_interval,
 )
-from separatrix.cage.compiled import source_stamp
 from separatrix.cage.run import random_start
 from separatrix.errors import InputError
 from separatrix.study import Guidance, StabilitySettings
@@ -242,18 +241,3 @@ def test_growth_probability_is_the_share_at_each_kick():
     """One of four, and four of four."""
     runs = ensemble([[GROWS, DIES, DIES, DRIFT], [GROWS] * 4])
     assert growth_probability(runs).tolist() == [0.25, 1.0]
-
-
-def test_the_cache_of_the_kernels_sees_a_changed_source(monkeypatch):
-    """Another source, another stamp; a source that cannot be read has the stamp 0."""
-    from separatrix.cage import compiled, pocket
-
-    stamp = source_stamp(pocket)
-    monkeypatch.setattr(compiled.inspect, "getsource", repr)
-    assert source_stamp(pocket) != stamp
-
-    def unreadable(module: object) -> str:
-        raise OSError
-
-    monkeypatch.setattr(compiled.inspect, "getsource", unreadable)
-    assert source_stamp(pocket) == 0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.compiled import kernel
 from separatrix.cage.slots import GRAVITY, GROSS, MOVING_FRAME, SPIN, THETA, UNBALANCE, VX, VY, X, Y
+from separatrix.compiled import kernel
 
 
 @kernel

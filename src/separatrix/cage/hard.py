@@ -8,13 +8,12 @@ hold their places.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.cage import compiled, flight, slots
+from separatrix.cage import slots
 from separatrix.cage.coefficients import ball_directions, coefficients
-from separatrix.cage.compiled import kernel
 from separatrix.cage.ensemble import (
     GROWN,
     Ensemble,
@@ -42,10 +41,11 @@ from separatrix.cage.slots import (
     X,
     Y,
 )
+from separatrix.compiled import kernel
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from separatrix.study import StabilitySettings
     from separatrix.units import MetrePerSecond, Ratio
@@ -197,20 +197,11 @@ def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, se
     out[IMBALANCE] = abs(energy_of(p, s) - start - note[WORK]) / (note[DONE] + start)
 
 
-def _hard_chunk(stamp: int) -> Callable[..., Any]:
-    def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
-        if stamp < 0:
-            return
-        for i in range(starts.shape[0]):
-            hard_run(
-                p, cos, sin, starts[i, 0], kick, starts[i, 1:], eta, mass, duration, limits, sense, out[i]
-            )
-
-    return hard_chunk
-
-
-hard_chunk: Any = compiled.entry(_hard_chunk, flight, slots)
-"""Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+@kernel
+def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
+    """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+    for i in range(starts.shape[0]):
+        hard_run(p, cos, sin, starts[i, 0], kick, starts[i, 1:], eta, mass, duration, limits, sense, out[i])
 
 
 def run_hard_ensemble(

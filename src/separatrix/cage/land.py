@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from separatrix.cage.compiled import kernel
+from separatrix.compiled import kernel
 
 if TYPE_CHECKING:
     from separatrix.units import Ratio

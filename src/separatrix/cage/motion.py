@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.compiled import kernel
 from separatrix.cage.flight import centre, clear_time, drift, lean, near_land
 from separatrix.cage.land import land_impulse
 from separatrix.cage.pocket import kick, press, relaxation
@@ -37,6 +36,7 @@ from separatrix.cage.slots import (
     VX,
     VY,
 )
+from separatrix.compiled import kernel
 
 CALM_STRIDE = 3
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from separatrix.cage.compiled import kernel
 from separatrix.cage.flight import centre
 from separatrix.cage.slots import GROSS, POCKET_FRICTION, SPIN, THETA, VX, VY
+from separatrix.compiled import kernel
 
 
 class Press(NamedTuple):

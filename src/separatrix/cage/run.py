@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.random import Generator, Philox
 
-from separatrix.cage import coefficients, compiled, flight, land, motion, pocket, slots
-from separatrix.cage.compiled import kernel
 from separatrix.cage.motion import advance, kinetic_energy, record
 from separatrix.cage.planar import RunOutcome
 from separatrix.cage.slots import (
@@ -40,10 +38,9 @@ from separatrix.cage.slots import (
     WHIRL,
     X,
 )
+from separatrix.compiled import kernel
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from separatrix.units import Array
 
 FIFTHS = 5
@@ -159,16 +156,9 @@ def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, ro
     out[ROWS] = filled
 
 
-def _run_chunk(stamp: int) -> Callable[..., Any]:
-    def run_chunk(p, cos, sin, counts, starts, kick, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
-        if stamp < 0:
-            return
-        for i in range(starts.shape[0]):
-            lead = starts[i, 1:]
-            run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, rows, out[i])
-
-    return run_chunk
-
-
-run_chunk: Any = compiled.entry(_run_chunk, coefficients, flight, land, motion, pocket, slots)
-"""Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+@kernel
+def run_chunk(p, cos, sin, counts, starts, kick, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
+    """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+    for i in range(starts.shape[0]):
+        lead = starts[i, 1:]
+        run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, rows, out[i])

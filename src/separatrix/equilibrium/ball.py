@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.free import free_ball, turning_loads
 from separatrix.equilibrium.groove import touch
 from separatrix.equilibrium.problem import Method, Problem, Work, solve_linear
@@ -17,7 +17,7 @@ TOLERANCE = 1e-11
 """Largest unbalanced force of a ball over the force scale of the bearing; rounding allows about 1e-14."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def evaluate(
     p: Problem,
     A: Array,
@@ -36,7 +36,7 @@ def evaluate(
     free_ball(p, A, state, smoothing, cells, nodes, residual, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def row_scales(p: Problem, A: Array, state: Array, force: float, scales: Array) -> None:
     """What counts as one unit in each row of the balance: loads in the plane, friction across it."""
     scales[:2] = force
@@ -48,7 +48,7 @@ def row_scales(p: Problem, A: Array, state: Array, force: float, scales: Array) 
         scales[3:] = 0.5 * p.ball_diameter * grip
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def newton_step(by_state: Array, residual: Array, scales: Array, step: Array) -> bool:
     """Newton step of the scaled balance, shape (n, 1); False if the slopes are singular."""
     n = residual.size
@@ -60,7 +60,7 @@ def newton_step(by_state: Array, residual: Array, scales: Array, step: Array) ->
     return solve_linear(matrix, step)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def scaled_norm(residual: Array, scales: Array) -> float:
     """Root of the sum of squares of the scaled balance."""
     total = 0.0
@@ -69,7 +69,7 @@ def scaled_norm(residual: Array, scales: Array) -> float:
     return math.sqrt(total)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def newton_ball(
     p: Problem,
     A: Array,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.ball import TOLERANCE, evaluate, newton_ball, newton_step, row_scales, scaled_norm
 from separatrix.equilibrium.controlled import kinematic_start
 from separatrix.equilibrium.problem import Method, Problem, Work, solve_linear, work
@@ -16,7 +16,7 @@ SMOOTHING = 1e-4
 """Slip speed that rounds the corner of Coulomb's law, over the speed difference times d_m/4."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def lower_smoothing(
     p: Problem, A: Array, state: Array, start: float, fine: bool, method: Method, out: Work
 ) -> float:
@@ -36,7 +36,7 @@ def lower_smoothing(
         smoothing = max(reached * ratio, SMOOTHING)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) -> float:
     """Ball without race control; returns the smoothing reached, `SMOOTHING` if all went well.
 
@@ -62,7 +62,7 @@ def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) ->
     return best
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _turn_until_balanced(p: Problem, A: Array, state: Array, smoothing: float, method: Method) -> float:
     """Newton on orbit and spin at a held V; returns the unbalance in units of the friction."""
     out, residual, scales, trial = work(6), np.empty(6), np.empty(6), state.copy()
@@ -83,7 +83,7 @@ def _turn_until_balanced(p: Problem, A: Array, state: Array, smoothing: float, m
     return norm
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def solve_kinematics(p: Problem, A: Array, state: Array, method: Method) -> bool:
     """Orbit and spin without race control at a held V: the limit of slow turning, where no inertia acts."""
     smoothing = 0.3
@@ -95,7 +95,7 @@ def solve_kinematics(p: Problem, A: Array, state: Array, method: Method) -> bool
         smoothing = max(0.3 * smoothing, SMOOTHING)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def slopes_with_ring(out: Work, by_ring: Array) -> bool:
     """Slopes of what the ball gives with A, shape (5, 2), the ball kept in balance; False if singular."""
     n = out.by_state.shape[0]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from separatrix.compiled import kernel
 from separatrix.equilibrium.ball import TOLERANCE, newton_ball
 from separatrix.equilibrium.groove import static_split, touch
 from separatrix.equilibrium.problem import Method, Problem, Work
@@ -18,7 +17,7 @@ from separatrix.equilibrium.race_control import (
 from separatrix.units import Array
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def wedged(p: Problem, A: Array, load_i: float, load_o: float, state: Array) -> None:
     """Put the ball where it is pressed into both grooves by these loads: where two circles meet."""
     D, trial = p.ball_diameter, 1e-3 * p.ball_diameter
@@ -35,7 +34,7 @@ def wedged(p: Problem, A: Array, load_i: float, load_o: float, state: Array) -> 
     state[0], state[1] = along * s + lean * across * c, along * c - lean * across * s
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def controlled_start(p: Problem, A: Array, attempt: int, state: Array) -> None:
     """Put the ball where the search may start: at rest, on its static line, or wedged."""
     static_x, static_r, load = static_split(p, A[0], A[1])
@@ -48,7 +47,7 @@ def controlled_start(p: Problem, A: Array, attempt: int, state: Array) -> None:
     wedged(p, A, load + share * F, load + (1.0 + share) * F, state)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def solve_controlled(p: Problem, A: Array, state: Array, method: Method, out: Work) -> bool:
     """Ball under race control: from `state`, then from the starts above."""
     for attempt in range(-1, 7):
@@ -60,7 +59,7 @@ def solve_controlled(p: Problem, A: Array, state: Array, method: Method, out: Wo
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def kinematic_start(p: Problem, A: Array, state: Array) -> None:
     """Give a free ball the orbit and spin of race control at its place."""
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)

@@ -7,8 +7,8 @@ difference of the ring speeds.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.groove import Touch, touch
 from separatrix.equilibrium.problem import Problem, Work
 from separatrix.equilibrium.race_control import inertia_loads, normal_slopes
@@ -19,7 +19,7 @@ LEAST_SHARE = 1e-2
 """Share of the outer load with which the inner race still turns a ball that it hardly touches."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def slip_coefficients(p: Problem, side: float, t: Touch, state: Array, c: Array, normal: Array) -> None:
     """Coefficients of the slip field, shape (4,) [-, m], and the normal (axial, radial) out of the ball."""
     ring = 1.0 - state[2] if side < 0.0 else -state[2]
@@ -31,7 +31,7 @@ def slip_coefficients(p: Problem, side: float, t: Touch, state: Array, c: Array,
     c[3] = state[5]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def contact_friction(
     p: Problem,
     side: float,
@@ -53,7 +53,7 @@ def contact_friction(
     friction_resultants(c, a, b, 0.5 * p.ball_diameter, radius, smoothing, cells, nodes, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def contact_actions(
     p: Problem,
     side: float,
@@ -98,7 +98,7 @@ def contact_actions(
         force_by[q, 1] -= turned[q] * t.sine / t.length
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _to_ball(resultants: Array, n_x: float, n_r: float, out: Array) -> None:
     """Turn resultants in contact axes into (axial, outward, orbital) forces and couples, shape (6,)."""
     M, S, F, Mt, Fy = resultants
@@ -106,7 +106,7 @@ def _to_ball(resultants: Array, n_x: float, n_r: float, out: Array) -> None:
     out[3], out[4], out[5] = M * n_x + S * n_r, M * n_r - S * n_x, Mt
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def free_ball(
     p: Problem, A: Array, state: Array, smoothing: float, cells: int, nodes: Array, residual: Array, out: Work
 ) -> None:
@@ -137,7 +137,7 @@ def free_ball(
     _add_normal_loads(i, o, residual, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _add_normal_loads(i: Touch, o: Touch, residual: Array, out: Work) -> None:
     H_i, H_o = np.empty((2, 2)), np.empty((2, 2))
     normal_slopes(i, H_i)
@@ -152,7 +152,7 @@ def _add_normal_loads(i: Touch, o: Touch, residual: Array, out: Work) -> None:
     out.push_by[:2, 6:] += H_i
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _keep_real_friction(
     i: Touch, turning: float, inner: Array, inner_by: Array, residual: Array, by_state: Array
 ) -> None:
@@ -171,7 +171,7 @@ def _keep_real_friction(
             by_state[q, k] -= along
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def turning_loads(p: Problem, i: Touch, o: Touch) -> tuple[float, float, float]:
     """Loads that turn the ball: outer, inner, and the slope of the inner; none of them vanishes."""
     load_o = max(o.load, 1e-15 * p.modulus * p.ball_diameter**2)
@@ -180,7 +180,7 @@ def turning_loads(p: Problem, i: Touch, o: Touch) -> tuple[float, float, float]:
     return load_o, LEAST_SHARE * load_o, 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _add_inertia(p: Problem, state: Array, residual: Array, by_state: Array) -> None:
     """Centrifugal force and the change of the ball's momentum of spin, J w_m e_x x spin."""
     F, G_r = inertia_loads(p, state[2], state[4])

@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from separatrix.compiled import kernel
 from separatrix.equilibrium.problem import Problem
 from separatrix.hertz import approach_coefficient
 
@@ -27,7 +26,7 @@ class Touch(NamedTuple):
     axis_ratio: float  # b/a
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def touch(p: Problem, side: float, axial: float, radial: float, guess: float) -> Touch:
     """Contact of a ball whose centre lies (axial, radial) from the groove's; side -1 inner, +1 outer."""
     D = p.ball_diameter
@@ -44,7 +43,7 @@ def touch(p: Problem, side: float, axial: float, radial: float, guess: float) ->
     return Touch(s, c, length, kappa * root * max(approach, 0.0), 1.5 * kappa * root, major, k)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def static_split(p: Problem, axial: float, radial: float) -> tuple[float, float, float]:
     """Ball centre V and load where both contacts lie on one line (no inertia); A = (axial, radial)."""
     D, length = p.ball_diameter, math.hypot(axial, radial)

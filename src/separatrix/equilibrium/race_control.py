@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.groove import Touch, touch
 from separatrix.equilibrium.problem import Problem, Work
 from separatrix.units import Array
@@ -19,7 +19,7 @@ STEEPEST = 1.4
 """Largest contact angle for which kinematics are asked [rad]."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def controlled_kinematics(
     p: Problem, angle_i: float, angle_o: float, share: float
 ) -> tuple[float, float, float]:
@@ -41,7 +41,7 @@ def controlled_kinematics(
     return m, -m * roll_o * math.cos(pitch), m * roll_o * math.sin(pitch)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def inertia_loads(p: Problem, m: float, spin_radial: float) -> tuple[float, float]:
     """Centrifugal force [N], and the gyroscopic term J w_m W_r along the orbit [N m]."""
     orbit = p.outer_speed + p.speed * m
@@ -49,13 +49,13 @@ def inertia_loads(p: Problem, m: float, spin_radial: float) -> tuple[float, floa
     return p.inertia_factor * centrifugal, p.inertia_factor * p.ball_inertia * orbit * p.speed * spin_radial
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _inertia_at(p: Problem, angle_i: float, angle_o: float, share: float) -> tuple[float, float]:
     m, _, spin_radial = controlled_kinematics(p, angle_i, angle_o, share)
     return inertia_loads(p, m, spin_radial)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _inertia_slopes(p: Problem, angle_i: float, angle_o: float, share: float, slopes: Array) -> None:
     """Slopes of centrifugal force and gyroscopic term, shape (2, 3): inner angle, outer angle, share."""
     step = 1e-5
@@ -70,7 +70,7 @@ def _inertia_slopes(p: Problem, angle_i: float, angle_o: float, share: float, sl
         slopes[0, 2], slopes[1, 2] = (Fs - F) / step, (Gs - G) / step
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def normal_slopes(t: Touch, slopes: Array) -> None:
     """d(Q s, Q c)/d(axial, radial) of one contact, shape (2, 2) [N/m]."""
     s, c, side = t.sine, t.cosine, t.load / t.length
@@ -79,7 +79,7 @@ def normal_slopes(t: Touch, slopes: Array) -> None:
     slopes[1, 1] = t.load_slope * c * c + side * s * s
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def inner_share(p: Problem, load: float) -> tuple[float, float]:
     """Share lambda_i of the gyroscopic friction (and of the control) and its slope with the inner load.
 
@@ -93,7 +93,7 @@ def inner_share(p: Problem, load: float) -> tuple[float, float]:
     return p.inner_share * t * t * (3.0 - 2.0 * t), p.inner_share * 6.0 * t * (1.0 - t) / full
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Work) -> None:
     """Force balance of one ball, shape (2,) [N], its slopes, and what the inner race gives the ball.
 
@@ -116,7 +116,7 @@ def controlled_ball(p: Problem, A: Array, state: Array, residual: Array, out: Wo
     _controlled_slopes(p, i, o, G, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> None:
     """Slopes of the balance; with w = A - V they enter V negative and A positive."""
     D, push_by, by_state = p.ball_diameter, out.push_by, out.by_state
@@ -150,7 +150,7 @@ def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> N
         by_state[1, k] = push_by[1, k] - outer_r - To_w * o.sine - F_w
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def rest_on_outer(p: Problem, A: Array, state: Array) -> bool:
     """Put the ball at the bottom of the outer groove by its own inertia; True if it misses the inner race."""
     bottom = (p.outer_conformity - 0.5) * p.ball_diameter

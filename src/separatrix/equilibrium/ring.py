@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.continuation import SMOOTHING, slopes_with_ring, solve_free
 from separatrix.equilibrium.controlled import solve_controlled
 from separatrix.equilibrium.groove import static_split
@@ -34,7 +34,7 @@ class Balls(NamedTuple):
     weight: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def groove_vector(p: Problem, q: Array, azimuth: float, A: Array) -> None:
     """A, from the outer to the inner groove centre in the plane of a ball, shape (2,) [m]."""
     span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
@@ -43,7 +43,7 @@ def groove_vector(p: Problem, q: Array, azimuth: float, A: Array) -> None:
     A[1] = span * p.free_cosine + q[1] * c + q[2] * s
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def push_on_ring(p: Problem, azimuth: float, push: Array, out: Array) -> None:
     """Turn forces and couples in ball axes into the five loads they make, shape (5, columns)."""
     s, c, arm = math.sin(azimuth), math.cos(azimuth), 0.5 * p.pitch_diameter
@@ -55,7 +55,7 @@ def push_on_ring(p: Problem, azimuth: float, push: Array, out: Array) -> None:
         out[4, k] = -arm * push[0, k] * c + push[3, k] * s + push[4, k] * c
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array) -> None:
     """Ball without inertia: both contacts on one line; `by_ring` (5, 2) are the slopes of `push` with A."""
     state[0], state[1], load = static_split(p, A[0], A[1])
@@ -70,7 +70,7 @@ def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array)
     by_ring[1, 1] = slope * c * c + load / length * s * s
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, by_ring: Array) -> float:
     """Ball with inertia, solved; returns 0, or how far the smoothing of friction came (inf: nowhere)."""
     if state.shape[0] == CONTROLLED:
@@ -83,7 +83,7 @@ def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, b
     return 0.0 if slopes_with_ring(out, by_ring) else math.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def ring_balance(
     p: Problem, q: Array, setup: Balls, states: Array, method: Method, balance: Array, slopes: Array
 ) -> tuple[float, int]:
@@ -118,7 +118,7 @@ def ring_balance(
     return 0.0, -1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def unbalance(balance: Array, dofs: IntArray, arm: float) -> float:
     """Root of the sum of squares of the unbalanced loads in `dofs`, moments over the arm [N]."""
     total = 0.0
@@ -127,7 +127,7 @@ def unbalance(balance: Array, dofs: IntArray, arm: float) -> float:
     return math.sqrt(total)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _ring_step(
     balance: Array, slopes: Array, dofs: IntArray, arm: float, damping: float, step: Array
 ) -> bool:
@@ -143,7 +143,7 @@ def _ring_step(
     return solve_linear(matrix, step)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
     worst = 0.0
     for d in dofs:
@@ -151,7 +151,7 @@ def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
     return worst
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def solve_ring(
     p: Problem,
     q: Array,

@@ -12,12 +12,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.units import Array
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _mean_inverse(v1: float, v2: float, r1: float, r2: float, s2: float) -> tuple[float, float, float, float]:
     """Mean of 1/sqrt(v^2 + s^2) for v from v1 to v2, and its slopes with v1, v2 and s^2."""
     dv = v2 - v1
@@ -37,13 +37,13 @@ def _mean_inverse(v1: float, v2: float, r1: float, r2: float, s2: float) -> tupl
     return mean, (mean - 1.0 / r1) / dv, (1.0 / r2 - mean) / dv, by_s2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _sum(v: float, r: float, s2: float) -> float:
     """Sum v + r for r = sqrt(v^2 + s^2), without cancellation."""
     return v + r if v > 0.0 else s2 / (r - v)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def friction_resultants(
     c: Array,
     a: float,

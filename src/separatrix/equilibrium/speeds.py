@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from separatrix.compiled import kernel
 from separatrix.equilibrium.continuation import solve_kinematics
 from separatrix.equilibrium.controlled import kinematic_start
 from separatrix.equilibrium.free import slip_coefficients
@@ -21,7 +21,7 @@ COLUMNS = 18
 """Columns of `ball_table`, in the order that `solve.finished` reads."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _grip(t: Touch) -> float:
     """Jones's measure of how well a race holds the spin of a ball, Q a E [N m]."""
     K, D, _ = elliptic_integrals(t.axis_ratio)
@@ -29,7 +29,7 @@ def _grip(t: Touch) -> float:
     return float(t.major_coefficient * t.load ** (4.0 / 3.0) * E)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _speeds_at(p: Problem, side: float, t: Touch, state: Array) -> tuple[float, float]:
     """Spin/roll ratio [-] and mean rolling speed over the speed difference [m] of one contact."""
     c, n = np.empty(4), np.empty(2)
@@ -40,7 +40,7 @@ def _speeds_at(p: Problem, side: float, t: Touch, state: Array) -> tuple[float, 
     return c[0] / c[1], 0.5 * abs(ball_surface + ring_surface)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None:
     """Groove vector of a ball; one that floats at rest is put between the grooves at their first touch."""
     groove_vector(p, q, azimuth, A)
@@ -51,7 +51,7 @@ def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None
         state[:2] = A * ((p.outer_conformity - 0.5) * p.ball_diameter / touching)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def ball_table(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
     """One row a ball: angles, loads, orbit, spin, pitch, yaw, ratios, rolling speeds, inertia, control."""
     table, A = np.empty((azimuths.size, COLUMNS)), np.empty(2)
@@ -78,7 +78,7 @@ def ball_table(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
     return table
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def controlled_states(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
     """Complete V, shape (ball, 2 or more), with orbit and spin under race control, shape (ball, 6)."""
     full, A = np.empty((azimuths.size, 6)), np.empty(2)
@@ -89,7 +89,7 @@ def controlled_states(p: Problem, q: Array, azimuths: Array, states: Array) -> A
     return full
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def settle_free_states(p: Problem, q: Array, azimuths: Array, states: Array, method: Method) -> int:
     """Bring orbit and spin of every ball to the free balance, V held; -1, or the first ball that fails."""
     A = np.empty(2)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from separatrix.traction.compiled import kernel
+from separatrix.compiled import kernel
 from separatrix.traction.master import master_traction
 from separatrix.units import Array
 

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from separatrix.traction.compiled import kernel
+from separatrix.compiled import kernel
 from separatrix.units import Array
 
 

@@ -15,9 +15,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import expm
 
+from separatrix.compiled import kernel
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Film, Material
-from separatrix.traction.compiled import kernel
 from separatrix.traction.influence import log_kernel
 from separatrix.traction.master import MasterTable, master_tables
 from separatrix.units import Array, Metre, Pascal, Ratio

@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from separatrix.traction.compiled import kernel
+from separatrix.compiled import kernel
 from separatrix.traction.influence import node_pressure, strip_influence, toeplitz_product
 from separatrix.units import Array
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from separatrix.compiled import kernel
 from separatrix.creep import Creep
 from separatrix.hertz import ContactEllipse
-from separatrix.traction.compiled import kernel
 from separatrix.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, Table, free_rolling, resultant
 from separatrix.traction.layer import BondedLayer, layer_tables
 from separatrix.traction.master import MasterTable, film_tables, master_traction

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from separatrix.compiled import kernel
 from separatrix.errors import ConvergenceError
-from separatrix.traction.compiled import kernel
 from separatrix.traction.influence import node_positions, node_pressure, strip_influence, toeplitz_product
 from separatrix.units import Array, Ratio
 

@@ -1,7 +1,8 @@
-"""How kernels of this package are compiled: strict floating point, cached, without the interpreter lock.
+"""How kernels are compiled: strict floating point, without the interpreter's lock, and cached.
 
 numba keeps compiled code until the file of the function changes; it does not see a change in another file
-whose functions were compiled in. So the key of every cached kernel holds a checksum of the package's sources.
+whose functions were compiled in. So the key of every cached kernel also holds a checksum of all files that
+have kernels.
 """
 
 from __future__ import annotations
@@ -17,20 +18,27 @@ from numba.core.caching import FunctionCache
 P = ParamSpec("P")
 R = TypeVar("R")
 
-SOURCES = zlib.crc32(b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))))
+
+def source_stamp(package: Path) -> int:
+    """Checksum of the files below a folder that use this module."""
+    sources = (path.read_bytes() for path in sorted(package.rglob("*.py")))
+    return zlib.crc32(b"".join(source for source in sources if b"separatrix.compiled" in source))
 
 
-class PackageCache(FunctionCache):
-    """numba's cache of one function, keyed by the sources of the whole package too."""
+_STAMP = source_stamp(Path(__file__).parent)
+
+
+class _SourceCache(FunctionCache):
+    """numba's cache of one function, keyed by the sources of all kernels too."""
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
         key: Any = super()._index_key
-        return (*key(sig, codegen), SOURCES)
+        return (*key(sig, codegen), _STAMP)
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel with numba; the signature stays visible to the type checker."""
     compiled: Any = njit(nogil=True, error_model="numpy")(function)
-    cache: Any = PackageCache
+    cache: Any = _SourceCache
     compiled._cache = cache(function)
     return compiled  # type: ignore[no-any-return]
