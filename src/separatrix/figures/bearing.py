@@ -41,7 +41,7 @@ def contact(data: xr.Dataset) -> Figure:
         axes.set(xlabel="y across the groove [mm]")
     for axes in (pressure, creep):
         axes.set_xlim(-1.12 * widest, 1.12 * widest)
-    plan.set(title="a  Ellipses, to scale", ylabel="x along rolling", yticks=[])
+    plan.set(title="a  Ellipses, to scale", ylabel="x along rolling, same scale", yticks=[])
     plan.set_aspect("equal", adjustable="datalim")
     pressure.set(title="b  Pressure on the axis x = 0", ylabel="pressure [MPa]", ylim=(0, None))
     creep.set(title="c  Creep without offset", ylabel="creep ratio [%]")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from itertools import cycle
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,12 +17,14 @@ from separatrix.figures.style import (
     BLACK,
     CYCLE,
     GREY,
+    MARKERS,
     PAGE,
     VERDICT_COLOURS,
     VERDICT_MARKERS,
     canvas,
     label_lines,
 )
+from separatrix.units import Array
 
 
 def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -42,27 +46,29 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     measured = data.isel(material=np.isfinite(data["material_friction"].values))
     frame(axes, data, top)
     chain_lines(axes, data)
-    limit = float(data["solid_lubrication_limit"])
-    axes.axvline(
-        limit, color=GREY, lw=1.0, ls="-.", label=rf"$\eta$ = {limit:g}, the paper's least (quoted above)"
-    )
+    _paper_line(axes, data)
     for i in range(measured.sizes["material"]):
         _candidate(axes, measured.isel(material=i))
-    _names(axes, measured)
+    _names(axes, data, top)
     _title(axes, data)
     _legend(figure, axes, data)
     return figure
 
 
+def _paper_line(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the least restitution factor that the paper grants solid lubrication."""
+    limit = float(data["solid_lubrication_limit"])
+    label = rf"$\eta$ = {limit:g}: solid lubrication gets no lower, says the paper"
+    axes.axvline(limit, color=GREY, lw=1.0, ls="-.", label=label)
+
+
 def _title(axes: Axes, data: xr.Dataset) -> None:
-    """Name the environment, and at the right who was not measured in it."""
+    """Name the environment, and the column of names at the right."""
     name = str(data["environment"].values)
     axes.set_title(name[:1].upper() + name[1:])
-    absent = data["material"].values[~np.isfinite(data["material_friction"].values)]
-    if absent.size:
-        note = f"not measured: {', '.join(absent)}"
-        axes.text(0.99, 1.015, note, fontsize=7, color=GREY, ha="right", transform=axes.transAxes)
-    axes.text(1.005, 1.015, "rank  candidate", fontsize=7, color=GREY, transform=axes.transAxes)
+    head = "rank  candidate  friction"
+    beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    axes.annotate(head, (1, 1), xytext=(12, 6), fontsize=7, color=GREY, **beside)
 
 
 def _candidate(axes: Axes, data: xr.Dataset) -> None:
@@ -85,20 +91,29 @@ def _candidate(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(threshold, friction, "o", mfc="white", mec=colour, ms=4.5, clip_on=False, zorder=4)
 
 
-def _names(axes: Axes, data: xr.Dataset) -> None:
-    """Write name and rank of every candidate at the right, apart from each other."""
-    labels = [
-        (
-            1.0,
-            float(data["material_friction"][i]),
-            f"{int(data['material_rank'][i])}  {data['material'].values[i]}"
-            if np.isfinite(data["material_rank"][i])
-            else str(data["material"].values[i]),
-            VERDICT_COLOURS.get(str(data["material_verdict"].values[i]), GREY),
-        )
-        for i in range(data.sizes["material"])
+def _names(axes: Axes, data: xr.Dataset, top: float) -> None:
+    """Write rank, name and friction of every candidate at the right; on top those not measured."""
+    ranks = _ranks(data["material_rank"].values)
+    labels = []
+    for name, rank, friction, verdict in zip(
+        data["material"].values,
+        ranks,
+        data["material_friction"].values,
+        data["material_verdict"].values,
+        strict=True,
+    ):
+        measured = np.isfinite(friction)
+        text = f"{rank}  {name}  {friction:.3g}" if measured else f"{rank}  {name}  not measured"
+        labels.append((1.0, friction if measured else top, text, VERDICT_COLOURS.get(str(verdict), GREY)))
+    label_lines(axes, labels, gap=0.05, colour=BLACK)
+
+
+def _ranks(ranks: Array) -> list[str]:
+    """Return the ranks as text: = after a shared one, a dash for none."""
+    return [
+        (f"{int(rank)}=" if (ranks == rank).sum() > 1 else f"{int(rank)}") if np.isfinite(rank) else "-"
+        for rank in ranks
     ]
-    label_lines(axes, labels, gap=0.045)
 
 
 def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
@@ -113,32 +128,55 @@ def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
     axes.text(0, 1.09, statement, transform=axes.transAxes, fontsize=6.5, color=GREY, va="bottom")
 
 
+ABSENT_AT, VERDICT_AT, RIGHT = 1.06, 1.13, 1.32
+"""Columns of the overview beyond a restitution factor of 1: crosses, verdicts, and its end."""
+
+
 def overview(data: xr.Dataset) -> Figure:
     """Restitution threshold of every candidate, overall and in each environment; best at the top."""
     order = np.argsort(np.nan_to_num(data["overall_restitution_threshold"].values, nan=-1.0), kind="stable")
     data = data.isel(material=order)
-    count = data.sizes["material"]
-    figure, axes = canvas(PAGE, 1.5 + 0.32 * count)
-    places = np.arange(count)
-    for i, name in enumerate(data["environment"].values):
-        place = places + 0.26 - 0.52 * (i + 0.5) / data.sizes["environment"]
-        threshold = data["material_restitution_threshold"].values[i]
-        axes.plot(threshold, place, "o", color=CYCLE[i % len(CYCLE)], ms=3.2, label=str(name), clip_on=False)
+    places = np.arange(float(data.sizes["material"]))
+    figure, axes = canvas(PAGE, 1.7 + 0.32 * places.size)
+    axes.set(xlim=(-0.012, RIGHT), ylim=(-0.6, places.size - 0.4), xticks=np.linspace(0, 1, 6))
+    axes.set_xlabel(f"threshold of the {ETA_LABEL}: larger is better", loc="left")
+    axes.spines["bottom"].set_bounds(0, 1)
+    count = data.sizes["environment"]
+    for i, marker, colour in zip(range(count), cycle(MARKERS), cycle(CYCLE), strict=False):
+        lower = 0.26 - 0.52 * (i + 0.5) / count
+        _thresholds(axes, data.isel(environment=i), places + lower, marker, colour)
     low, middle, high = (data[f"overall_restitution_threshold{end}"].values for end in ("_low", "", "_high"))
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
     chain_lines(axes, data)
-    limit = float(data["solid_lubrication_limit"])
-    axes.axvline(limit, color=GREY, lw=1.0, ls="-.", label=rf"$\eta$ = {limit:g}, the paper's least")
-    axes.set(xlim=(0, 1), ylim=(-0.6, count - 0.4), xlabel=f"threshold of the {ETA_LABEL}: larger is better")
-    axes.set_yticks(places, [_ranked(data, i) for i in range(count)])
-    axes.tick_params(axis="y", length=0)
-    axes.set_title("Restitution thresholds; the number is the overall rank")
+    _paper_line(axes, data)
+    _rows(axes, data, places)
+    axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure
 
 
-def _ranked(data: xr.Dataset, i: int) -> str:
-    rank = float(data["overall_rank"][i])
-    name = str(data["material"].values[i])
-    return f"{name}  {int(rank)}" if np.isfinite(rank) else f"{name}  -"
+def _thresholds(axes: Axes, data: xr.Dataset, places: Array, marker: str, colour: str) -> None:
+    """Draw one environment's thresholds; a cross at the right where the candidate was not measured."""
+    look: Any = {"ls": "", "color": colour}
+    name = str(data["environment"].values)
+    axes.plot(
+        data["material_restitution_threshold"].values, places, marker=marker, ms=3.6, label=name, **look
+    )
+    absent = ~np.isfinite(data["material_friction"].values)
+    axes.plot(np.full(absent.sum(), ABSENT_AT), places[absent], marker="x", ms=3.6, **look)
+
+
+def _rows(axes: Axes, data: xr.Dataset, places: Array) -> None:
+    """Write names and ranks at the left; at the right the overall verdicts and the heads of the columns."""
+    named = zip(data["material"].values, _ranks(data["overall_rank"].values), strict=True)
+    axes.set_yticks(places, [f"{name}  {rank}" for name, rank in named])
+    axes.tick_params(axis="y", length=0)
+    for place, verdict in zip(places, data["overall_verdict"].values.astype(str), strict=True):
+        colour, marker = VERDICT_COLOURS.get(verdict, GREY), VERDICT_MARKERS.get(verdict, "_")
+        axes.plot(VERDICT_AT, place, marker, color=colour, ms=5)
+        axes.text(VERDICT_AT + 0.02, place, verdict or "none", fontsize=7, va="center")
+    top = places.size - 0.4
+    axes.text(VERDICT_AT - 0.01, top, "overall verdict", fontsize=7, color=GREY, va="bottom")
+    if not np.isfinite(data["material_friction"].values).all():
+        axes.plot([], [], "x", color=GREY, ms=3.6, label="not measured in the environment of its colour")

@@ -21,7 +21,7 @@ def lubrication(data: xr.Dataset) -> Figure:
         _panel(panel, data, f"lubrication_{name}", own)
         panel.set_title(title)
     axes[0].set_ylabel(r"restitution factor $\eta$ [-]")
-    figure.supxlabel("total thickness of the film [um]", fontsize=8)
+    figure.supxlabel("total thickness of the film [\u00b5m]", fontsize=8)
     return figure
 
 
@@ -29,10 +29,10 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> None:
     """Draw one line for each race friction; bare races stand apart at the left."""
     thickness = 1e6 * data["film_thickness"].values
     films = thickness > 0
-    bare = 0.3 * thickness[films].min()
+    bare = 0.2 * thickness[films].min()
     frictions = data["race_friction"].values
     ends = []
-    for i, colour in enumerate(colormaps["viridis"](np.linspace(0.05, 0.85, frictions.size))):
+    for i, colour in enumerate(colormaps["viridis"](np.linspace(0.05, 0.75, frictions.size))):
         eta = data[name].values[i]
         axes.plot(thickness[films], eta[films], color=colour)
         axes.plot(np.full((~films).sum(), bare), eta[~films], "o", color=colour, ms=3.5)

@@ -62,9 +62,19 @@ def _energy(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(time, 1e3 * data[name].values, color=colour, lw=0.8)
         label = str(name).removeprefix("work_").replace("_", " ")
         ends.append((time[-1], 1e3 * float(data[name][-1]), label, colour))
-    axes.set(xlabel="time [ms]", ylabel="energy, work [mJ]", title="b  Kinetic energy and the work behind it")
-    axes.set_xlim(0, time[-1])
+    axes.set(ylabel="energy, work [mJ]", title="b  Kinetic energy and the work behind it")
+    _time_axis(axes, data)
     label_lines(axes, ends, gap=0.075)
+
+
+def _time_axis(axes: Axes, data: xr.Dataset) -> None:
+    """Set the axis of time: logarithmic for a motion that dies, because it does so early."""
+    time = 1e3 * data["time"].values
+    if str(data["outcome"].values) == "DIES":
+        axes.set(xscale="log", xlim=(time[1], time[-1]), xlabel="time, logarithmic [ms]")
+        axes.xaxis.set_major_formatter("{x:g}")
+    else:
+        axes.set(xlim=(0, time[-1]), xlabel="time [ms]")
 
 
 def _force(axes: Axes, data: xr.Dataset) -> None:
@@ -79,7 +89,8 @@ def _force(axes: Axes, data: xr.Dataset) -> None:
     )
     if np.any(data["land_force"].values):
         axes.plot(time, np.abs(data["land_force"].values), color=VERMILION, lw=0.5, label="land")
-    axes.set(xlabel="time [ms]", ylabel="force [N]", title="c  Contact forces", xlim=(0, time[-1]))
+    axes.set(ylabel="force [N]", title="c  Contact forces")
+    _time_axis(axes, data)
     axes.set_ylim(0, 1.25 * axes.get_ylim()[1])
     axes.legend(loc="upper right", ncols=2, handlelength=1.4)
 

@@ -18,12 +18,13 @@ FRICTION_LABEL = r"ball/cage friction $f_{BC}$ [-]"
 
 def stability(data: xr.Dataset) -> Figure:
     """Critical friction against restitution factor: curve, band, linear limit, and the bearing's own eta."""
-    figure, axes = canvas(0.8 * PAGE, 3.6)
+    figure, axes = canvas(PAGE, 3.9)
     frame(axes, data, highest(data))
     chain_lines(axes, data)
     axes.text(0.42, 0.05, "stable", transform=axes.transAxes, color=GREY, style="italic")
     axes.text(0.97, 0.5, "unstable", transform=axes.transAxes, color=GREY, style="italic", ha="right")
-    axes.legend(loc="upper right", fontsize=7, handlelength=1.8)
+    axes.set_title("Stability of the cage: critical friction and its band")
+    figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
     return figure
 
 
@@ -42,7 +43,13 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
     axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
     low, high = (np.where(np.isnan(end), edge, end) for end, edge in ((low, 0.0), (high, 2 * top)))
     known = np.isfinite(middle)
-    span = f"kicks {kicks.min():g} to {kicks.max():g} m/s" if kicks.size > 1 else f"kick {kicks[0]:g} m/s"
+    ends = f"{kicks.min():g} to {kicks.max():g} m/s"
+    several = f"10 % of the runs grow at some kick, to 90 % at every kick ({ends})"
+    span = several if kicks.size > 1 else f"10 to 90 % of the runs grow, kick {kicks[0]:g} m/s"
+    label = f"half of {int(data['runs'])} runs grow, kick {float(data['middle_kick']):g} m/s"
+    axes.plot(eta, middle, color=BLUE, label=label)
+    scatter = data["scatter_low"].values, data["scatter_high"].values
+    axes.fill_between(eta, *scatter, color=BLUE, alpha=0.3, lw=0, label="its 95 % interval")
     axes.fill_between(
         eta,
         low,
@@ -51,13 +58,8 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
         color=BLUE,
         alpha=0.15,
         lw=0,
-        label=f"10 to 90 % of the runs grow, {span}",
+        label=span,
     )
-    axes.fill_between(
-        eta, data["scatter_low"].values, data["scatter_high"].values, color=BLUE, alpha=0.3, lw=0
-    )
-    label = f"half of {int(data['runs'])} runs grow (95 % scatter), kick {float(data['middle_kick']):g} m/s"
-    axes.plot(eta, middle, color=BLUE, label=label)
     limit = data["linear_limit_critical_friction"].values
     axes.plot(
         eta, limit, color=GREY, lw=0.9, ls=(0, (4, 2)), label="linear limit: no clearance, balls at rest"

@@ -12,6 +12,7 @@ import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import offset_copy
 
 COLUMN, PAGE = 3.5, 7.0
 """Widths of one and of two columns of a journal [inch]."""
@@ -30,8 +31,12 @@ BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW, BLACK = (
 
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 GREY = "#6b6b6b"
+MARKERS = ("o", "s", "^", "v", "P", "*", "p")
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
+
+LEADER: Any = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1.0, "shrinkB": 0.0, "relpos": (0.0, 0.5)}
+"""From a label to the end of its line."""
 
 STYLE: Any = {
     "font.family": "sans-serif",
@@ -88,7 +93,13 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=metadata)
 
 
-def label_lines(axes: Axes, labels: Sequence[tuple[float, float, str, str]], *, gap: float = 0.055) -> None:
+def label_lines(
+    axes: Axes,
+    labels: Sequence[tuple[float, float, str, str]],
+    *,
+    gap: float = 0.055,
+    colour: str | None = None,
+) -> None:
     """Write labels at the right ends of lines, moved apart where they would overlap.
 
     Parameters
@@ -99,19 +110,25 @@ def label_lines(axes: Axes, labels: Sequence[tuple[float, float, str, str]], *, 
         Ends of the lines, in data.
     gap : float
         Least distance of two labels, as a share of the height.
+    colour : str or None
+        Of the text; the line's own if None. A label that had to move is tied to its line.
     """
     low, high = axes.get_ylim()
     wanted = [(y - low) / (high - low) for _, y, _, _ in labels]
-    for place, (x, _, text, colour) in zip(spread(wanted, gap), labels, strict=True):
+    places = spread(wanted, gap)
+    moved = any(abs(place - want) > gap / 4 for place, want in zip(places, wanted, strict=True) if want < 1)
+    beside = offset_copy(axes.transData, axes.get_figure(root=True), x=12 if moved else 4, units="points")
+    for place, want, (x, y, text, own) in zip(places, wanted, labels, strict=True):
         axes.annotate(
             text,
-            (x, low + place * (high - low)),
-            xytext=(3, 0),
-            textcoords="offset points",
-            color=colour,
+            (x, y),
+            xytext=(x, low + place * (high - low)),
+            textcoords=beside,
+            color=colour or own,
             va="center",
             fontsize=7.0,
             annotation_clip=False,
+            arrowprops={**LEADER, "color": own} if moved and want < 1 else None,
         )
 
 

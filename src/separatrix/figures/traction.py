@@ -27,12 +27,17 @@ def _race(axes: Axes, data: xr.Dataset) -> None:
     ratios = data["ratio_spin_roll_ratio"].values
     axes.axhline(0.0, color=GREY, lw=0.5)
     axes.axvline(0.0, color=GREY, lw=0.5)
-    for i, colour in enumerate(colormaps["viridis"](np.linspace(0.05, 0.88, ratios.size))):
+    for i, colour in enumerate(colormaps["viridis"](np.linspace(0.05, 0.8, ratios.size))):
         coefficient = data["ratio_traction_coefficient"].isel(ratio=i).values
-        axes.plot(increment, coefficient, color=colour, lw=0.9, label=f"{ratios[i] + 0.0:.2g}")
+        axes.plot(increment, coefficient, color=colour, lw=0.9, label=signed(ratios[i], 2))
     own = data["traction_coefficient"].values
+    label = f"{signed(float(data['spin_roll_ratio']), 3)}, this bearing"
     axes.plot(
-        increment, own, color=BLACK, lw=1.8, label=f"{float(data['spin_roll_ratio']):.3g}, this bearing"
+        increment,
+        own,
+        color=BLACK,
+        lw=1.8,
+        label=label,
     )
     _tangent(axes, float(data["slope"]), float(np.abs(own).max()))
     title = r"$\Delta\omega_{piv}\,/\,\Delta\omega_{roul}$"
@@ -53,16 +58,23 @@ def shear(data: xr.Dataset) -> Figure:
     figure, axes = canvas(PAGE, 4.2, nrows=2, ncols=3, sharex="row", sharey="row")
     middle = data.sizes["strip"] // 2
     strips = [middle // 2, middle, data.sizes["strip"] - 1 - middle // 2]
+    letters = iter("abcdef")
     for row, race in zip(axes, ("inner", "outer"), strict=True):
         for panel, strip in zip(row, strips, strict=True):
-            _strip(panel, data.sel(race=race).isel(strip=strip))
+            _strip(panel, data.sel(race=race).isel(strip=strip), next(letters))
         row[0].set_ylabel(f"{race} race: shear [MPa]")
-    figure.supxlabel("x along rolling [mm]; the surfaces enter the contact at the right", fontsize=8)
+    text = "x along rolling [mm]; free rolling: the surfaces enter the contact at the right"
+    figure.supxlabel(text, fontsize=8)
     axes[0, 0].legend(loc="upper left", handlelength=1.6, fontsize=6.5)
     return figure
 
 
-def _strip(axes: Axes, data: xr.Dataset) -> None:
+def signed(value: float, digits: int) -> str:
+    """Return a number as text, with the minus sign that the axes have and no negative zero."""
+    return f"{value + 0.0:.{digits}g}".replace("-", "\N{MINUS SIGN}")
+
+
+def _strip(axes: Axes, data: xr.Dataset, letter: str) -> None:
     """Draw one strip, with its place across the groove as title."""
     x = 1e3 * data["shear_along"].values
     bound = 1e-6 * float(data["race_friction"]) * data["shear_pressure"].values
@@ -79,4 +91,5 @@ def _strip(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(x, 1e-6 * data["shear_shear"].values, color=BLUE, label="with slip")
     axes.set_ylim(-1.6 * bound.max(), 2.2 * bound.max())
     place, creep = 1e3 * float(data["shear_across"]), 100 * float(data["shear_creep_ratio"])
-    axes.set_title(f"y = {place:.2f} mm, creep {creep:.2g} %")
+    axes.set_title(f"{letter}  y = {signed(place, 2)} mm, creep {signed(creep, 2)} %")
+    axes.locator_params(axis="x", nbins=5)

@@ -37,5 +37,13 @@ def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
     blocks = [heading(document["title"]), *REPORTS[verb](document)]
     blocks += [paragraph(note, first="Note: ", indent="      ") for note in document["warnings"]]
     if where is not None:
-        blocks.append(f"Figures and data are in {where}/")
+        blocks.append(_where(verb, document, where))
     return "\n\n".join(blocks) + "\n"
+
+
+def _where(verb: str, document: Mapping[str, Any], folder: str) -> str:
+    """Return where the files are, and for a ranking which picture to open first."""
+    if verb == "check":
+        return f"This text and the document are in {folder}/"
+    first = verb == "rank" and document["complete"]
+    return f"Figures and data are in {folder}/" + (" (begin with rank-overview.png)" if first else "")

@@ -1,4 +1,4 @@
-"""Text for the moving cage: stability curve, one run, ranking."""
+"""Text for the moving cage: stability curve and one run, and what they hold for."""
 
 from __future__ import annotations
 
@@ -23,14 +23,52 @@ def stability(document: Document) -> list[str]:
     ]
     reasons = dict.fromkeys(row["reason"] for row in document["curve"] if row["reason"])
     blocks = [
-        section("What it holds for", facts([*chain_facts(document["chain"]), *ensemble_facts(document)])),
-        section("Stability curve", table(CURVE_HEADERS, rows)),
+        section("Stability curve", table(CURVE_HEADERS, rows), CURVE_LEGEND),
+        section("What it holds for", facts(_holds_for(document))),
     ]
     return blocks + [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
 
 
 CURVE_KEYS = ("critical_friction", "critical_friction_low", "critical_friction_high")
+CURVE_LEGEND = "\n" + paragraph(
+    "critical friction: half the runs grow from the middle kick; stable below, unstable above. band: from "
+    "one run in ten, at whatever kick, to nine in ten at every. linear limit: no clearance, balls at rest."
+)
 CURVE_HEADERS = ("restitution\nfactor", "critical\nfriction", "band\nlow", "band\nhigh", "linear\nlimit")
+
+
+def _holds_for(document: Document) -> list[tuple[str, str]]:
+    parts = (study_facts(document["study"]), chain_facts(document["chain"]), ensemble_facts(document))
+    return [fact for part in parts for fact in part]
+
+
+def study_facts(study: Document) -> list[tuple[str, str]]:
+    """Return the bearing, its operating point and the film on a line each."""
+    bearing, operation, film = study["bearing"], study["operation"], study["film"]
+    balls = f"{bearing['ball_count']['value']} balls of {_value(bearing['ball_diameter'])}"
+    speeds = f"inner ring {_value(operation['inner_speed'])}"
+    loads = [
+        f"{_value(operation[f'{name}_load'])} {name}"
+        for name in ("axial", "radial")
+        if operation[f"{name}_load"]["value"]
+    ]
+    return [
+        ("Bearing", f"{balls}, pitch diameter {_value(bearing['pitch_diameter'])}"),
+        ("Operation", ", ".join([speeds, *loads])),
+        ("Film on the races", f"{_film(film)}; friction {_value(film['race_friction'])}"),
+    ]
+
+
+def _film(film: Document) -> str:
+    if film["is_bare"]:
+        return "none"
+    material = film["material"]
+    modulus = quantity(material["elastic_modulus"]["value"], "Pa")
+    return f"{material['name']}, {_value(film['thickness'])}, modulus {modulus}"
+
+
+def _value(entry: Document) -> str:
+    return quantity(entry["value"], entry.get("unit", "-"))
 
 
 def chain_facts(chain: Document) -> list[tuple[str, str]]:
@@ -90,9 +128,11 @@ def simulate(document: Document) -> list[str]:
         if any(values)
     ]
     return [
-        section("What it holds for", facts(chain_facts(document["chain"]))),
         section("The run", facts(ended)),
         section("Work on the cage", facts(work or [("none", "0 mJ")])),
+        section(
+            "What it holds for", facts([*study_facts(document["study"]), *chain_facts(document["chain"])])
+        ),
         paragraph(
             "One run proves nothing: two of them may differ in the class. See the verbs stability and rank.",
             indent="",

@@ -1,45 +1,62 @@
-"""Text of a ranking: what it holds for, then each environment with verdicts and reasons."""
+"""Text of a ranking: the answer with its evidence first, then what it holds for and each environment."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.report.cage import chain_facts, ensemble_facts
-from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.report.cage import chain_facts, ensemble_facts, study_facts
+from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, significant, table
 
 Document = Mapping[str, Any]
 
-HEADERS = ("rank", "material", "friction", "threshold", "margin", "P(stable)", "95 % interval", "verdict")
+HEADERS = (
+    "rank",
+    "material",
+    "friction",
+    "threshold\n(95 %)",
+    "margin",
+    "P(stable)\n(95 %)",
+    "verdict",
+)
+EVIDENCE_HEADERS = (
+    "material",
+    "measured in\nenvironments",
+    "bearing's\neta",
+    "offset\nmm",
+    "drift rate\n1/s",
+    "pocket force\nN",
+    "whirl\nHz",
+    "runs\na kick",
+)
+DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
 
 
 def rank(document: Document) -> list[str]:
-    """Verdict, margin, rank and reason of each candidate, overall and in each environment."""
-    environments = document["environments"]
-    head = [
-        *chain_facts(document["chain"]),
-        *ensemble_facts(document),
-        *_evidence([row for environment in environments for row in environment["materials"]]),
-        ("The paper's bound", document["paper_statement"]),
-        *_disagreement(document),
-    ]
+    """Verdict, margin, rank, evidence and reason of each candidate, overall and in each environment."""
     return [
-        section("What the verdicts hold for", facts(head)),
-        section("Overall: mean friction over the measured environments", _table(document["overall"])),
-        *(
-            section(_title(environment["name"]), _table(environment["materials"]))
-            for environment in environments
-        ),
+        section("Overall: mean friction over the measured environments", _table(document["overall"]), LEGEND),
+        section(_evidence_title(document), _evidence(document), EVIDENCE_LEGEND),
         section("Reasons, overall", *_reasons(document["overall"])),
-        *(section(f"Reasons, {e['name']}", *_reasons(e["materials"])) for e in environments),
-        paragraph(LEGEND, indent=""),
+        section("What the verdicts hold for", facts(_holds_for(document))),
+        *(
+            section(_title(one["name"]), _table(one["materials"]), "", *_reasons(one["materials"]))
+            for one in document["environments"]
+        ),
+        paragraph(_in_short(document), first="In short: ", indent="          "),
     ]
 
 
-LEGEND = (
-    "rank: by threshold, ties within the scatter share a rank. threshold: largest restitution factor at "
-    "which the cage is stable. margin: threshold less this bearing's restitution factor. P(stable): share of "
-    "the runs in which the motion dies, all kicks."
+LEGEND = "\n" + paragraph(
+    "rank: by threshold; = marks a tie within the scatter. threshold: largest restitution factor eta at "
+    "which the cage is stable. margin: threshold less the eta of this bearing and film. P(stable): share of "
+    "the runs in which the motion dies, over all kicks."
+)
+EVIDENCE_LEGEND = "\n" + paragraph(
+    "offset of the cage centre, pocket force: largest in any run. drift rate: median growth of the mean "
+    "offset in the runs that do not grow. whirl: median of the runs that grow, of all if none does. The same "
+    "for each environment is in rank.json."
 )
 
 
@@ -48,43 +65,83 @@ def _title(name: str) -> str:
 
 
 def _table(rows: Sequence[Document]) -> str:
-    return table(HEADERS, [_row(row) for row in rows], left=2)
+    shared = Counter(row["rank"] for row in rows)
+    return table(HEADERS, [_row(row, tied=shared[row["rank"]] > 1) for row in rows], left=2)
 
 
-def _row(row: Document) -> list[str]:
-    interval = f"{number(row['probability_low'], 2)} to {number(row['probability_high'], 2)}"
+def _row(row: Document, *, tied: bool) -> list[str]:
     return [
-        ABSENT if row["rank"] is None else str(row["rank"]),
+        ABSENT if row["rank"] is None else f"{row['rank']}{'=' if tied else ''}",
         row["name"],
         number(row["friction"]),
-        number(row["restitution_threshold"], 2),
+        _with_interval(row, "restitution_threshold", "restitution_threshold"),
         ABSENT if row["margin"] is None else f"{row['margin']:+.2f}",
-        number(row["probability_stable"], 2),
-        ABSENT if row["probability_low"] is None else interval,
+        _with_interval(row, "probability_stable", "probability"),
         row["verdict"] or ("not measured" if row["friction"] is None else "not finished"),
     ]
 
 
-def _reasons(rows: Iterable[Document]) -> list[str]:
-    return [paragraph(f"{row['name']}: {row['reason']}", first="  ", indent="      ") for row in rows]
+def _with_interval(row: Document, key: str, ends: str) -> str:
+    if row[key] is None:
+        return ABSENT
+    low, high = (number(row[f"{ends}_{end}"], 2) for end in ("low", "high"))
+    return f"{number(row[key], 2)} ({low} to {high})"
 
 
-def _evidence(rows: Sequence[Document]) -> list[tuple[str, str]]:
-    """Return the extremes of the evidence, among the stable candidates and among all."""
-    stable = [row for row in rows if row["verdict"] == "STABLE"]
+def _evidence_title(document: Document) -> str:
+    kicks = ", ".join(f"{kick:g}" for kick in document["kicks"])
+    return f"Evidence, overall: kicks of {kicks} m/s, runs of {quantity(document['duration'], 's')}"
+
+
+def _evidence(document: Document) -> str:
+    """Return the evidence of the overall verdicts; the bearing's eta only where they differ in it."""
+    rows = [
+        [row["name"], _measured(row["name"], document["environments"]), *_evidence_row(row)]
+        for row in document["overall"]
+    ]
+    alike = len({row[2] for row in rows} - {ABSENT}) <= 1
+    shown = [i for i in range(len(EVIDENCE_HEADERS)) if not (alike and i == 2)]
+    return table([EVIDENCE_HEADERS[i] for i in shown], [[row[i] for i in shown] for row in rows])
+
+
+def _measured(name: str, environments: Sequence[Document]) -> str:
+    """Return in how many of the environments a candidate was measured."""
+    found = [row for one in environments for row in one["materials"] if row["name"] == name]
+    return f"{sum(row['friction'] is not None for row in found)} of {len(environments)}"
+
+
+def _evidence_row(row: Document) -> list[str]:
+    whirl = row["whirl_frequency"]
+    if whirl is None:
+        return [ABSENT] * (len(EVIDENCE_HEADERS) - 2)
     return [
-        (label, f"{_most(stable, key, unit)} among the stable, {_most(rows, key, unit)} among all candidates")
-        for label, key, unit in (
-            ("Largest offset", "largest_offset", "m"),
-            ("Largest drift rate", "drift_rate", "1/s"),
-            ("Largest pocket force", "largest_contact_force", "N"),
-        )
+        number(row["restitution_factor"], 2),
+        number(1e3 * row["largest_offset"]),
+        significant(row["drift_rate"], 2),
+        number(row["largest_contact_force"], 0),
+        f"{number(whirl, 1 if whirl < 10 else 0)} {DIRECTIONS[row['whirl_direction']]}".rstrip(),
+        str(row["runs"]),
     ]
 
 
-def _most(rows: Sequence[Document], key: str, unit: str) -> str:
-    """Return the largest magnitude of a quantity; a growing run has no limit but the end of its time."""
-    return quantity(max((abs(row[key]) for row in rows if row[key] is not None), default=None), unit)
+def _reasons(rows: Sequence[Document]) -> list[str]:
+    """Return the reasons; candidates of the same friction share theirs."""
+    names: dict[str, list[str]] = {}
+    for row in rows:
+        names.setdefault(row["reason"], []).append(row["name"])
+    return [
+        paragraph(f"{', '.join(who)}: {reason}", first="  ", indent="      ") for reason, who in names.items()
+    ]
+
+
+def _holds_for(document: Document) -> list[tuple[str, str]]:
+    return [
+        *study_facts(document["study"]),
+        *chain_facts(document["chain"]),
+        *ensemble_facts(document),
+        ("The paper's bound", document["paper_statement"]),
+        *_disagreement(document),
+    ]
 
 
 def _disagreement(document: Document) -> list[tuple[str, str]]:
@@ -94,3 +151,14 @@ def _disagreement(document: Document) -> list[tuple[str, str]]:
         return []
     text = f"The contact model gives {number(eta, 2)} for this film, below that {limit:g}. Both are shown."
     return [("This film", text)]
+
+
+def _in_short(document: Document) -> str:
+    """Return the answer in a sentence: who is first overall, with its verdict."""
+    first = [row for row in document["overall"] if row["rank"] == 1]
+    if not first:
+        return "no candidate was ranked."
+    names = " and ".join(row["name"] for row in first)
+    names += " are tied first" if len(first) > 1 else " is first"
+    verdicts = ", ".join(dict.fromkeys(row["verdict"] or "not finished" for row in first))
+    return f"{names} overall: {verdicts}, with a margin of {first[0]['margin']:+.2f} to this bearing's eta."
