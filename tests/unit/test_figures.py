@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from separatrix.figures.ranking import file_name
+from separatrix.figures.ranking import _ranks, file_name
 from separatrix.figures.simulation import whirl_spectrum
-from separatrix.figures.style import journal, save, settled, spread
+from separatrix.figures.style import canvas, journal, label_lines, save, settled, spread
 
 
 def test_labels_keep_their_distance_and_order():
@@ -22,6 +22,20 @@ def test_labels_keep_their_distance_and_order():
 def test_labels_that_are_apart_stay():
     """Nothing moves without need."""
     assert spread([0.2, 0.8, 0.5], 0.05) == [0.2, 0.8, 0.5]
+
+
+def test_a_label_that_moved_is_tied_to_its_line():
+    """Two lines at one height get two labels and two leaders; lines apart from each other none."""
+    for heights, tied in (((0.5, 0.5), 2), ((0.2, 0.8), 0)):
+        _, axes = canvas()
+        label_lines(axes, [(1.0, height, "label", "black") for height in heights], gap=0.1)
+        assert sum(text.arrow_patch is not None for text in axes.texts) == tied
+
+
+def test_shared_ranks_are_marked_and_missing_ones_are_dashes():
+    """As in the printed table."""
+    assert _ranks(np.array([1.0, 2.0, 2.0, np.nan])) == ["1", "2=", "2=", "-"]
+    assert _ranks(np.array(["", ""])) == ["-", "-"]  # nothing ranked: netCDF has no type for it
 
 
 @pytest.mark.parametrize("turns", [40.0, -40.0])

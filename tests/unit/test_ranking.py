@@ -87,6 +87,14 @@ def test_the_reason_holds_the_numbers():
     )
 
 
+def test_a_reason_without_a_threshold_has_no_margin():
+    """Stable nowhere: nothing to be above or below of."""
+    said = reason(0.39, RestitutionThreshold(value=0.0, low=0.0, high=0.0), 0.27, judgement(Verdict.UNSTABLE))
+    assert said.startswith(
+        "With a friction of 0.39 it is not stable at any restitution factor; the film gives 0.27. "
+    )
+
+
 def test_a_missing_measurement_is_shown_as_missing():
     """Everything is None but the name and a reason; the others are ranked without it."""
     question = RankingQuestion(

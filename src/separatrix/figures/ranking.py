@@ -108,12 +108,10 @@ def _names(axes: Axes, data: xr.Dataset, top: float) -> None:
     label_lines(axes, labels, gap=0.05, colour=BLACK)
 
 
-def _ranks(ranks: Array) -> list[str]:
-    """Return the ranks as text: = after a shared one, a dash for none."""
-    return [
-        (f"{int(rank)}=" if (ranks == rank).sum() > 1 else f"{int(rank)}") if np.isfinite(rank) else "-"
-        for rank in ranks
-    ]
+def _ranks(column: Any) -> list[str]:
+    """Return the ranks as text: = after a shared one, a dash for none; a column of nothing is of text."""
+    ranks = [int(rank) if rank not in ("", None) and np.isfinite(rank) else None for rank in column.tolist()]
+    return ["-" if rank is None else f"{rank}{'=' if ranks.count(rank) > 1 else ''}" for rank in ranks]
 
 
 def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:

@@ -247,11 +247,13 @@ def _row(
         verdict=judgement.verdict.name,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
         reason=reason(friction.mean, threshold, eta, judgement),
+        energy_growth=judgement.energy_growth,
         largest_offset=judgement.largest_offset,
         drift_rate=judgement.drift_rate,
         largest_contact_force=judgement.largest_contact_force,
         whirl_frequency=judgement.whirl_frequency,
         whirl_direction=judgement.whirl_direction,
+        energy_imbalance=judgement.energy_imbalance,
         duration=judgement.duration,
         runs=judgement.runs,
     )

@@ -25,8 +25,9 @@ def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgeme
     between = f"{threshold.value:.2f} ({threshold.low:.2f} to {threshold.high:.2f})"
     allowed = need.get(threshold.value, f"needs a restitution factor below {between}")
     margin = threshold.value - eta
-    side = f"{margin:.2f} below" if margin >= 0 else f"{-margin:.2f} above"
-    first = f"With a friction of {friction:.3g} it {allowed}; the film gives {eta:.2f}, {side} that."
+    side = f", {abs(margin):.2f} {'below' if margin >= 0 else 'above'} that"
+    film = f"the film gives {eta:.2f}{'' if threshold.value in need else side}"
+    first = f"With a friction of {friction:.3g} it {allowed}; {film}."
     return " ".join((first, judgement.reason, disagreement(threshold.value, eta, judgement.verdict))).rstrip()
 
 

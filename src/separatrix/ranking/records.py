@@ -34,7 +34,8 @@ class RankedMaterial:
         Whether the threshold reaches the restitution factor that the paper grants solid lubrication.
     reason : str
         A sentence with the numbers.
-    largest_offset, drift_rate, largest_contact_force, whirl_frequency, whirl_direction, duration, runs
+    energy_growth, largest_offset, drift_rate, largest_contact_force, whirl_frequency, whirl_direction
+    energy_imbalance, duration, runs
         Evidence of the verdict's ensemble, as in `Judgement`.
     """
 
@@ -54,11 +55,13 @@ class RankedMaterial:
     rank: int | None = None
     within_reach: bool | None = None
     reason: str
+    energy_growth: Ratio | None = None
     largest_offset: Metre | None = None
     drift_rate: float | None = None
     largest_contact_force: Newton | None = None
     whirl_frequency: Hertz | None = None
     whirl_direction: int | None = None
+    energy_imbalance: Ratio | None = None
     duration: Second | None = None
     runs: int | None = None
 

@@ -28,6 +28,7 @@ EVIDENCE_HEADERS = (
     "drift rate\n1/s",
     "pocket force\nN",
     "whirl\nHz",
+    "energy\ngrowth",
     "runs\na kick",
 )
 DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
@@ -55,8 +56,8 @@ LEGEND = "\n" + paragraph(
 )
 EVIDENCE_LEGEND = "\n" + paragraph(
     "offset of the cage centre, pocket force: largest in any run. drift rate: median growth of the mean "
-    "offset in the runs that do not grow. whirl: median of the runs that grow, of all if none does. The same "
-    "for each environment is in rank.json."
+    "offset in the runs that do not grow. whirl: median of the runs that grow, of all if none does. energy "
+    "growth: median, over that of the kick. The same for each environment is in rank.json."
 )
 
 
@@ -120,6 +121,7 @@ def _evidence_row(row: Document) -> list[str]:
         significant(row["drift_rate"], 2),
         number(row["largest_contact_force"], 0),
         f"{number(whirl, 1 if whirl < 10 else 0)} {DIRECTIONS[row['whirl_direction']]}".rstrip(),
+        significant(row["energy_growth"], 2),
         str(row["runs"]),
     ]
 
