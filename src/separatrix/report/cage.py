@@ -118,7 +118,10 @@ def simulate(document: Document) -> list[str]:
         ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
         ("Pocket friction", number(document["cage"]["ball_cage_friction"]) + origin),
         ("Ended", f"{end} {document['outcome_sentence']}"),
-        ("Energy growth", f"{significant(document['energy_growth'])} times the energy of the kick"),
+        (
+            "Energy growth",
+            f"{significant(document['energy_growth'])}, mean energy at its end over the kick's",
+        ),
         ("Largest offset", quantity(document["largest_offset"], "m")),
         ("Largest pocket force", quantity(document["largest_contact_force"], "N")),
     ]
