@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.cli.console import one_line
+from separatrix.cli import console
+from separatrix.cli.console import Interruptible, one_line
 from separatrix.cli.files import staged, writable_folder
 from separatrix.errors import InputError
 
@@ -190,3 +191,53 @@ def test_the_commands_of_the_readme_exist():
     }
     assert named
     assert named <= set(VERBS)
+
+
+class Swallows:
+    """Raises an interrupt where Python cannot pass it on, as in a callback of the compiler."""
+
+    def __del__(self) -> None:
+        raise KeyboardInterrupt
+
+
+def lose_an_interrupt(then) -> None:
+    """Work in which an interrupt is lost, then go on."""
+    with Interruptible():
+        Swallows()
+        then()
+
+
+def test_a_swallowed_interrupt_is_sent_again():
+    """The work is ended all the same."""
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a test worker may ignore it
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            lose_an_interrupt(lambda: time.sleep(5.0))
+    finally:
+        signal.signal(signal.SIGINT, usual)
+
+
+def test_what_a_swallowed_interrupt_leaves_broken_counts_as_the_interrupt(monkeypatch):
+    """The compiler fails later, for lack of what the interrupted step should have made."""
+    monkeypatch.setattr(console.threading.Timer, "start", lambda *_: None)
+
+    def fail() -> None:
+        raise RuntimeError("no compiled object yet")
+
+    with pytest.raises(KeyboardInterrupt):
+        lose_an_interrupt(fail)
+
+
+def test_other_unraisable_errors_take_their_usual_way(monkeypatch):
+    """Only interrupts are kept; the hook is put back afterwards."""
+    seen = []
+    monkeypatch.setattr(console.sys, "unraisablehook", seen.append)
+
+    class Fails:
+        def __del__(self) -> None:
+            raise ValueError
+
+    with Interruptible():
+        Fails()
+    assert [one.exc_type for one in seen] == [ValueError]
+    assert console.sys.unraisablehook == seen.append

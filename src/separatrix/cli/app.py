@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from separatrix.cli.console import complain, interrupted
+from separatrix.cli.console import Interruptible, complain, interrupted
 from separatrix.cli.run import Options, make_study, run
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
@@ -80,7 +80,8 @@ def _command(verb: Verb) -> Callable[..., int]:
     ) -> int:
         options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs))
         try:
-            return run(verb, study, options)
+            with Interruptible():
+                return run(verb, study, options)
         except KeyboardInterrupt:  # here, for typer would swallow it
             return interrupted("nothing was written.")
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import _thread
 import contextlib
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
+from types import TracebackType
 from typing import TextIO
 
 from separatrix.errors import InputError
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
+
+RETRY = 0.02
+"""Time after which a swallowed interrupt is sent again [s]."""
 
 
 def one_line(text: str) -> str:
@@ -30,6 +36,31 @@ def interrupted(what: str) -> int:
     """Say in one line that the work was interrupted, and return the exit status for it."""
     complain(f"interrupted; {what}")
     return INTERRUPTED
+
+
+class Interruptible:
+    """Let Ctrl-C end the work inside, also where the compiler's callbacks swallow it.
+
+    A swallowed interrupt is sent again a little later; an error that it left behind counts as the interrupt.
+    """
+
+    def __enter__(self) -> None:
+        self._swallowed, self._usual = False, sys.unraisablehook
+        sys.unraisablehook = self._note
+
+    def _note(self, unraisable: sys.UnraisableHookArgs) -> None:
+        if unraisable.exc_type is not KeyboardInterrupt:
+            self._usual(unraisable)
+            return
+        self._swallowed = True
+        threading.Timer(RETRY, _thread.interrupt_main).start()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        sys.unraisablehook = self._usual
+        if self._swallowed and error is not None:
+            raise KeyboardInterrupt from error
 
 
 def write(stream: TextIO | None, text: str) -> None:
