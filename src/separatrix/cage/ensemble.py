@@ -11,7 +11,7 @@ import numpy as np
 
 from separatrix.cage import slots
 from separatrix.cage.coefficients import Coefficients, ball_directions, coefficients, step_counts, unit_step
-from separatrix.cage.planar import PlanarCage, RunOutcome
+from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk
 from separatrix.errors import InputError
 from separatrix.units import Array, Joule, MetrePerSecond, Second
@@ -90,7 +90,7 @@ def run_ensemble(
     growth_only: bool = False,
     jobs: int = 1,
 ) -> Ensemble:
-    """Run the cage from every kick and seed.
+    """Run the cage from every kick and seed; one that turns backward as its mirror image.
 
     Parameters
     ----------
@@ -113,6 +113,7 @@ def run_ensemble(
     InputError
         No kick or no run, or a run would need more steps than can be waited for.
     """
+    cage = turned_forward(cage)
     speeds, runs = chosen(settings, kicks, runs)
     engine = prepare(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)

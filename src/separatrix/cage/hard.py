@@ -24,7 +24,7 @@ from separatrix.cage.ensemble import (
     spread,
 )
 from separatrix.cage.flight import fly
-from separatrix.cage.planar import PlanarCage, RunOutcome
+from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.slots import (
     DIRECTION,
     FORCE,
@@ -240,6 +240,7 @@ def run_hard_ensemble(
         The cage has a land, gravity, unbalance or no play, or the ensemble is empty.
     """
     _refuse(cage)
+    cage = turned_forward(cage)
     speeds, runs = chosen(settings, kicks, runs)
     mass = felt_mass(cage, may_turn=may_turn)
     eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from separatrix.cage import slots
 from separatrix.cage.ensemble import chosen, prepare, random_starts, run_limits
-from separatrix.cage.planar import PlanarCage, RunOutcome
+from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.run import FIFTHS, run_chunk
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
@@ -90,15 +90,36 @@ def simulate(
     settings = StabilitySettings(
         kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed
     )
-    start = random_starts(cage, settings, run, 1)
-    return follow(
-        cage,
+    forward = turned_forward(cage)
+    start = random_starts(forward, settings, run, 1)
+    history = follow(
+        forward,
         kick=kick,
         direction=float(start[0, 0]),
         ball_lead=start[0, 1:],
         duration=duration,
         samples=samples,
     )
+    return history if forward is cage else _mirrored(history)
+
+
+def _mirrored(history: History) -> History:
+    """Return the motion seen from the other side, where the ball set turns the other way."""
+    flip = np.array([1.0, -1.0])
+    return replace(
+        history,
+        position=history.position * flip,
+        velocity=history.velocity * flip,
+        rotation=-history.rotation,
+        rotation_rate=-history.rotation_rate,
+        ball_lead=-_other_way_round(history.ball_lead),
+        contact_force=-_other_way_round(history.contact_force),
+    )
+
+
+def _other_way_round(by_ball: Array) -> Array:
+    """Return columns of balls counted the other way round, shape (time, ball); ball 0 stays."""
+    return np.roll(by_ball[:, ::-1], 1, axis=1)
 
 
 def follow(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING
 
@@ -133,14 +133,28 @@ class PlanarCage:
 
     @property
     def rotation_sense(self) -> int:
-        """Sense in which the ball set turns; of the rings' mean where the ball set is held at rest."""
-        return _sign(self.cage_speed) or _sign(self.inner_speed + self.outer_speed) or 1
+        """Sense in which the ball set turns; at rest, of the rings' mean, or of the inner ring."""
+        return (
+            _sign(self.cage_speed) or _sign(self.inner_speed + self.outer_speed) or self.friction_sense or 1
+        )
 
     @property
     def guiding_ring_speed(self) -> RadianPerSecond:
         """Speed of the ring that carries the land [rad/s]; the cage's own without a land."""
         speeds = {Guidance.INNER: self.inner_speed, Guidance.OUTER: self.outer_speed}
         return speeds.get(self.guidance, self.cage_speed)
+
+
+def turned_forward(cage: PlanarCage) -> PlanarCage:
+    """Return the cage, or its mirror image where its ball set turns backward.
+
+    Motion is chaotic: only runs of the same cage from the same starts agree to the last bit, so a bearing
+    that turns the other way is run as its mirror image.
+    """
+    if cage.rotation_sense > 0:
+        return cage
+    speeds = ("cage_speed", "inner_speed", "outer_speed")
+    return replace(cage, **{name: 0.0 - getattr(cage, name) for name in speeds})
 
 
 _POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")

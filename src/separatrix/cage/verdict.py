@@ -117,6 +117,13 @@ def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, s
     """Verdict and the sentence that gives its reason."""
     dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
     stalled, drifted = ensemble.count(RunOutcome.STALLED), ensemble.count(RunOutcome.DRIFT)
+    quiet = ensemble.kicks[~_touched(cage, ensemble)]
+    if quiet.size:
+        duration = f"{ensemble.duration:.3g} s"
+        return (
+            Verdict.UNDECIDED,
+            f"Too short to decide: from {quiet[0]:g} m/s nothing touches within {duration}.",
+        )
     if wilson_interval(runs, runs)[0] <= FEW:
         return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
     if _clear(grows, runs):
@@ -129,6 +136,12 @@ def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, s
     if drifts(cage) or not _clear(dies, runs):
         return Verdict.UNDECIDED, _drift_reason(cage, ensemble)
     return Verdict.STABLE, f"The motion dies in {_percent(dies, runs)} of the runs at every kick."
+
+
+def _touched(cage: PlanarCage, ensemble: Ensemble) -> NDArray[np.bool_]:
+    """Whether any run from each kick met a ball or the land, shape (kick,): flight alone decides nothing."""
+    met = (ensemble.largest_contact_force > 0.0) | (ensemble.largest_offset >= cage.land_gap)
+    return np.asarray(met.any(axis=1))
 
 
 def drifts(cage: PlanarCage) -> bool:
