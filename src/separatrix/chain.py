@@ -220,9 +220,13 @@ def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[Ne
 
 
 def cage_state(
-    study: Study, *, material: Material | None = None, traction: TractionState | None = None
+    study: Study,
+    *,
+    material: Material | None = None,
+    traction: TractionState | None = None,
+    friction: Ratio | None = None,
 ) -> CageState:
-    """Build the cage in the plane, with the chain's race damping and the study's pocket friction.
+    """Build the cage in the plane, with the chain's race damping and this pocket friction or the study's.
 
     The ball set turns at the balls' mean orbital speed; a cage without a stated inertia is a thin ring.
     """
@@ -241,7 +245,7 @@ def cage_state(
         pocket_clearance=design.pocket_clearance,
         ball_cage_stiffness=links.restitution.ball_cage_stiffness,
         race_damping=links.restitution.race_damping,
-        ball_cage_friction=pocket_friction(study),
+        ball_cage_friction=pocket_friction(study) if friction is None else friction,
         guidance=design.guidance,
         land_clearance=design.land_clearance,
         land_friction=design.land_friction,
@@ -261,13 +265,17 @@ def pocket_friction(study: Study) -> Ratio:
     InputError
         None is known.
     """
+    friction = known_friction(study)
+    if friction is None:
+        cure = "Give it, or [ranking] with measured frictions."
+        raise InputError(f"{study.name}: [cage] ball_cage_friction", "is missing", cure=cure)
+    return friction
+
+
+def known_friction(study: Study) -> Ratio | None:
+    """Return f_BC as `pocket_friction`, or None if the study does not tell it."""
     given = cage_design(study).ball_cage_friction
     if given is not None:
         return given
-    for candidate in study.ranking.candidates[:1] if study.ranking else ():
-        for measured in candidate.friction.values():
-            if measured is not None:
-                return measured.mean
-    raise InputError(
-        "[cage] ball_cage_friction", "is missing", cure="Give it, or [ranking] with measured frictions."
-    )
+    candidates = study.ranking.candidates[:1] if study.ranking else ()
+    return next((f.mean for c in candidates for f in c.friction.values() if f is not None), None)

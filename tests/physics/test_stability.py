@@ -8,6 +8,7 @@ from separatrix.cage import PlanarCage, growth_probability, run_ensemble, wilson
 from separatrix.stability import (
     cage_at,
     critical_friction,
+    curve_of_points,
     linear_limit,
     restitution_threshold,
     stability_curve,
@@ -102,3 +103,11 @@ def test_land_friction_alone_can_leave_no_crossing():
     found = critical_friction(driven, 0.9, replace(SETTINGS, runs=8, kicks=(0.5,)))
     assert found.critical_friction is None
     assert "grows even without pocket friction" in found.reason
+
+
+def test_a_curve_cut_short_has_limits_for_its_own_points_only():
+    """After an interrupt curve and linear limit still stand at the same restitution factors."""
+    points = [critical_friction(CAGE, 0.6, replace(SETTINGS, runs=2, duration=0.01), band=False)]
+    found = curve_of_points(CAGE, SETTINGS, points)
+    assert [limit.restitution_factor for limit in found.linear_limit] == [0.6]
+    assert found.complete is False

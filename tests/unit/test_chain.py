@@ -7,6 +7,7 @@ import pytest
 from separatrix.chain import (
     bearing_state,
     cage_state,
+    known_friction,
     lubrication,
     pocket_friction,
     pocket_stiffness,
@@ -107,3 +108,12 @@ def test_bare_races_have_no_lubrication_curve():
     """Which film it would be is not known."""
     bare = study(film=Film(race_friction=0.1))
     assert lubrication(bare, restitution_state(bare)) is None
+
+
+def test_a_stability_curve_needs_no_measured_friction():
+    """It runs through all frictions: none known is no fault; one run alone is refused."""
+    unknown = study(ranking=None)
+    assert known_friction(unknown) is None
+    assert cage_state(unknown, friction=0.0).cage.ball_cage_friction == 0.0
+    with pytest.raises(InputError, match="ball_cage_friction is missing"):
+        cage_state(unknown)

@@ -166,10 +166,10 @@ def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
 
 def stability(study: Study, work: Work) -> StabilityAnswer:
     """Critical friction against restitution factor."""
-    from separatrix.chain import cage_state
+    from separatrix.chain import cage_state, known_friction
     from separatrix.stability import stability_curve
 
-    state = cage_state(study)
+    state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
     curve = stability_curve(state.cage, study.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
 

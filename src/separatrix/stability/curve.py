@@ -130,9 +130,10 @@ def curve_of_points(
     cage: PlanarCage, settings: StabilitySettings, points: Sequence[CriticalFriction]
 ) -> StabilityCurve:
     """Return the curve of the points that were finished, rising restitution factors first."""
+    rising = sorted(points, key=lambda point: point.restitution_factor)
     return StabilityCurve(
-        curve=tuple(sorted(points, key=lambda point: point.restitution_factor)),
-        linear_limit=tuple(linear_limit(cage, eta) for eta in settings.restitution_factors),
+        curve=tuple(rising),
+        linear_limit=tuple(linear_limit(cage, point.restitution_factor) for point in rising),
         kicks=settings.kicks,
         middle_kick=settings.middle_kick,
         runs=settings.runs,
