@@ -76,7 +76,9 @@ def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate
 def _frictions(value: Any, at: str) -> dict[str, Friction]:
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
-        raise InputError(at, "must be a table from environment to friction", "", shown(value), cure)
+        got = f"{len(value)} of them" if isinstance(value, dict) else shown(value)
+        rule = f"must be a table from environment to friction, with 1 to {MOST_CANDIDATES} entries"
+        raise InputError(at, rule, "", got, cure)
     frictions, problems = {}, []
     for name, item in value.items():
         try:
