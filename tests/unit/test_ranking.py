@@ -91,7 +91,7 @@ def test_a_reason_without_a_threshold_has_no_margin():
     """Stable nowhere: nothing to be above or below of."""
     said = reason(0.39, RestitutionThreshold(value=0.0, low=0.0, high=0.0), 0.27, judgement(Verdict.UNSTABLE))
     assert said.startswith(
-        "With a friction of 0.39 it is not stable at any restitution factor; the film gives 0.27. "
+        "With a friction of 0.39 it is stable at no restitution factor above 0; the film gives 0.27. "
     )
 
 

@@ -21,7 +21,7 @@ def not_measured(environment: str) -> str:
 
 def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgement: Judgement) -> str:
     """Return friction, threshold, margin and verdict in words, and the paper's word where it differs."""
-    need = {0.0: "is not stable at any restitution factor", 1.0: "is stable at any restitution factor"}
+    need = {0.0: "is stable at no restitution factor above 0", 1.0: "is stable at any restitution factor"}
     between = f"{threshold.value:.2f} ({threshold.low:.2f} to {threshold.high:.2f})"
     allowed = need.get(threshold.value, f"needs a restitution factor below {between}")
     margin = threshold.value - eta
