@@ -91,9 +91,9 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     )
     found = _compute(question, keys, jobs=jobs, progress=progress)
     return Ranking(
-        restitution_factor=max(_eta(question, k) for k in question.cages),
-        restitution_factor_free_spin=max(
-            cage.restitution.restitution.restitution_factor_free_spin for cage in question.cages.values()
+        restitution_factor=_eta(question, question.reference),
+        restitution_factor_free_spin=(
+            question.cages[question.reference].restitution.restitution.restitution_factor_free_spin
         ),
         ball_cage_stiffness=question.reference,
         solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,

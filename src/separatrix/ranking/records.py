@@ -78,9 +78,9 @@ class RankedEnvironment:
 class Ranking:
     """Answer of a ranking.
 
-    `restitution_factor` is the chain's; where each candidate has a pocket stiffness, and so a restitution
-    factor, of its own, it is the largest of them. `overall` takes the mean friction over the measured
-    environments. The stability curve holds for `ball_cage_stiffness`. `complete` is False if an interrupt
+    `restitution_factor` is the chain's for `ball_cage_stiffness`, and so is the stability curve; where each
+    candidate has a pocket stiffness, and so a restitution factor, of its own, these are the first one's.
+    `overall` takes the mean friction over the measured environments. `complete` is False if an interrupt
     left something out.
     """
 
