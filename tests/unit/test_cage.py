@@ -190,6 +190,15 @@ def test_a_cage_whose_every_run_grows_is_unstable():
     assert judge(CAGE, ensemble([[GROWS] * 16] * 3)).verdict is Verdict.UNSTABLE
 
 
+def test_a_cage_that_mostly_grows_at_every_kick_is_unstable():
+    """42 of 64 lie above one half beyond their scatter, 38 of 64 do not; dying needs nine in ten."""
+    mostly, nearly = [GROWS] * 42 + [DIES] * 22, [GROWS] * 38 + [DIES] * 26
+    assert judge(CAGE, ensemble([mostly] * 3)).verdict is Verdict.UNSTABLE
+    assert judge(CAGE, ensemble([mostly, mostly, nearly])).verdict is Verdict.UNDECIDED
+    assert judge(CAGE, ensemble([[DIES] * 57 + [GROWS] * 7] * 3)).verdict is Verdict.UNDECIDED
+    assert judge(CAGE, ensemble([[DIES] * 58 + [GROWS] * 6] * 3)).verdict is Verdict.STABLE
+
+
 def test_a_small_kick_that_dies_and_a_large_one_that_grows_is_sub_critical():
     """The kick decides: UNDECIDED, and the reason names the kicks."""
     result = judge(CAGE, ensemble([[DIES] * 16, [DIES] * 16, [GROWS] * 16]))

@@ -86,8 +86,9 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     """Judge a cage by its ensemble.
 
     STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above
-    one half, and the cage cannot drift. UNSTABLE: the same with runs that grow. UNDECIDED otherwise. The rule
-    is ours.
+    one half, and the cage cannot drift. UNSTABLE: at every kick the 95 % interval of the share that grows
+    lies above one half. UNDECIDED otherwise. The rule is ours; it asks more of a stable cage than of an
+    unstable one.
     """
     runs = ensemble.outcome.shape[1]
     verdict, reason = _decide(cage, ensemble, runs)
@@ -126,7 +127,7 @@ def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, s
         )
     if wilson_interval(runs, runs)[0] <= FEW:
         return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
-    if _clear(grows, runs):
+    if _mostly(grows, runs):
         return Verdict.UNSTABLE, f"The motion grows in {_percent(grows, runs)} of the runs at every kick."
     if not _clear(dies + drifted + stalled, runs):
         return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
@@ -149,8 +150,13 @@ def drifts(cage: PlanarCage) -> bool:
     return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
+def _mostly(counts: Counts, runs: int) -> bool:
+    """Whether more than half of the runs do so at every kick, beyond the scatter of so few."""
+    return all(wilson_interval(int(n), runs)[0] > FEW for n in counts)
+
+
 def _clear(counts: Counts, runs: int) -> bool:
-    return all(n / runs >= CLEAR and wilson_interval(int(n), runs)[0] > FEW for n in counts)
+    return _mostly(counts, runs) and all(n / runs >= CLEAR for n in counts)
 
 
 def _percent(counts: Counts, runs: int) -> str:
