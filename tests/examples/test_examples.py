@@ -8,8 +8,8 @@ import pytest
 FOLDER = Path(__file__).parents[2] / "examples"
 SCRIPTS = sorted(path.name for path in FOLDER.glob("*.py"))
 ANSWERS = {
-    "01_bearing.py": ("heavier", pytest.approx(70.0, abs=2.0)),  # N, as first computed
-    "02_traction.py": ("ratio", pytest.approx(0.7, abs=0.25)),  # a thick film softens the contact
+    "01_bearing.py": ("heavier", pytest.approx(69.8277, rel=1e-4)),  # N, regression
+    "02_traction.py": ("ratio", pytest.approx(0.7185, abs=0.003)),  # regression, to the slopes' own error
     "03_restitution.py": ("eta", pytest.approx(0.7367, abs=5e-5)),  # four digits computed independently
     "04_stability.py": ("frictions", None),
     "05_ranking.py": ("order", ["Armalon", "My compound", "PEEK 450 GL 30"]),
