@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from enum import Enum
 from numbers import Real
 
 from separatrix.errors import InputError, together
@@ -76,6 +77,14 @@ def whole(record: object, field: str, low: int, high: int, *, hint: str = "") ->
     value = getattr(record, field)
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         yield problem(record, field, f"must be a whole number from {low} to {high}", hint)
+
+
+def one_of(record: object, field: str, options: type[Enum]) -> Problems:
+    """Refuse what is not a member of an Enum."""
+    value = getattr(record, field)
+    if not isinstance(value, options):
+        names = ", ".join(f"{options.__name__}.{option.name}" for option in options)
+        yield problem(record, field, f"must be one of {names}")
 
 
 def printable_text(record: object, field: str, longest: int = 200) -> Problems:

@@ -6,12 +6,15 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from separatrix import _check
+from separatrix import _cage_rules, _check
 from separatrix.errors import InputError
 from separatrix.units import format_quantity, unit_of
 
 if TYPE_CHECKING:
     from separatrix.study import BallBearing, CageDesign, Candidate, Operation, RankingQuestion, Study
+
+
+LANDLESS = "has no meaning for a cage guided by its balls"
 
 
 def balls_that_do_not_fit(bearing: BallBearing) -> _check.Problems:
@@ -53,7 +56,11 @@ def land(cage: CageDesign) -> _check.Problems:
     """A land needs its play, and a cage guided by its balls has no land."""
     if cage.guidance.value == "ball" and cage.land_clearance is not None:
         cure = 'Give guidance = "outer" or "inner", or leave the land out.'
-        yield _check.problem(cage, "land_clearance", "has no meaning for a cage guided by its balls", cure)
+        yield _check.problem(cage, "land_clearance", LANDLESS, cure)
+    if cage.guidance.value == "ball" and cage.land_out_of_round != 0.0:
+        yield _check.problem(cage, "land_out_of_round", LANDLESS)
+    if cage.guidance.value == "ball" and cage.land_count == 2:
+        yield _check.problem(cage, "land_count", LANDLESS)
     if cage.guidance.value != "ball" and cage.land_clearance is None:
         where = "CageDesign.land_clearance"
         yield InputError(
@@ -118,6 +125,46 @@ def pockets_that_overlap(study: Study) -> _check.Problems:
         yield _check.problem(
             study.cage, "pocket_clearance", rule, "It is the play of one ball, stop to stop."
         )
+
+
+def pockets_for_balls(study: Study) -> _check.Problems:
+    """Uneven pockets: one for each ball, and a bar between any two."""
+    cage, bearing = study.cage, study.bearing
+    room = 0.0 if cage is None else (bearing.ball_diameter + cage.pocket_clearance) / bearing.pitch_diameter
+    if cage is None or not 0.0 < room < math.sin(math.pi / bearing.ball_count):
+        return  # overlapping already when even
+    needed = 2.0 * math.asin(room)
+    pitch = 2.0 * math.pi / bearing.ball_count
+    most = (1.0 - needed / pitch) / 2.0
+    if cage.pocket_spacing_scatter >= most:
+        rule = (
+            f"must be < {most:.4g}, where two neighbours that come close leave no bar between their pockets"
+        )
+        yield _check.problem(cage, "pocket_spacing_scatter", rule, "Fewer balls leave more room.")
+    yield from _cage_rules.angles_for(cage, bearing.ball_count)
+    if len(cage.pocket_angles) == bearing.ball_count:
+        yield from _bars(cage, needed)
+
+
+def _bars(cage: CageDesign, needed: float) -> _check.Problems:
+    """Pockets at given angles stand farther apart than a ball with its play is wide."""
+    step, i = _cage_rules.least_step(cage.pocket_angles)
+    if step <= needed:
+        rule = (
+            f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
+            f"must stand more than {format_quantity(needed, 'rad')} apart"
+        )
+        yield InputError("CageDesign.pocket_angles", rule, "", format_quantity(step, "rad"))
+
+
+def unbalance_beyond_the_cage(study: Study) -> _check.Problems:
+    """The centre of mass lies inside the cage."""
+    if study.cage is None:
+        return
+    most = study.cage.mass * study.bearing.pitch_diameter / 2.0
+    if study.cage.unbalance >= most:
+        rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
+        yield _check.problem(study.cage, "unbalance", rule, "It is mass times eccentricity.")
 
 
 def stiffness_of_unknown_origin(study: Study) -> _check.Problems:

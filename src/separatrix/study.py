@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from separatrix import _check, _rules
+from separatrix import _cage_rules, _check, _rules
 from separatrix.errors import InputError
 from separatrix.units import (
     Kelvin,
@@ -33,6 +33,7 @@ from separatrix.units import (
 
 MOST_BALLS = 200
 FRICTION_LIMIT = 2.0
+_START_HINT = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
 
 class Race(Enum):
@@ -56,6 +57,21 @@ class Guidance(Enum):
     OUTER = "outer"
     INNER = "inner"
     BALL = "ball"
+
+
+class PocketShape(Enum):
+    """Wall of a pocket, seen along the radius."""
+
+    SQUARE = "square"
+    CYLINDRICAL = "cylindrical"
+    ELONGATED = "elongated"
+
+
+class PocketContact(Enum):
+    """How the force between ball and pocket grows: with the approach, or with its power 1.5."""
+
+    LINEAR = "linear"
+    HERTZ = "hertz"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,6 +142,8 @@ class Operation:
     tilt: Radian | None = None
     temperature: Kelvin | None = None
     fluid: str | None = None
+    ramp_time: Second = 0.0
+    ramp_start: Ratio = 0.1
 
     def __post_init__(self) -> None:
         lifts = "A load the other way lifts the inner ring off its balls; turn the bearing round."
@@ -138,6 +156,8 @@ class Operation:
             _check.between(self, "tilt", -0.1, 0.1),
             _check.positive(self, "temperature", 1e-3, 5000.0),
             _check.printable_text(self, "fluid"),
+            _check.not_negative(self, "ramp_time", 1e4, hint="Leave it out for a bearing at speed."),
+            _check.between(self, "ramp_start", 0.0, 1.0, open_low=True, hint=_START_HINT),
         )
         _check.settle(_rules.moment_and_tilt(self), _rules.nothing_presses(self))
 
@@ -174,11 +194,22 @@ class CageDesign:
     material: Material | None = None
     ball_cage_stiffness: NewtonPerMetre | None = None
     ball_cage_friction: Ratio | None = None
+    pocket_shape: PocketShape = PocketShape.SQUARE
+    pocket_axial_clearance: Metre | None = None
+    pocket_axial_offset: Metre = 0.0
+    pocket_contact: PocketContact = PocketContact.LINEAR
+    pocket_angles: tuple[Radian, ...] = ()
+    pocket_spacing_scatter: Ratio = 0.0
+    pocket_position_scatter: Metre = 0.0
+    ball_diameter_scatter: Metre = 0.0
     guidance: Guidance = Guidance.BALL
     land_clearance: Metre | None = None
     land_friction: Ratio = 0.1
     land_stiffness: NewtonPerMetre = 1e7
     land_restitution: Ratio = 0.5
+    land_count: int = 1
+    land_out_of_round: Metre = 0.0
+    land_lobes: int = 2
     moment_of_inertia: KilogramMetre2 | None = None
     unbalance: KilogramMetre = 0.0
     gravity: MetrePerSecond2 = 0.0
@@ -186,18 +217,20 @@ class CageDesign:
     def __post_init__(self) -> None:
         _check.settle(
             _check.positive(self, "mass", 1e-9, 1e4),
-            _check.positive(self, "pocket_clearance", 1e-9, 1.0),
             _check.positive(self, "ball_cage_stiffness", 1.0, 1e12),
             _check.between(self, "ball_cage_friction", 0.0, FRICTION_LIMIT),
+            _check.one_of(self, "pocket_contact", PocketContact),
+            *_cage_rules.pocket_fields(self),
+            *_cage_rules.land_fields(self),
             _check.positive(self, "land_clearance", 1e-9, 1.0),
             _check.between(self, "land_friction", 0.0, FRICTION_LIMIT),
             _check.positive(self, "land_stiffness", 1.0, 1e12),
-            _check.between(self, "land_restitution", 0.0, 1.0),
             _check.positive(self, "moment_of_inertia", 1e-18, 1e4),
             _check.not_negative(self, "unbalance", 1e2),
             _check.not_negative(self, "gravity", 1e4),
-            _rules.land(self),
         )
+        gripped = self.pocket_contact is PocketContact.HERTZ
+        _check.settle(_rules.land(self), *_cage_rules.together(self, hertz=gripped))
 
 
 def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
@@ -297,5 +330,7 @@ class Study:
             _rules.no_density(self),
             _rules.free_kinematics_without_friction(self),
             _rules.pockets_that_overlap(self),
+            _rules.pockets_for_balls(self),
+            _rules.unbalance_beyond_the_cage(self),
             _rules.stiffness_of_unknown_origin(self),
         )

@@ -17,6 +17,8 @@ from separatrix.study import (
     KinematicModel,
     Material,
     Operation,
+    PocketContact,
+    PocketShape,
     StabilitySettings,
     Study,
 )
@@ -54,7 +56,16 @@ _READERS: dict[str, dict[str, Reader]] = {
         elastic_modulus=values.quantity("Pa"),
         poisson_ratio=values.ratio,
     ),
-    "cage": _readers(CageDesign, material=values.material("cage material"), guidance=values.choice(Guidance)),
+    "cage": _readers(
+        CageDesign,
+        material=values.material("cage material"),
+        guidance=values.choice(Guidance),
+        pocket_shape=values.choice(PocketShape),
+        pocket_contact=values.choice(PocketContact),
+        pocket_angles=values.list_of(values.quantity("rad")),
+        land_count=values.whole,
+        land_lobes=values.whole,
+    ),
     "stability": _readers(
         StabilitySettings,
         kicks=values.kicks,
