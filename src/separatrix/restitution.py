@@ -9,15 +9,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
 
+import numpy as np
+from numpy.polynomial import polynomial
+
 from separatrix.errors import InputError
 from separatrix.hertz import contact_modulus
 from separatrix.study import Material
 from separatrix.units import (
+    Array,
     Kilogram,
     Metre,
     MetrePerSecond,
     Newton,
     NewtonPerMetre,
+    NewtonPerMetre1_5,
     NewtonSecondPerMetre,
     Ratio,
 )
@@ -26,13 +31,25 @@ SOLID_LUBRICATION_LIMIT: Ratio = 0.6
 """The paper, section 5: "a fairly low restitution factor (eta < 0.6). This threshold value is too low to
 be reached using solid lubrication"."""
 
+EQUAL_ENERGY = 0.8 * 1.25**0.2
+r"""k of the linear spring of equal energy and depth, over :math:`K^{4/5} (M v^2)^{1/5}` [-]."""
+
+FORGOTTEN = 6.0
+"""Damping group of a Hertzian blow from which its end forgets its start: what is left of the difference is
+below 1e-38 (docs/theory/restitution.md)."""
+
+ORDER = 24
+"""Of the Taylor series of a blow; from 16 to 32 it makes no difference above 2e-14."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Restitution:
     """Restitution factor of the cage's blow on a ball, and what it is made of.
 
     The plain names follow the paper's Eq. 18 (damping of both races added); the ones ending in
-    `_free_spin` let the ball change its spin within the blow.
+    `_free_spin` let the ball change its spin within the blow. `restitution_factor_hertz` has the pocket's
+    contact as Hertz's, of the same energy at the same depth in a blow at the speed to which
+    `ball_cage_stiffness` belongs.
     """
 
     ball_cage_stiffness: NewtonPerMetre
@@ -42,6 +59,7 @@ class Restitution:
     race_damping: NewtonSecondPerMetre
     damping_ratio: Ratio
     restitution_factor: Ratio
+    restitution_factor_hertz: Ratio
     race_damping_free_spin: NewtonSecondPerMetre
     damping_ratio_free_spin: Ratio
     restitution_factor_free_spin: Ratio
@@ -146,9 +164,90 @@ def ball_pocket_stiffness(
     A flat wall, because the conformity of a bored pocket to its ball wears and is rarely known; a
     cylindrical bore with 5 % of play is stiffer by 2.1 (docs/theory/restitution.md).
     """
-    K = 4.0 / 3.0 * contact_modulus(ball_material, cage_material) * sqrt(ball_diameter / 2.0)
-    delta = (1.25 * cage_mass * impact_speed**2 / K) ** 0.4
-    return 0.8 * K * sqrt(delta)
+    K = hertz_coefficient(ball_diameter, ball_material, cage_material)
+    return equal_energy_stiffness(K, cage_mass, impact_speed)
+
+
+def hertz_coefficient(
+    ball_diameter: Metre, ball_material: Material, cage_material: Material
+) -> NewtonPerMetre1_5:
+    r"""K of :math:`F = K \delta^{3/2}` for a ball on a flat pocket wall, :math:`\frac43 E^*\sqrt{D/2}`."""
+    return 4.0 / 3.0 * contact_modulus(ball_material, cage_material) * sqrt(ball_diameter / 2.0)
+
+
+def equal_energy_stiffness(
+    hertz_coefficient: NewtonPerMetre1_5, mass: Kilogram, speed: MetrePerSecond
+) -> NewtonPerMetre:
+    r"""Linear spring that a blow of this mass and speed presses as deep as Hertz's, with the same energy.
+
+    :math:`k = \frac45 K \delta_m^{1/2}` with :math:`\frac12 M v^2 = \frac25 K \delta_m^{5/2}`.
+    """
+    k: float = EQUAL_ENERGY * hertz_coefficient**0.8 * (mass * speed**2) ** 0.2
+    return k
+
+
+def hertz_coefficient_for(
+    stiffness: NewtonPerMetre, mass: Kilogram, speed: MetrePerSecond
+) -> NewtonPerMetre1_5:
+    """K whose `equal_energy_stiffness` is this: Hertz's contact behind a linear stiffness that was given."""
+    K: float = (stiffness / (EQUAL_ENERGY * (mass * speed**2) ** 0.2)) ** 1.25
+    return K
+
+
+def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
+    r"""Restitution factor of a Hertzian contact in series with the races' damper; it is never quite 0.
+
+    Parameters
+    ----------
+    damping_ratio : float
+        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the blow
+        (`equal_energy_stiffness`). With Hertz it goes as the speed to the power 1/5 [-].
+
+    Notes
+    -----
+    The blow has one dimensionless group, and its equations become a polynomial system, which a Taylor series
+    of order `ORDER` solves to about 1e-13 (docs/theory/restitution.md).
+    """
+    beta = 2.0 * damping_ratio / sqrt(EQUAL_ENERGY)
+    start = min(beta, FORGOTTEN)
+    return _speed_returned(start) * (start / beta) ** 5 if beta > 0.0 else 1.0
+
+
+def _speed_returned(beta: Ratio) -> Ratio:
+    """Follow h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the approach's root, is 0 again."""
+    h, u = 0.0, 1.0
+    while True:
+        a, b = _blow_series(h, u, beta)
+        step = exp(-2.0) / max(_growth(a), _growth(b))
+        if polynomial.polyval(step, a) <= 0.0:
+            return -float(polynomial.polyval(_root(a, step), b))
+        h, u = (float(polynomial.polyval(step, c)) for c in (a, b))
+
+
+def _blow_series(h: float, u: float, beta: Ratio) -> tuple[Array, Array]:
+    """Taylor coefficients of h and u, shape (ORDER + 1,)."""
+    a, b, square = np.zeros((3, ORDER + 1))
+    a[0], b[0] = h, u
+    for n in range(ORDER):
+        back = slice(n, None, -1)
+        square[n] = a[: n + 1] @ a[back]
+        a[n + 1] = (b[n] - beta * (square[: n + 1] @ a[back])) / (n + 1)
+        b[n + 1] = -2.0 * (square[: n + 1] @ square[back]) / (n + 1)
+    return a, b
+
+
+def _growth(coefficients: Array) -> float:
+    """One over the radius of convergence; every fifth coefficient may be all that is not 0."""
+    last = range(ORDER - 5, ORDER + 1)
+    return float(max(abs(coefficients[n]) ** (1.0 / n) for n in last))
+
+
+def _root(a: Array, beyond: float) -> float:
+    """Root of the series below a place where it is negative, by Newton's method."""
+    slope, place = polynomial.polyder(a), beyond
+    for _ in range(20):
+        place -= float(polynomial.polyval(place, a) / polynomial.polyval(place, slope))
+    return place
 
 
 def restitution(
@@ -170,6 +269,7 @@ def restitution(
         race_damping=both,
         damping_ratio=zeta,
         restitution_factor=restitution_factor(zeta),
+        restitution_factor_hertz=hertzian_restitution_factor(zeta),
         race_damping_free_spin=free,
         damping_ratio_free_spin=zeta_free,
         restitution_factor_free_spin=restitution_factor(zeta_free),
