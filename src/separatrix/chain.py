@@ -6,20 +6,35 @@ the race damping: load raises the restitution factor, so this is the unfavourabl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
+import warnings
+from dataclasses import dataclass, fields
+from typing import Any
 
 from separatrix.cage import PlanarCage
 from separatrix.creep import Creep, contact_creep
 from separatrix.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.errors import InputError
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.hertz import ContactEllipse
 from separatrix.lubrication import LubricationCurve, lubrication_curve
-from separatrix.restitution import Restitution, ball_pocket_stiffness, contact_damping, restitution
-from separatrix.study import CageDesign, Material, Race, Study
+from separatrix.orbit import mean_speed, orbital_waves
+from separatrix.restitution import (
+    Restitution,
+    ball_pocket_stiffness,
+    contact_damping,
+    hertz_coefficient_for,
+    restitution,
+)
+from separatrix.study import CageDesign, Material, PocketContact, Race, Study
 from separatrix.traction import TractionCurve, film_compliance, traction_curve
-from separatrix.units import MetrePerSecond, Newton, NewtonPerMetre, Radian, Ratio
+from separatrix.units import (
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    NewtonPerMetre1_5,
+    Radian,
+    Ratio,
+    format_quantity,
+)
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material with its elastic_modulus."
 
@@ -66,10 +81,15 @@ class RestitutionState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CageState:
-    """The cage that moves in the plane, after everything before it."""
+    """The cage that moves in the plane, after everything before it.
+
+    `orbital_share` is the share of the variance of the balls' orbital speeds that the cage's harmonics hold
+    [-]; None where all balls run alike, as under an axial load.
+    """
 
     restitution: RestitutionState
     cage: PlanarCage
+    orbital_share: Ratio | None = None
 
 
 def bearing_state(study: Study) -> BearingState:
@@ -228,33 +248,69 @@ def cage_state(
 ) -> CageState:
     """Build the cage in the plane, with the chain's race damping and this pocket friction or the study's.
 
-    The ball set turns at the balls' mean orbital speed; a cage without a stated inertia is a thin ring.
+    The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs faster
+    and slower around as the equilibrium says. A cage without a stated inertia is a thin ring.
+
+    Warns
+    -----
+    ValidityWarning
+        The balls lead and lag by more than half their play, so that the pockets push them round.
     """
     links = restitution_state(study, material=material, traction=traction)
-    design, bearing = cage_design(study), study.bearing
-    radius = bearing.pitch_diameter / 2.0
+    design, found = cage_design(study), links.traction.bearing.equilibrium
+    radius = study.bearing.pitch_diameter / 2.0
+    waves = orbital_waves(found.orbital_speed, found.azimuth, radius)
     inertia = design.mass * radius**2 if design.moment_of_inertia is None else design.moment_of_inertia
     cage = PlanarCage(
-        mass=design.mass,
         moment_of_inertia=inertia,
-        ball_count=bearing.ball_count,
+        ball_count=study.bearing.ball_count,
         pitch_radius=radius,
-        cage_speed=float(np.mean(links.traction.bearing.equilibrium.orbital_speed)),
+        cage_speed=mean_speed(found.orbital_speed),
         inner_speed=study.operation.inner_speed,
         outer_speed=study.operation.outer_speed,
-        pocket_clearance=design.pocket_clearance,
         ball_cage_stiffness=links.restitution.ball_cage_stiffness,
         race_damping=links.restitution.race_damping,
         ball_cage_friction=pocket_friction(study) if friction is None else friction,
-        guidance=design.guidance,
-        land_clearance=design.land_clearance,
-        land_friction=design.land_friction,
-        land_stiffness=design.land_stiffness,
-        land_restitution=design.land_restitution,
-        unbalance=design.unbalance,
-        gravity=design.gravity,
+        hertz_coefficient=_hertz_coefficient(study, links.restitution.ball_cage_stiffness),
+        orbital_cosines=waves.cosines,
+        orbital_sines=waves.sines,
+        ramp_time=study.operation.ramp_time,
+        ramp_start=study.operation.ramp_start,
+        **_as_designed(design),
     )
-    return CageState(restitution=links, cage=cage)
+    _say_if_pushed_round(cage)
+    return CageState(restitution=links, cage=cage, orbital_share=waves.share)
+
+
+_COMPUTED = {"moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"}
+
+
+def _as_designed(design: CageDesign) -> dict[str, Any]:
+    """What the cage in the plane takes from the design as it is: fields of the same name."""
+    names = {f.name for f in fields(design)} & {f.name for f in fields(PlanarCage)} - _COMPUTED
+    return {name: getattr(design, name) for name in names}
+
+
+def _hertz_coefficient(study: Study, stiffness: NewtonPerMetre) -> NewtonPerMetre1_5 | None:
+    """Hertz's K behind the chain's stiffness: equal energy and depth in a blow at the middle kick.
+
+    A stiffness that came from a material by Hertz at that kick gives the material's own K back.
+    """
+    design = cage_design(study)
+    if design.pocket_contact is PocketContact.LINEAR:
+        return None
+    return hertz_coefficient_for(stiffness, design.mass, study.stability.middle_kick)
+
+
+def _say_if_pushed_round(cage: PlanarCage) -> None:
+    if cage.lead_amplitude > cage.half_play:
+        lead, play = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
+        warnings.warn(
+            f"Left to themselves the balls would lead and lag by up to {lead} under this load, more than "
+            f"half their play in a pocket, {play}: the cage pushes them round, which costs force and wear.",
+            ValidityWarning,
+            stacklevel=3,
+        )
 
 
 def pocket_friction(study: Study) -> Ratio:

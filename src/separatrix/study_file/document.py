@@ -21,13 +21,23 @@ MOST_PROBLEMS = 20
 _ALTERNATIVES = {
     "bearing": (("contact_angle",), ("radial_clearance",)),
     "operation": (("moment",), ("tilt",)),
+    "cage": (("pocket_angles",), ("pocket_spacing_scatter",)),
     "film": (("material",), ("elastic_modulus", "poisson_ratio")),
     "ranking": (("friction", "materials"), ("candidates",)),
 }
 """Keys that exclude each other: a variant that gives one side drops the other side of its base."""
 
 _OUTSIDE = "Before the first [section] there are only title and extends; move it into its section."
-_LAND_KEYS = ("land_clearance", "land_friction", "land_stiffness", "land_restitution")
+_LAND_KEYS = (
+    *("land_clearance", "land_friction", "land_stiffness", "land_restitution"),
+    *("land_count", "land_out_of_round", "land_lobes"),
+)
+_MEANINGLESS = {
+    ("guidance", "ball"): _LAND_KEYS,
+    ("pocket_shape", "square"): ("pocket_axial_clearance", "pocket_axial_offset"),
+    ("pocket_shape", "cylindrical"): ("pocket_axial_clearance",),
+}
+"""A choice in [cage] and the keys of the base that a variant with this choice drops."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,8 +174,9 @@ def _kept(name: str, below: dict[str, Entry], above: dict[str, Entry]) -> dict[s
         dropped.update(other)
     if any(key in above for key in other):
         dropped.update(one)
-    if name == "cage" and "guidance" in above and above["guidance"].value == "ball":
-        dropped.update(_LAND_KEYS)
+    for (key, choice), keys in _MEANINGLESS.items() if name == "cage" else ():
+        if key in above and above[key].value == choice:
+            dropped.update(keys)
     return {key: entry for key, entry in below.items() if key not in dropped}
 
 

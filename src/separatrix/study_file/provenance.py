@@ -19,6 +19,8 @@ _WITHOUT = {
     "cage.material": "not given",
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the middle kick",
     "cage.ball_cage_friction": "default: that of the first candidate",
+    "cage.pocket_axial_clearance": "not given: that of the shape",
+    "cage.pocket_angles": "default: evenly spaced",
     "cage.land_clearance": "not given: no land",
     "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
 }
@@ -68,7 +70,7 @@ def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
     origin = study.origins.get(key)
     if origin is None:
         origin = "default" if study.origins else "given in Python"
-        origin = _WITHOUT.get(key, origin) if item.get("value", 0) is None else origin
+        origin = _WITHOUT.get(key, origin) if item.get("value", 0) in (None, []) else origin
     return {**item, "origin": origin}
 
 

@@ -62,7 +62,7 @@ _READERS: dict[str, dict[str, Reader]] = {
         guidance=values.choice(Guidance),
         pocket_shape=values.choice(PocketShape),
         pocket_contact=values.choice(PocketContact),
-        pocket_angles=values.list_of(values.quantity("rad")),
+        pocket_angles=values.pocket_angles,
         land_count=values.whole,
         land_lobes=values.whole,
     ),
@@ -172,6 +172,7 @@ def _free_angle(document: Document, clearance: float, given: dict[str, Any]) -> 
 
 def _operation(document: Document, given: dict[str, Any]) -> Operation:
     refuse_both(document, "operation", "tilt", "moment")
+    _refuse_alone(document, "operation", "ramp_start", "ramp_time", "the speeds are steady")
     return record_of(document, Operation, given)
 
 
@@ -210,7 +211,17 @@ def _cage(document: Document, given: dict[str, Any]) -> CageDesign:
     if land and given["guidance"] is Guidance.BALL:
         _say_unused(document, land)
         given = {key: value for key, value in given.items() if key not in land}
+    refuse_both(document, "cage", "pocket_angles", "pocket_spacing_scatter")
+    _refuse_alone(document, "cage", "land_lobes", "land_out_of_round", "the land is round")
     return record_of(document, CageDesign, given)
+
+
+def _refuse_alone(document: Document, section: str, key: str, other: str, otherwise: str) -> None:
+    """Refuse a key that says nothing without another one."""
+    written = document.sections[section]
+    if key in written and other not in written:
+        cure = "Give it, or leave both out."
+        raise InputError(where(document, section, key), f"needs {other}: without it {otherwise}", cure=cure)
 
 
 def _say_unused(document: Document, land: list[str]) -> None:

@@ -87,6 +87,13 @@ def kicks(value: Any, where: str) -> tuple[float, ...]:
     return tuple(sorted(list_of(quantity("m/s"))(value, where)))
 
 
+def pocket_angles(value: Any, where: str) -> tuple[float, ...]:
+    """Read the angle of each pocket; that there is one for each ball is the study's to check."""
+    if not value and isinstance(value, list):
+        raise InputError(where, "must not be empty", cure="Leave it out for pockets that stand evenly.")
+    return tuple(list_of(quantity("rad"))(value, where))
+
+
 def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
     """Read ``{ from = 0.05, to = 0.95, count = 19 }``, or a list of numbers."""
     if isinstance(value, list):
