@@ -1,0 +1,322 @@
+"""Where a cage is stable in the plane of any two parameters of a study: the stability map."""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, wilson_interval
+from separatrix.chain import TractionState, cage_state, known_friction, pocket_friction, traction_state
+from separatrix.errors import ConvergenceError, InputError
+from separatrix.stability.growth import cage_at
+from separatrix.stability.map_grid import Place, near_a_change, rounds
+from separatrix.stability.map_parameters import FRICTION, KICK, RESTITUTION, value_in, varied
+from separatrix.stability.map_pool import work_in_batches
+from separatrix.stability.map_records import (
+    NOT_RUN,
+    MapAxis,
+    MapChange,
+    MapPoint,
+    MapQuestion,
+    StabilityMap,
+    Stopping,
+)
+from separatrix.stability.map_rule import (
+    changes,
+    first_look,
+    margins,
+    other_decision_probability,
+    wrong_side_probability,
+)
+from separatrix.stability.pool import Progress
+from separatrix.study import Study
+from separatrix.units import MetrePerSecond, Ratio
+
+BATCH = 8
+"""Points that a thread computes before it hands them over: some tenths of a second of work."""
+
+INTERRUPTED = f"{NOT_RUN}: interrupted"
+AGREED = f"{NOT_RUN}: the points around it agree"
+
+
+Known = Mapping[tuple[float, float], MapPoint]
+Keep = Callable[[list[MapPoint]], None]
+
+
+def stability_map(
+    question: MapQuestion,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    known: Known | None = None,
+    keep: Keep | None = None,
+) -> StabilityMap:
+    """Decide every point of a map, coarse grid first, so that an interrupted map covers the whole plane.
+
+    Run number r begins alike at every point. A point whose study is refused, or whose chain does not settle,
+    is a point with that reason.
+
+    Parameters
+    ----------
+    question : MapQuestion
+        What is asked.
+    jobs : int
+        Threads; the numbers do not depend on it.
+    progress : callable, optional
+        Called with (done, total) points.
+    known : mapping, optional
+        Points by (x, y) that were finished before.
+    keep : callable, optional
+        Called with the points that have just been finished, in this thread.
+
+    Raises
+    ------
+    InputError
+        The study names no pocket friction and no axis is it, or no point at all could be run.
+    KeyboardInterrupt
+        Interrupted before the first point was finished; later the finished points are returned.
+    """
+    require_friction(question)
+    grid = {(i, j): (x, y) for i, x in enumerate(question.x.values) for j, y in enumerate(question.y.values)}
+    found = {place: known[at] for place, at in grid.items() if known and at in known}
+    finder = PointFinder(question)
+    complete = _fill(question, finder, grid, found, _Say(len(grid), progress, keep), jobs)
+    if not found:
+        raise KeyboardInterrupt
+    _refuse_if_nothing_ran(question, found)
+    return _assembled(question, found, complete=complete)
+
+
+def require_friction(question: MapQuestion) -> None:
+    """Refuse a map whose cage has no pocket friction."""
+    if FRICTION not in (question.x.parameter, question.y.parameter):
+        pocket_friction(question.study)
+
+
+@dataclass(frozen=True, slots=True)
+class _Say:
+    """Whom to tell of finished points."""
+
+    total: int
+    progress: Progress | None
+    keep: Keep | None
+
+    def __call__(self, batch: list[tuple[Place, MapPoint]], done: int) -> None:
+        if self.keep is not None:
+            self.keep([point for _, point in batch])
+        if self.progress is not None:
+            self.progress(done, self.total)
+
+
+def _fill(
+    question: MapQuestion,
+    finder: Callable[[tuple[float, float]], MapPoint],
+    grid: Mapping[Place, tuple[float, float]],
+    found: dict[Place, MapPoint],
+    say: _Say,
+    jobs: int,
+) -> bool:
+    """Compute the points that are wanted and not found yet, round by round; False after an interrupt."""
+
+    def compute(place: Place) -> tuple[Place, MapPoint]:
+        return place, finder(grid[place])
+
+    def take(batch: list[tuple[Place, MapPoint]]) -> None:
+        say(batch, len(found) + len(batch))
+        found.update(batch)
+
+    for coarser, places in rounds(len(question.x.values), len(question.y.values)):
+        wanted = [p for p in places if p not in found]
+        if question.adaptive and coarser is not None:
+            decisions = {p: point.decision for p, point in found.items()}
+            wanted = [p for p in wanted if near_a_change(p, coarser, decisions)]
+        if not work_in_batches(compute, wanted, take, size=BATCH, jobs=jobs):
+            return False
+    return True
+
+
+def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint]) -> None:
+    """A map without a single run is no answer: say why the first point was refused."""
+    if any(point.runs for point in found.values()):
+        return
+    first = found[min(found)]
+    where = f"The map of {question.x.parameter} and {question.y.parameter}"
+    raise InputError(where, "has no point that could be run", cure=f"The first was refused: {first.reason}")
+
+
+class PointFinder:
+    """Runs the chain and the cage at points of a map; traction is computed once for each bearing and film."""
+
+    def __init__(self, question: MapQuestion) -> None:
+        self.question = question
+        self._names = (question.x.parameter, question.y.parameter)
+        self._traction = functools.lru_cache(maxsize=1024)(_traction_or_refusal)
+
+    def __call__(self, at: tuple[float, float]) -> MapPoint:
+        """Point at (x, y), with the refusal as its reason if it cannot be run."""
+        x, y = at
+        try:
+            return self._run(x, y)
+        except (InputError, ConvergenceError) as error:
+            return MapPoint(x=x, y=y, reason=str(error))
+
+    def _run(self, x: float, y: float) -> MapPoint:
+        values = dict(zip(self._names, (x, y), strict=True))
+        study = functools.reduce(lambda s, item: varied(s, *item), values.items(), self.question.study)
+        cage, eta = self._cage(study, values)
+        ensemble = decided_ensemble(cage, study, values.get(KICK, self.question.kick), self.question.runs)
+        return _judged(x, y, cage, eta, ensemble)
+
+    def _cage(self, study: Study, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
+        """Cage of the varied study, and its restitution factor."""
+        key = replace(study, cage=None, ranking=None, stability=self.question.study.stability)
+        links = self._traction(_Bearing(key))
+        if isinstance(links, str):
+            raise InputError(links.removesuffix("."), "")
+        friction = values.get(FRICTION, known_friction(study))
+        state = cage_state(study, traction=links, friction=friction)
+        eta = values.get(RESTITUTION)
+        if eta is None:
+            return state.cage, state.restitution.restitution.restitution_factor
+        return cage_at(state.cage, eta, state.cage.ball_cage_friction), eta
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Bearing:
+    """A study as far as it changes the traction, to be looked up by."""
+
+    study: Study
+
+    def _key(self) -> tuple[Any, ...]:
+        return self.study.bearing, self.study.operation, self.study.film, self.study.kinematics
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Bearing) and self._key() == other._key()
+
+
+def _traction_or_refusal(bearing: _Bearing) -> TractionState | str:
+    """Traction of a bearing, or why there is none: a refusal is worth remembering too."""
+    try:
+        return traction_state(bearing.study)
+    except (InputError, ConvergenceError) as error:
+        return str(error)
+
+
+def decided_ensemble(cage: PlanarCage, study: Study, kick: MetrePerSecond, runs: int) -> Ensemble:
+    """Runs from one kick: the first few, and the others unless those agree."""
+    first = first_look(runs)
+    settings = study.stability
+    ensemble = run_ensemble(cage, settings, kicks=(kick,), runs=first, growth_only=True)
+    outcomes = ensemble.outcome
+    if first == runs or (outcomes == outcomes[0, 0]).all():
+        return ensemble
+    others = run_ensemble(cage, settings, kicks=(kick,), runs=runs - first, first_run=first, growth_only=True)
+    return joined(ensemble, others)
+
+
+def joined(first: Ensemble, others: Ensemble) -> Ensemble:
+    """One ensemble of the runs of two, from the same kicks."""
+
+    def column(name: str) -> Any:
+        one, other = getattr(first, name), getattr(others, name)
+        return np.concatenate((one, other), axis=1) if np.ndim(one) > 1 else one
+
+    return Ensemble(**{f.name: column(f.name) for f in fields(Ensemble)})
+
+
+def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
+    found = judge(cage, ensemble)
+    grown, runs = int(ensemble.count(RunOutcome.GROWS)[0]), ensemble.outcome.shape[1]
+    low, high = wilson_interval(grown, runs)
+    return MapPoint(
+        x=x,
+        y=y,
+        decision=found.verdict,
+        probability_grow=grown / runs,
+        probability_low=low,
+        probability_high=high,
+        runs=runs,
+        grown=grown,
+        growth_rate=growth_rate(ensemble),
+        restitution_factor=eta,
+        reason=found.reason,
+    )
+
+
+def growth_rate(ensemble: Ensemble) -> float:
+    """Median growth rate of the runs [1/s]."""
+    if not hasattr(ensemble, "growth_rate"):
+        return float(np.median(np.log(ensemble.energy_growth))) / (2.0 * ensemble.duration)
+    return float(np.median(ensemble.growth_rate))
+
+
+def _assembled(
+    question: MapQuestion,
+    grid: Mapping[Place, tuple[float, float]],
+    found: Mapping[Place, MapPoint],
+    *,
+    complete: bool,
+) -> StabilityMap:
+    """Map of the points found, with their margins; the others say why they were not run."""
+    why = AGREED if complete else INTERRUPTED
+    points: list[MapPoint] = []
+    bands: list[MapChange] = []
+    heights = question.y.values
+    for i, x in enumerate(question.x.values):
+        column = [found.get((i, j)) or MapPoint(x=x, y=y, reason=why) for j, y in enumerate(heights)]
+        sides = [point.side for point in column]
+        along = zip(column, margins(heights, sides), strict=True)
+        points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
+        bands += [
+            MapChange(x=x, y_low=heights[a], y_high=heights[b], grows_above=sides[b] > 0)
+            for a, b in changes(sides)
+        ]
+    settings = question.study.stability
+    return StabilityMap(
+        x=question.x,
+        y=question.y,
+        points=tuple(points),
+        changes=tuple(bands),
+        counts=counts(points),
+        kick=question.kick,
+        stopping=stopping(question.runs),
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        adaptive=question.adaptive,
+        complete=complete,
+    )
+
+
+def counts(points: Iterable[MapPoint]) -> dict[str, int]:
+    """Points of each decision, of those refused, and of those not run."""
+    names = Counter(_kind(point) for point in points)
+    return {kind: names[kind] for kind in (*(v.name for v in Verdict), "refused", "not_run")}
+
+
+def _kind(point: MapPoint) -> str:
+    if point.decision is not None:
+        return point.decision.name
+    return "not_run" if point.reason.startswith(NOT_RUN) else "refused"
+
+
+def stopping(runs: int) -> Stopping:
+    """Rule by which points of so many runs are ended early."""
+    return Stopping(
+        most_runs=runs,
+        agreeing_runs=first_look(runs),
+        wrong_side_probability=wrong_side_probability(runs),
+        other_decision_probability=other_decision_probability(runs),
+    )
+
+
+def axis(study: Study, parameter: str, unit: str, values: Iterable[float]) -> MapAxis:
+    """Axis of a map, with the parameter's value in the study."""
+    return MapAxis(parameter=parameter, unit=unit, values=tuple(values), here=value_in(study, parameter))

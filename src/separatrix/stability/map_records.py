@@ -1,0 +1,155 @@
+"""Records of a stability map: what is asked, its points, the bands between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from separatrix.cage import Verdict
+from separatrix.errors import InputError
+from separatrix.stability.map_rule import side
+from separatrix.study import Study
+from separatrix.units import MetrePerSecond, Ratio, Second
+
+NOT_RUN = "not run"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAxis:
+    """One parameter of a map: its name and SI unit, its rising values, and its value in the study."""
+
+    parameter: str
+    unit: str
+    values: tuple[float, ...]
+    here: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapPoint:
+    """What the runs at one point of a map say; None where it could not be run, with the reason.
+
+    Attributes
+    ----------
+    x, y : float
+        Values of the two parameters [SI].
+    decision : Verdict or None
+        By the rule of `cage.judge`, from the runs that were made.
+    probability_grow, probability_low, probability_high : float or None
+        Share of the runs that grow, and its 95 % Wilson interval [-].
+    runs, grown : int
+        Runs that were made, and those among them that grow.
+    growth_rate : float or None
+        Median over the runs [1/s].
+    restitution_factor : float or None
+        Eta of the chain at this point, or that of the axis [-].
+    margin : float or None
+        Distance along y to the nearest band in which the column changes from motion that dies to motion
+        that grows, in the unit of y: positive where it dies, negative where it grows, 0 in the band; None in
+        a column that does not change.
+    reason : str
+        Of the decision, or why there is none.
+    """
+
+    x: float
+    y: float
+    decision: Verdict | None = None
+    probability_grow: Ratio | None = None
+    probability_low: Ratio | None = None
+    probability_high: Ratio | None = None
+    runs: int = 0
+    grown: int = 0
+    growth_rate: float | None = None
+    restitution_factor: Ratio | None = None
+    margin: float | None = None
+    reason: str = NOT_RUN
+
+    @property
+    def side(self) -> int:
+        """Whether more than half of the runs grow (1), die (-1), or neither is sure (0)."""
+        return side(self.probability_low, self.probability_high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapChange:
+    """Between these two neighbouring decided points of a column the motion changes from dying to growing."""
+
+    x: float
+    y_low: float
+    y_high: float
+    grows_above: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stopping:
+    """When a point is ended early, and how often that is wrong at the worst.
+
+    Attributes
+    ----------
+    most_runs, agreeing_runs : int
+        A point has `most_runs`, fewer if the first `agreeing_runs` all agree.
+    wrong_side_probability : float
+        Largest probability, over all points, that all the runs would have the other majority [-].
+    other_decision_probability : float
+        Largest probability that all the runs would give another decision: that of a point which is all but
+        decided [-].
+    """
+
+    most_runs: int
+    agreeing_runs: int
+    wrong_side_probability: Ratio
+    other_decision_probability: Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapQuestion:
+    """What a map is asked for.
+
+    Parameters
+    ----------
+    study : Study
+        With a [cage].
+    x, y : MapAxis
+        Two different parameters.
+    kick : float
+        Of every point, unless an axis is [m/s].
+    runs : int
+        Most runs of a point.
+    adaptive : bool
+        Run only the points near a change of the answer, from a coarse grid on.
+    """
+
+    study: Study
+    x: MapAxis
+    y: MapAxis
+    kick: MetrePerSecond
+    runs: int = 16
+    adaptive: bool = False
+
+    def __post_init__(self) -> None:
+        if self.x.parameter == self.y.parameter:
+            raise InputError("The map", "needs two different parameters", value=f"{self.x.parameter} twice")
+        if not 0.0 < self.kick < 1e4:
+            raise InputError("The kick of a map", "must be > 0 and < 10000", "m/s", f"{self.kick:g}")
+        if not 1 <= self.runs <= 1_000_000:
+            raise InputError("The runs of a map", "must lie between 1 and 1000000", value=str(self.runs))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityMap:
+    """A map: its points, column after column of x, and the bands in which the answer changes.
+
+    `counts` has the number of points of each decision, of those refused, and of those not run;
+    `complete` is False if an interrupt left points out.
+    """
+
+    x: MapAxis
+    y: MapAxis
+    points: tuple[MapPoint, ...]
+    changes: tuple[MapChange, ...]
+    counts: Mapping[str, int]
+    kick: MetrePerSecond
+    stopping: Stopping
+    duration: Second
+    ball_scatter: Ratio
+    adaptive: bool
+    complete: bool

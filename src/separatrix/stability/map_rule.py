@@ -1,0 +1,96 @@
+"""When a point of a map is decided, how often that is wrong, and where a map's answer changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import comb
+
+from separatrix.cage import wilson_interval
+from separatrix.cage.verdict import CLEAR, FEW
+from separatrix.units import Ratio
+
+AGREEING = 8
+"""A point is decided once so many runs agree, from the first on; otherwise all its runs are made."""
+
+DIES, GROWS, EITHER = -1, 1, 0
+
+
+def first_look(runs: int) -> int:
+    """Runs after which a point is looked at."""
+    return min(AGREEING, runs)
+
+
+def wrong_side_probability(runs: int, agreeing: int = AGREEING) -> Ratio:
+    r"""Largest probability that a point which is ended early would lie on the other side with all its runs.
+
+    Runs are exchangeable. If :math:`K` of :math:`R` are of one kind, the first :math:`n` are all of the
+    other with probability :math:`\binom{R-K}{n} / \binom{R}{n}`, which is largest for the smallest
+    majority, :math:`K = \lfloor R/2 \rfloor + 1`.
+
+    Parameters
+    ----------
+    runs : int
+        R, all the runs of a point.
+    agreeing : int
+        n, runs that agree before it is ended.
+    """
+    return _all_of_the_others(runs, runs // 2 + 1, agreeing)
+
+
+def other_decision_probability(runs: int, agreeing: int = AGREEING) -> Ratio:
+    """Largest probability that a point which is ended early would be decided otherwise with all its runs.
+
+    Most of these are points that all the runs would leave undecided.
+    """
+    if agreeing >= runs:
+        return 0.0
+    calm = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_calm(k, runs))
+    wild = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_wild(k, runs))
+    return max(calm, wild)
+
+
+def _all_of_the_others(runs: int, kind: int, agreeing: int) -> Ratio:
+    """Probability that none of the first `agreeing` of `runs` is one of the `kind`; 0 if all are made."""
+    return comb(runs - kind, agreeing) / comb(runs, agreeing) if agreeing < runs else 0.0
+
+
+def _is_calm(grown: int, runs: int) -> bool:
+    dies = runs - grown
+    return dies / runs >= CLEAR and wilson_interval(dies, runs)[0] > FEW
+
+
+def _is_wild(dead: int, runs: int) -> bool:
+    return wilson_interval(runs - dead, runs)[0] > FEW
+
+
+def side(low: Ratio | None, high: Ratio | None) -> int:
+    """Return the side of one half on which the interval of P(grow) lies: DIES, GROWS, or EITHER."""
+    if low is None or high is None:
+        return EITHER
+    return GROWS if low > 0.5 else DIES if high < 0.5 else EITHER
+
+
+def changes(sides: Sequence[int]) -> list[tuple[int, int]]:
+    """Places (last of one side, first of the other) between which a row of sides changes."""
+    decided = [place for place, at in enumerate(sides) if at != EITHER]
+    return [(a, b) for a, b in pairwise(decided) if sides[a] != sides[b]]
+
+
+def margins(values: Sequence[float], sides: Sequence[int]) -> list[float | None]:
+    """Distance of each point to the nearest band in which its row changes sides.
+
+    Positive where the motion dies, negative where it grows, 0 inside the band; None in a row that does not
+    change, and where nothing was decided outside a band.
+    """
+    bands = [(values[a], values[b]) for a, b in changes(sides)]
+    return [_margin(value, at, bands) for value, at in zip(values, sides, strict=True)]
+
+
+def _margin(value: float, at: int, bands: Sequence[tuple[float, float]]) -> float | None:
+    if not bands:
+        return None
+    distance = min(max(low - value, value - high, 0.0) for low, high in bands)
+    if at == EITHER:
+        return 0.0 if distance == 0.0 else None
+    return -at * distance + 0.0
