@@ -1,121 +1,266 @@
-"""The cage's motion by another program: the equations as written, Runge-Kutta at a fixed small step."""
+"""The second road itself: what its small steps must give where the answer is known, and its order.
+
+Tolerances: the step's order (fourth within a mode, second over a contact that starts or ends), measured here
+by halving it, or rounding over some 10 000 steps where Runge-Kutta is exact.
+"""
 
 import math
 from dataclasses import replace
 
-import numba
 import numpy as np
 import pytest
+import small_step
 
-from separatrix.cage import PlanarCage, RunOutcome, follow, run_ensemble
+from separatrix.cage import PlanarCage, RunOutcome, follow, linear_roots, run_ensemble
 from separatrix.cage.ensemble import random_starts
-from separatrix.cage.land import rebound_damping
-from separatrix.study import Guidance, StabilitySettings
+from separatrix.study import Guidance, PocketShape, StabilitySettings
 
+M, R, K = 0.025, 0.0325, 3e6
 CAGE = PlanarCage(
-    mass=0.025,
-    moment_of_inertia=0.025 * 0.0325**2,
+    mass=M,
+    moment_of_inertia=M * R**2,
     ball_count=13,
-    pitch_radius=0.0325,
+    pitch_radius=R,
     cage_speed=669.0,
     inner_speed=1570.8,
     outer_speed=0.0,
     pocket_clearance=6e-4,
-    ball_cage_stiffness=3e6,
+    ball_cage_stiffness=K,
     race_damping=800.0,
     ball_cage_friction=0.12,
     guidance=Guidance.OUTER,
     land_clearance=1e-3,
 )
+FREE = replace(CAGE, guidance=Guidance.BALL, pocket_clearance=10.0)
+HEAD_ON = replace(
+    FREE, ball_count=1, pocket_clearance=2e-4, moment_of_inertia=1e6, cage_speed=0.0, ball_cage_friction=0.0
+)
+EVERYTHING = replace(
+    CAGE,
+    land_clearance=4e-4,
+    land_out_of_round=2e-5,
+    land_lobes=3,
+    land_count=2,
+    unbalance=1e-6,
+    gravity=9.81,
+    hertz_coefficient=3e8,
+    pocket_shape=PocketShape.CYLINDRICAL,
+    pocket_axial_offset=1e-4,
+    pocket_angles=tuple(2 * math.pi * (j + 0.1 * math.sin(5 * j)) / 13 for j in range(13)),
+    orbital_cosines=(0.05, 0.03),
+    orbital_sines=(-0.02, 0.04),
+    ramp_time=0.0015,
+    ramp_start=0.3,
+)
+LEAD = np.linspace(-1e-4, 1e-4, 13)
 
 
-@numba.njit
-def rates(z, out, n, f):
-    """Rates of the state (x, y, vx, vy, theta, omega, y_j) in the turning frame."""
-    M, J, R, k, C, c, W, gap, K, damping, mu, ring = n
-    x, y, vx, vy, theta, omega = z[:6]
-    fx, fy, moment = M * (2 * W * vy + W * W * x), M * (-2 * W * vx + W * W * y), 0.0
-    Z = z.size - 6
-    for j in range(Z):
-        cos, sin = math.cos(2 * math.pi * j / Z), math.sin(2 * math.pi * j / Z)
-        u = y * cos - x * sin + R * theta - z[6 + j]
-        N = k * max(abs(u) - c, 0.0) * np.sign(u)
-        fx += N * sin - f * N * cos
-        fy += -N * cos - f * N * sin
-        moment -= N * R
-        out[6 + j] = N / C
-    r = math.hypot(x, y)
-    if r > gap:
-        nx, ny = x / r, y / r
-        F = max(0.0, K * (r - gap) + damping * (nx * vx + ny * vy))
-        tangent = -mu * F * math.tanh((nx * vy - ny * vx + R * (omega - ring)) / 1e-3)
-        fx += -F * nx - tangent * ny
-        fy += -F * ny + tangent * nx
-        moment += tangent * R
-    out[:6] = (vx, vy, fx / M, fy / M, omega, moment / J)
-
-
-@numba.njit
-def runge_kutta(z, steps, dt, n, f, kick):
-    """Take the steps in place; return the mean kinetic energy of the last fifth over the kick's."""
-    M, J = n[0], n[1]
-    a, b, c, d = np.zeros_like(z), np.zeros_like(z), np.zeros_like(z), np.zeros_like(z)
-    mean = 0.0
-    for i in range(steps):
-        rates(z, a, n, f)
-        rates(z + 0.5 * dt * a, b, n, f)
-        rates(z + 0.5 * dt * b, c, n, f)
-        rates(z + dt * c, d, n, f)
-        z += dt / 6 * (a + 2 * b + 2 * c + d)
-        energy = 0.5 * M * (z[2] ** 2 + z[3] ** 2) + 0.5 * J * z[5] ** 2
-        if energy > 1e3 * M:
-            return np.inf  # of some 100 J: it grows without end
-        if i >= 0.8 * steps:
-            mean += energy
-    return mean / (0.2 * steps) / (0.5 * M * kick**2)
-
-
-def numbers(cage):
-    """Numbers of a cage for `rates`."""
-    damping = 2 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * cage.mass)
-    return (
-        *(cage.mass, cage.moment_of_inertia, cage.pitch_radius, cage.ball_cage_stiffness, cage.race_damping),
-        *(cage.half_play, cage.cage_speed, cage.land_gap, cage.land_stiffness, damping, cage.land_friction),
-        cage.outer_speed - cage.cage_speed,
+def go(cage, *, kick=0.5, direction=0.4, lead=None, duration=2e-3, step=2e-7, **more):
+    """Run of the second road."""
+    lead = np.zeros(cage.ball_count) if lead is None else lead
+    return small_step.follow(
+        cage, kick=kick, direction=direction, ball_lead=lead, duration=duration, step=step, **more
     )
 
 
-def start(cage, kick, direction, lead):
-    """State right after the kick."""
-    return np.concatenate(
-        ([0.0, 0.0, kick * math.cos(direction), kick * math.sin(direction), 0.0, 0.0], lead)
+def in_space(cage, run, time):
+    """Orbit of the centre of mass seen from space, as complex numbers, and the angle turned by the balls."""
+    s0, tr = cage.ramp_start, cage.ramp_time
+    ramped = np.minimum(time, tr)
+    missing = (1 - s0) * (ramped - ramped**2 / (2 * tr)) if tr else 0.0 * time
+    turned = cage.cage_speed * (time - missing)
+    eccentricity = cage.unbalance / cage.mass
+    return np.exp(1j * turned) * (run.position @ [1, 1j] + eccentricity * np.exp(1j * run.rotation)), turned
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+@pytest.mark.parametrize("ramp", [0.0, 0.003])
+def test_free_flight_is_a_line_or_a_parabola_in_space(gravity, ramp):
+    """Ramp or not, a cage that touches nothing keeps its velocity and its spin in space, or falls."""
+    cage = replace(FREE, gravity=gravity, ramp_time=ramp, ramp_start=0.2)
+    run = go(cage, duration=5e-3, step=1e-6)
+    seen, turned = in_space(cage, run, run.time)
+    fallen = 0.5 * np.exp(0.4j) * run.time + 0.5 * gravity * run.time**2
+    # fourth order: (Omega h)^4 = 2e-13 of the way of some mm; rounding 1e-12 rad of some rad
+    np.testing.assert_allclose(seen, fallen, atol=1e-14)
+    start = cage.cage_speed * (cage.ramp_start if ramp else 1.0)
+    np.testing.assert_allclose(run.rotation + turned, start * run.time, atol=1e-11)
+
+
+def test_an_unbalanced_cage_circles_its_centre_of_mass():
+    """The centre of mass goes straight; the geometric centre is the eccentricity behind, turning evenly."""
+    cage = replace(FREE, unbalance=1e-6)
+    run = go(cage, kick=0.01, duration=5e-3, step=1e-6)
+    e, turned = 1e-6 / M, 669.0 * run.time
+    straight = e + (0.01 * np.exp(0.4j) + 1j * 669.0 * e) * run.time
+    centre = np.exp(1j * turned) * (run.position @ [1, 1j])
+    np.testing.assert_allclose(centre, straight - e * np.exp(1j * turned), atol=1e-15)
+
+
+def test_a_hertz_blow_lasts_and_dips_as_hertz_says():
+    """Without dampers: approach (5 M v^2 / 4 K)^(2/5), lasting 2.9432 approach/v, all the energy returned."""
+    K_H, v = 3e8, 0.5
+    cage = replace(HEAD_ON, race_damping=math.inf, hertz_coefficient=K_H)
+    run = go(cage, kick=v, direction=math.pi / 2, duration=8e-4, step=1e-7, samples=10**6)
+    dip = (1.25 * M * v**2 / K_H) ** 0.4
+    assert run.position[:, 1].max() - 1e-4 == pytest.approx(dip, rel=1e-6)  # (h / contact time)^2
+    inside = run.position[:, 1] > 1e-4
+    # two steps of the contact's time
+    assert np.ptp(run.time[inside]) == pytest.approx(2.9432 * dip / v, abs=2e-7)
+    assert run.velocity[-1, 1] == pytest.approx(-v, rel=1e-6)
+
+
+def test_what_a_hertz_blow_loses_is_in_the_race_damper():
+    """Energy before and after, and the damper's work."""
+    cage = replace(HEAD_ON, hertz_coefficient=3e8, race_damping=300.0)
+    run = go(cage, direction=math.pi / 2, duration=8e-4, step=1e-7)
+    lost = 0.5 * M * 0.25 - run.energy[-1]
+    assert 0.1 < lost / (0.5 * M * 0.25) < 0.99
+    assert run.work["race_dampers"][-1] == pytest.approx(-lost, rel=1e-6)
+
+
+@pytest.mark.parametrize("guidance", [Guidance.OUTER, Guidance.INNER])
+@pytest.mark.parametrize("lobes", [2, 3])
+def test_an_out_of_round_land_without_losses_keeps_the_energy(guidance, lobes):
+    """Its normal force and moment come from one potential; and the cage does turn."""
+    cage = replace(FREE, cage_speed=0.0, guidance=guidance, land_clearance=2e-4, land_restitution=1.0)
+    cage = replace(cage, land_friction=0.0, land_out_of_round=1e-5, land_lobes=lobes, land_count=2)
+    run = go(cage, duration=5e-3, step=1e-7, kick=1.0)
+    np.testing.assert_allclose(run.energy, run.energy[0], rtol=8e-6)  # (h sqrt(K/M))^2
+    assert np.abs(R * run.rate).max() > 5e-4
+
+
+@pytest.mark.parametrize(("count", "restitution"), [(1, 0.1), (2, 0.5), (1, 0.9), (2, 1.0)])
+def test_the_land_returns_its_restitution(count, restitution):
+    """Head on, without friction; first order where the damper's force starts with a jump."""
+    cage = replace(HEAD_ON, pocket_clearance=10.0, guidance=Guidance.OUTER, land_clearance=2e-4)
+    cage = replace(cage, land_restitution=restitution, land_count=count)
+    run = go(cage, duration=6e-4, step=2e-8)
+    assert run.velocity[-1] @ [math.cos(0.4), math.sin(0.4)] == pytest.approx(-0.5 * restitution, abs=1e-3)
+
+
+def test_a_rubbing_land_brings_the_cage_to_the_ring():
+    """A ring so slow that friction stops the sliding: one speed where they touch, but for the slip."""
+    cage = replace(FREE, guidance=Guidance.OUTER, cage_speed=0.0, outer_speed=1.0, land_friction=0.5)
+    cage = replace(cage, land_clearance=0.02)
+    run = go(cage, direction=0.0, duration=0.0205, step=2e-7)
+    surface = run.velocity[-1, 1] + R * run.rate[-1]
+    assert surface == pytest.approx(R, abs=2 * small_step.SLIP)
+    assert run.velocity[-1, 1] == pytest.approx(R / 2, rel=0.01)  # a thin ring shares it with its rotation
+
+
+@pytest.mark.parametrize(
+    ("shape", "offset"),
+    [(PocketShape.SQUARE, 0.0)]
+    + [(shape, z) for shape in (PocketShape.CYLINDRICAL, PocketShape.ELONGATED) for z in (0.0, 1e-4, 2.5e-4)],
+)
+def test_a_pocket_holds_its_ball_as_its_outline_says(shape, offset):
+    """Play and stiffness along the circumference, from the outline drawn in the plane of the pocket.
+
+    The ball's centre may go a straight way and then on the circle of the end's play; beyond it the spring's
+    force is along the normal. The stiffness is the slope of its circumferential part at the first touch.
+    """
+    c, end = 3e-4, {PocketShape.CYLINDRICAL: 3e-4, PocketShape.ELONGATED: 2.6e-4}.get(shape)
+    axial = 2 * end if shape is PocketShape.ELONGATED else None
+    cage = replace(CAGE, pocket_shape=shape, pocket_axial_offset=offset, pocket_axial_clearance=axial)
+    play, psi = small_step.contact(cage)
+
+    def push(u):
+        if end is None:
+            return K * (u - c)
+        ahead = u - (c - end)
+        reach = math.hypot(ahead, offset)
+        return K * (reach - end) * ahead / reach
+
+    assert push(play) == pytest.approx(0.0, abs=1e-9)
+    slope = (push(play + 1e-9) - push(play - 1e-9)) / 2e-9
+    assert small_step.numbers(cage).stiffness == pytest.approx(slope, rel=1e-6)
+    assert math.cos(psi) ** 2 * K == pytest.approx(slope, rel=1e-6)
+
+
+def test_balls_that_touch_nothing_lead_and_lag_with_the_load():
+    """The integral of their own speed, in closed form, through a ramp and after."""
+    cage = replace(FREE, orbital_cosines=(0.05, 0.03), orbital_sines=(-0.02, 0.04))
+    cage = replace(cage, ramp_time=2e-3, ramp_start=0.3)
+    run = go(cage, duration=5e-3, step=1e-6)
+    at = 2 * math.pi * np.arange(13) / 13 + in_space(cage, run, run.time)[1][:, np.newaxis]
+    parts = zip((1, 2), cage.orbital_cosines, cage.orbital_sines, strict=True)
+    # dy/dphi = V/Omega at any speed, both rising together
+    free = sum((A * np.sin(h * at) - B * np.cos(h * at)) / (h * 669.0) for h, A, B in parts)
+    np.testing.assert_allclose(run.ball_lead, free - free[0], atol=1e-14)
+
+
+@pytest.mark.parametrize(("speed", "friction"), [(0.0, 0.0), (0.0, 0.08), (669.0, 0.12), (-300.0, 0.05)])
+def test_a_gripped_cage_moves_on_its_exact_roots(speed, friction):
+    """Zero clearance: the three exponentials of the linear law, from the start of the kick."""
+    cage = replace(FREE, pocket_clearance=0.0, cage_speed=speed, ball_cage_friction=friction)
+    run = go(cage, duration=2e-3, step=2e-7)
+    roots = linear_roots(cage)
+    v = 0.5 * np.exp(0.4j)
+    share = np.linalg.solve(np.vander(roots, increasing=True).T, [0.0, v, -2j * speed * v])
+    exact = np.exp(np.outer(run.time, roots)) @ share
+    # the slow root is 1e-6 of the others, and known to some 1e-10 of itself
+    np.testing.assert_allclose(run.position @ [1, 1j], exact, rtol=0, atol=1e-7 * np.abs(exact).max())
+
+
+def test_the_step_is_of_fourth_order_within_a_mode():
+    """Halved steps, no play, gravity and unbalance on: the change falls by 16, within 10 % of the order."""
+    cage = replace(CAGE, pocket_clearance=0.0, guidance=Guidance.BALL, unbalance=1e-6, gravity=9.81)
+    ends = [go(cage, step=step, duration=1e-3).velocity[-1] for step in (1e-5, 5e-6, 2.5e-6)]
+    order = math.log2(np.linalg.norm(ends[0] - ends[1]) / np.linalg.norm(ends[1] - ends[2]))
+    assert order == pytest.approx(4.0, abs=0.4)
+
+
+def test_everything_at_once_explains_its_energy():
+    """Springs, friction, dampers, drive, gravity, frame, land: first order where the land starts pushing."""
+    left = []
+    for step in (2e-7, 5e-8):
+        run = go(EVERYTHING, kick=2.0, lead=LEAD, step=step)
+        left.append(np.abs(run.imbalance).max())
+    assert all(np.abs(work).max() > 1e-8 for work in run.work.values())
+    assert left[0] < 1e-4 * run.energy[0]
+    assert left[1] < left[0] / 3
+
+
+def test_the_mirror_image_runs_mirrored():
+    """Speeds, angles, leads and lags mirrored: so is everything. 1e-6: rounding after a few impacts."""
+    turned = replace(
+        EVERYTHING,
+        **{name: -getattr(EVERYTHING, name) for name in ("cage_speed", "inner_speed", "outer_speed")},
+        pocket_angles=(0.0, *(2 * math.pi - a for a in EVERYTHING.pocket_angles[:0:-1])),
+        orbital_cosines=tuple(-A for A in EVERYTHING.orbital_cosines),
     )
+    around = -np.arange(13) % 13
+    one = go(EVERYTHING, kick=2.0, lead=LEAD)
+    other = go(turned, kick=2.0, direction=-0.4, lead=-LEAD[around])
+    np.testing.assert_allclose(other.velocity, one.velocity * [1, -1], atol=1e-6)
+    np.testing.assert_allclose(other.position, one.position * [1, -1], atol=1e-9)
+    np.testing.assert_allclose(other.rotation, -one.rotation, atol=1e-8)
+    np.testing.assert_allclose(other.ball_lead, -one.ball_lead[:, around], atol=1e-9)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.12])
 def test_the_first_blows_are_the_same(friction):
     """Place and velocity after 2 ms: blows on pockets and land, before chaos takes over."""
     cage = replace(CAGE, ball_cage_friction=friction, land_clearance=4e-4)
-    lead = np.linspace(-1e-4, 1e-4, 13)
-    ours = follow(cage, kick=2.0, direction=0.4, ball_lead=lead, duration=0.002, samples=500)
-    z = start(cage, 2.0, 0.4, lead)
-    runge_kutta(z, 20_000, 1e-7, numbers(cage), cage.friction_sense * friction, 2.0)
+    ours = follow(cage, kick=2.0, direction=0.4, ball_lead=LEAD, duration=0.002, samples=500)
+    theirs = go(cage, kick=2.0, lead=LEAD, step=1e-7)
     assert ours.land_force.max() > 0.0
     assert ours.contact_force.max() > 100.0
-    # The engine takes some 4 us a step, with an error of second order: 0.6 um and 1 mm/s were measured here.
-    assert ours.position[-1] == pytest.approx(z[:2], abs=2e-6)
-    assert ours.velocity[-1] == pytest.approx(z[2:4], abs=5e-3)
+    # 2 um and 5 mm/s: some times what half the step changes, chaos included
+    assert ours.position[-1] == pytest.approx(theirs.position[-1], abs=2e-6)
+    assert ours.velocity[-1] == pytest.approx(theirs.velocity[-1], abs=5e-3)
 
 
 @pytest.mark.slow
 def test_as_many_runs_grow():
     """P(grow) near the threshold, on a land, with the same starts: within 3 standard errors."""
-    friction, kick, runs = CAGE.ball_cage_friction, 0.5, 96
+    kick, runs = 0.5, 96
     settings = StabilitySettings(kicks=(kick,), runs=runs)
     ours = np.mean(run_ensemble(CAGE, settings).outcome == RunOutcome.GROWS)
     begun = random_starts(CAGE, settings, 0, runs)
     ends = [
-        runge_kutta(start(CAGE, kick, s[0], s[1:]), 150_000, 2e-6, numbers(CAGE), friction, kick)
+        small_step.grows(CAGE, kick=kick, direction=s[0], ball_lead=s[1:], duration=0.3, step=2e-6, slip=1e-3)
         for s in begun
     ]
     theirs = np.mean(np.array(ends) > 1.0)
