@@ -44,6 +44,9 @@ GROUPS = {
 
 LISTS: dict[str, tuple[str, ...]] = {
     "ball_spin": ("axis",),
+    "pocket_angles": ("pocket",),
+    "orbital_cosines": ("harmonic",),
+    "orbital_sines": ("harmonic",),
     "creep_increment": ("increment",),
     "traction_coefficient": ("increment",),
     "kicks": ("kick",),

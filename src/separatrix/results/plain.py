@@ -12,9 +12,9 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from separatrix.study import Guidance, KinematicModel, Race
+from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape, Race
 
-SPELLED = (Guidance, KinematicModel, Race)
+SPELLED = (Guidance, KinematicModel, PocketContact, PocketShape, Race)
 
 
 class NotFiniteError(ArithmeticError):
