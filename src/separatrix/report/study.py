@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from math import asin, degrees
+from typing import Any, NamedTuple
 
+from separatrix.pocket_shape import half_play, tilt
 from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.study import PocketShape
 from separatrix.units import format_quantity
 
 Entry = Mapping[str, Any]
@@ -16,7 +19,11 @@ def check(document: Entry) -> list[str]:
     """Every resolved input, its origin, and the sources of the materials."""
     study = document["study"]
     given = [name for name in SECTIONS if study[name] is not None]
-    blocks = [section(f"[{name}]", _values(study[name])) for name in given]
+    blocks = []
+    for name in given:
+        blocks.append(section(f"[{name}]", _values(study[name])))
+        if name == "cage":
+            blocks.append(section("Room of the cage", facts(room(study["cage"]))))
     if study["ranking"] is not None:
         blocks.append(section("[ranking] ball/cage friction", _frictions(study["ranking"])))
     blocks.append(section("Sources of the materials", *_sources(study)))
@@ -44,10 +51,40 @@ def shown(entry: Entry) -> str:
     return format_quantity(value, unit, 7) if unit not in ("", "-") else f"{value:g}"
 
 
+def room(cage: Entry) -> list[tuple[str, str]]:
+    """Return the play that the cage has in its pockets and on its land, and which of them it meets first."""
+    shape, *sizes = (cage[name]["value"] for name in _Pocket._fields)
+    pocket = _Pocket(PocketShape(shape), *sizes)
+    play, (_, sine) = half_play(pocket), tilt(pocket)
+    rows = [("Half play in a pocket", quantity(play, "m") + ", along the circumference")]
+    if sine != 0.0:
+        rows.append(("Lean of its contact", quantity(asin(sine), "rad") + ", towards the bearing axis"))
+    clearance = cage["land_clearance"]["value"]
+    if clearance is None:
+        return [*rows, ("Land", "none: the balls guide the cage")]
+    gap = clearance / 2.0 - cage["land_out_of_round"]["value"]
+    first = "before its pockets" if gap < play else "after its pockets"
+    return [*rows, ("Land", f"reached at an offset of {quantity(gap, 'm')}, {first}")]
+
+
+class _Pocket(NamedTuple):
+    """What `half_play` needs of a resolved cage; the fields are its keys."""
+
+    pocket_shape: PocketShape
+    pocket_clearance: float
+    pocket_axial_clearance: float | None
+    pocket_axial_offset: float
+
+
 def _several(values: Sequence[float], unit: str) -> str:
+    if not values:
+        return ABSENT
+    if unit == "rad":
+        return _several([round(degrees(value), 4) for value in values], "deg")
+    tail = "" if unit in ("", "-") else f" {unit}"
     if len(values) > 4:
-        return f"{values[0]:g} ... {values[-1]:g} ({len(values)})"
-    return ", ".join(f"{value:g}" for value in values) + ("" if unit in ("", "-") else f" {unit}")
+        return f"{values[0]:g} ... {values[-1]:g}{tail} ({len(values)})"
+    return ", ".join(f"{value:g}" for value in values) + tail
 
 
 def _frictions(ranking: Entry) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
-from separatrix.errors import InputError
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Study
+from separatrix.study_file.cautions import cautions
 from separatrix.study_file.document import find, load
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import build_study
@@ -22,9 +24,17 @@ def read_study(study: str | Path) -> Study:
     ------
     InputError
         Everything that is wrong with the file, on one line: place, rule, value, cure.
+
+    Warns
+    -----
+    ValidityWarning
+        It asks for more than the model is good for; what, and what to do.
     """
     path = find(study)
-    return build_study(load(path), printable(path.stem, 100))
+    built = build_study(load(path), printable(path.stem, 100))
+    for sentence in cautions(built):
+        warnings.warn(sentence, ValidityWarning, stacklevel=2)
+    return built
 
 
 def require(study: Study, verb: str, *sections: str) -> None:
