@@ -299,6 +299,13 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
         "materials": "",
         "extends": "",
     }
+    beside = {
+        "elastic_modulus": "poisson_ratio = 0.38",
+        "ramp_start": 'ramp_time = "50 ms"',
+        "pocket_axial_clearance": 'pocket_shape = "elongated"',
+        "pocket_axial_offset": 'pocket_shape = "cylindrical"',
+        "land_lobes": 'land_out_of_round = "20 um"',
+    }
     lines = template().splitlines()
     for line in lines:
         key = line.removeprefix("# ").partition(" = ")[0]
@@ -311,9 +318,7 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
         if key == "material" and "or a name of the library" in line:
             continue
         text = [other for other in lines if not (excluded.get(key) and other.startswith(excluded[key] + " "))]
-        text[text.index(line)] = line.removeprefix("# ") + (
-            "\npoisson_ratio = 0.38" if key == "elastic_modulus" else ""
-        )
+        text[text.index(line)] = "\n".join([line.removeprefix("# "), *filter(None, [beside.get(key)])])
         assert read("\n".join(text)).title == "My bearing", line
 
 

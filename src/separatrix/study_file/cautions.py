@@ -26,8 +26,8 @@ def _ramp(study: Study) -> Iterator[str]:
     if study.cage is not None and ramp > JUDGED_FROM * duration:
         given, run = format_quantity(ramp, "s"), format_quantity(duration, "s")
         yield (
-            f"[operation] ramp_time {given}: runs of {run} are judged over their last fifth, before full speed "
-            "is reached. Give [stability] a longer duration."
+            f"[operation] ramp_time {given}: runs of {run} are judged over their last fifth, before full "
+            "speed is reached. Give [stability] a longer duration."
         )
 
 
