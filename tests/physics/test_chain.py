@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from separatrix.cage.planar import turned_forward
 from separatrix.chain import cage_state, lubrication, restitution_state
 from separatrix.lubrication import lubrication_curve
+from separatrix.orbit import orbital_waves
 from separatrix.study import Film, KinematicModel
 from separatrix.study_file import read_study
 
@@ -95,3 +97,68 @@ def test_a_thick_soft_film_lowers_the_restitution_factor():
     assert np.all(eta[gripping, -1] < eta[gripping, 0])
     assert np.all(np.diff(eta, axis=0) >= -1e-12)  # more friction, more speed back; rounding
     assert np.all((eta >= 0.0) & (eta < 1.0))
+
+
+def waves_at(cage, azimuth):
+    """Speed of a ball beyond the mean at these azimuths, from the harmonics of a cage."""
+    harmonics = enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), 1)
+    return sum(a * np.cos(h * azimuth) + b * np.sin(h * azimuth) for h, (a, b) in harmonics)
+
+
+def test_an_axial_load_runs_its_balls_alike():
+    """No radial load, moment or tilt: no harmonics, whatever the kinematics."""
+    for study in (STUDY, SHIPPED):
+        state = cage_state(study)
+        assert (state.cage.orbital_cosines, state.cage.orbital_sines) == ((), ())
+        assert state.orbital_share is None
+
+
+@pytest.mark.parametrize("study", [STUDY, SHIPPED], ids=["controlled", "free"])
+@pytest.mark.parametrize("change", [{"radial_load": 400.0}, {"moment": 5.0}])
+def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change):
+    """R times each ball's speed beyond the mean; four of the six harmonics leave less than 1e-4 of it."""
+    state = cage_state(replace(study, operation=replace(study.operation, **change)))
+    found = state.restitution.traction.bearing.equilibrium
+    beyond = state.cage.pitch_radius * (found.orbital_speed - state.cage.cage_speed)
+    left = waves_at(state.cage, found.azimuth) - beyond
+    assert len(state.cage.orbital_cosines) == 4
+    assert np.abs(beyond).max() > 0.01
+    assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
+    assert 1.0 - state.orbital_share == pytest.approx(
+        np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2, abs=1e-9
+    )
+
+
+def test_the_ball_that_a_radial_load_presses_runs_slower():
+    """At azimuth 0 the groove is deeper, the contact angle smaller, gamma = D cos/d_m larger: A_1 < 0."""
+    assert cage_state(operation(radial_load=400.0)).cage.orbital_cosines[0] < 0.0
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 9, 20])
+def test_as_many_harmonics_as_the_balls_can_tell(count):
+    """Below half the balls, at most four; a wave among them is found to rounding."""
+    azimuth = 2.0 * np.pi * np.arange(count) / count
+    waves = orbital_waves(500.0 + 3.0 * np.cos(azimuth) - 2.0 * np.sin(azimuth), azimuth, 0.1)
+    assert len(waves.cosines) == len(waves.sines) == min(4, (count - 1) // 2)
+    assert (waves.cosines[0], waves.sines[0]) == pytest.approx((0.3, -0.2), rel=1e-11)  # 3 out of 500
+    assert waves.share == pytest.approx(1.0, rel=1e-11)  # as above
+
+
+def test_the_share_tells_what_the_harmonics_leave_out():
+    """Two waves of equal variance, the fifth of which is left out."""
+    azimuth = 2.0 * np.pi * np.arange(13) / 13
+    waves = orbital_waves(500.0 + np.cos(2.0 * azimuth) + np.sin(5.0 * azimuth), azimuth, 0.1)
+    assert waves.share == pytest.approx(0.5, rel=1e-11)  # 1 out of 500
+
+
+def test_a_bearing_that_turns_backward_is_the_mirror_image_of_one_that_turns_forward():
+    """Orbital waves and gravity included; tolerance: the residual of the equilibrium."""
+    loaded = replace(SHIPPED.operation, radial_load=400.0)
+    there = cage_state(replace(SHIPPED, operation=loaded)).cage
+    back = cage_state(
+        replace(SHIPPED, operation=replace(loaded, inner_speed=-SHIPPED.operation.inner_speed))
+    ).cage
+    mirror = turned_forward(back)
+    assert mirror.cage_speed == pytest.approx(there.cage_speed, rel=1e-9)
+    assert mirror.orbital_cosines == pytest.approx(there.orbital_cosines, abs=1e-7)
+    assert mirror.orbital_sines == pytest.approx(there.orbital_sines, abs=1e-7)

@@ -14,9 +14,9 @@ from separatrix.chain import (
     restitution_state,
     traction_state,
 )
-from separatrix.errors import InputError
-from separatrix.restitution import ball_pocket_stiffness
-from separatrix.study import Film, Material
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape
 from separatrix.study_file import read_study
 
 STUDY = read_study("cryogenic-turbopump")
@@ -117,3 +117,54 @@ def test_a_stability_curve_needs_no_measured_friction():
     assert cage_state(unknown, friction=0.0).cage.ball_cage_friction == 0.0
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
         cage_state(unknown)
+
+
+def test_the_cage_in_the_plane_takes_the_design_as_it_is():
+    """Pockets, scatter, land and start-up arrive unchanged."""
+    changes = {
+        "pocket_shape": PocketShape.ELONGATED,
+        "pocket_axial_clearance": 4e-4,
+        "pocket_axial_offset": 5e-5,
+        "pocket_spacing_scatter": 0.05,
+        "pocket_position_scatter": 1e-5,
+        "ball_diameter_scatter": 1e-6,
+        "guidance": Guidance.INNER,
+        "land_clearance": 8e-4,
+        "land_friction": 0.15,
+        "land_count": 2,
+        "land_out_of_round": 2e-5,
+        "land_lobes": 3,
+        "unbalance": 1e-6,
+        "gravity": 9.81,
+    }
+    started = replace(STUDY.operation, ramp_time=0.05, ramp_start=0.2)
+    found = cage_state(replace(cage(**changes), operation=started)).cage
+    assert {name: getattr(found, name) for name in changes} == changes
+    assert (found.ramp_time, found.ramp_start, found.hertz_coefficient) == (0.05, 0.2, None)
+    angles = tuple(0.1 + 0.483 * j for j in range(13))
+    assert cage_state(cage(pocket_angles=angles)).cage.pocket_angles == angles
+
+
+def test_hertz_contact_has_the_coefficient_of_the_material():
+    """Through the stiffness of equal energy and depth at the middle kick, and back; rounding."""
+    soft = cage(ball_cage_stiffness=None, material=POLYMER, pocket_contact=PocketContact.HERTZ)
+    expected = hertz_coefficient(STUDY.bearing.ball_diameter, STUDY.bearing.ball_material, POLYMER)
+    assert cage_state(soft).cage.hertz_coefficient == pytest.approx(expected, rel=1e-12)
+
+
+def test_hertz_contact_behind_a_given_stiffness_stores_the_kick_as_deep():
+    """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of the middle kick."""
+    found = cage_state(cage(pocket_contact=PocketContact.HERTZ)).cage
+    K, energy = found.hertz_coefficient, 0.5 * found.mass * 0.5**2
+    depth = (2.5 * energy / K) ** 0.4
+    assert 0.8 * K * depth**0.5 == pytest.approx(3e6, rel=1e-12)  # rounding
+    assert 0.5 * 3e6 * depth**2 == pytest.approx(energy, rel=1e-12)  # rounding
+
+
+def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
+    """1500 N across the shipped bearing; 100 N does not."""
+    with pytest.warns(ValidityWarning, match="the balls would lead and lag by up to 681 um"):
+        pushed = cage_state(study(operation=replace(STUDY.operation, radial_load=1500.0))).cage
+    assert pushed.lead_amplitude > pushed.half_play
+    free = cage_state(study(operation=replace(STUDY.operation, radial_load=100.0))).cage
+    assert 0.0 < free.lead_amplitude < free.half_play

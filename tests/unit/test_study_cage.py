@@ -1,0 +1,333 @@
+"""Pockets, land, scatter and start-up in a study: every key with its unit, every rule with its one line."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.pocket_shape import half_play, tilt
+from separatrix.report.study import room, shown
+from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
+from separatrix.study_file import read_study, resolved
+
+BASE = """\
+extends = "cryogenic-turbopump"
+[operation]
+{operation}
+[cage]
+{cage}
+"""
+EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Read the shipped study with some keys of [cage] and [operation] more."""
+
+    def read_text(cage="", operation=""):
+        path = tmp_path / "case.toml"
+        path.write_text(BASE.format(cage=cage, operation=operation), encoding="utf-8")
+        return read_study(path)
+
+    return read_text
+
+
+def design(**changes):
+    """A landless cage of 20 g with 0.6 mm of play, with some fields changed."""
+    return CageDesign(**{"mass": 0.02, "pocket_clearance": 6e-4} | changes)
+
+
+GUIDED = {"guidance": Guidance.OUTER, "land_clearance": 8e-4}
+
+KEYS = [
+    ('pocket_shape = "cylindrical"', "pocket_shape", PocketShape.CYLINDRICAL),
+    (
+        'pocket_shape = "elongated"\npocket_axial_clearance = "400 um"',
+        "pocket_axial_clearance",
+        4e-4,
+    ),
+    ('pocket_shape = "cylindrical"\npocket_axial_offset = "-0.1 mm"', "pocket_axial_offset", -1e-4),
+    ('pocket_contact = "hertz"', "pocket_contact", PocketContact.HERTZ),
+    ("pocket_spacing_scatter = 0.1", "pocket_spacing_scatter", 0.1),
+    ('pocket_position_scatter = "20 um"', "pocket_position_scatter", 2e-5),
+    ('ball_diameter_scatter = "1 um"', "ball_diameter_scatter", 1e-6),
+    ("land_count = 2", "land_count", 2),
+    ('land_out_of_round = "50 um"', "land_out_of_round", 5e-5),
+    ('land_out_of_round = "50 um"\nland_lobes = 3', "land_lobes", 3),
+    ('pocket_clearance = "0 mm"', "pocket_clearance", 0.0),
+    ('gravity = "1 g0"', "gravity", 9.80665),
+]
+
+
+@pytest.mark.parametrize(("text", "key", "value"), KEYS)
+def test_a_key_of_the_cage_is_read_in_its_unit(text, key, value, read):
+    """To the last bit, and with its place in the file."""
+    study = read(cage=text)
+    assert getattr(study.cage, key) == value
+    assert resolved(study)["cage"][key]["origin"].startswith("case.toml, line ")
+
+
+def test_the_start_up_is_read(read):
+    """Time and first share of the speed; without them the speeds are steady."""
+    study = read(operation='ramp_time = "50 ms"\nramp_start = 0.2')
+    assert (study.operation.ramp_time, study.operation.ramp_start) == (0.05, 0.2)
+    assert read().operation.ramp_time == 0.0
+
+
+def test_pocket_angles_are_one_for_each_ball(read):
+    """A list of angles; their unit is shown with them."""
+    study = read(cage=f"pocket_angles = [{EVEN}]")
+    assert study.cage.pocket_angles[1] == pytest.approx(2 * math.pi / 13, rel=1e-7)  # six decimals of 27 deg
+    assert shown(resolved(study)["cage"]["pocket_angles"]) == "0 ... 332.308 deg (13)"
+
+
+def test_everything_new_is_off_by_default(read):
+    """The shipped cage: square pockets, evenly spaced, no scatter, one round land, steady speed."""
+    cage = read().cage
+    assert (cage.pocket_shape, cage.pocket_contact) == (PocketShape.SQUARE, PocketContact.LINEAR)
+    assert (cage.pocket_angles, cage.pocket_axial_clearance) == ((), None)
+    assert not any((cage.pocket_axial_offset, cage.pocket_spacing_scatter, cage.pocket_position_scatter))
+    assert (cage.ball_diameter_scatter, cage.land_out_of_round, cage.land_count) == (0.0, 0.0, 1)
+    assert resolved(read())["cage"]["pocket_angles"] == {
+        "value": [],
+        "unit": "rad",
+        "origin": "default: evenly spaced",
+    }
+
+
+RECORDS = [
+    ({"pocket_clearance": 1e-12}, "pocket_clearance must be >= 1 nm; got"),
+    ({"pocket_clearance": math.nan}, "pocket_clearance must be a finite number"),
+    ({"pocket_shape": "square"}, "pocket_shape must be one of PocketShape.SQUARE, "),
+    ({"pocket_contact": None}, "pocket_contact must be one of PocketContact.LINEAR, "),
+    ({"guidance": "ball"}, "guidance must be one of Guidance.OUTER, "),
+    ({"pocket_axial_clearance": 4e-4}, "pocket_axial_clearance has no meaning for a square pocket"),
+    ({"pocket_shape": PocketShape.ELONGATED}, "pocket_axial_clearance is missing: an elongated pocket"),
+    (
+        {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 7e-4},
+        "at most pocket_clearance, 600 um: the slot lies along the circumference; got 700 um. A slot along",
+    ),
+    ({"pocket_axial_offset": 1e-4}, "pocket_axial_offset changes nothing in a square pocket; got 100 um"),
+    (
+        {"pocket_shape": PocketShape.CYLINDRICAL, "pocket_axial_offset": 3e-4},
+        "pocket_axial_offset must be smaller than half the play along the axis, 300 um; got 300 um",
+    ),
+    (
+        {
+            "pocket_shape": PocketShape.ELONGATED,
+            "pocket_axial_clearance": 4e-4,
+            "pocket_axial_offset": -2.5e-4,
+        },
+        "pocket_axial_offset must be smaller than half the play along the axis, 200 um; got -250 um",
+    ),
+    (
+        {"pocket_clearance": 0.0, "pocket_contact": PocketContact.HERTZ},
+        "pocket_clearance must be > 0 with Hertz contact",
+    ),
+    ({"pocket_position_scatter": 1e-4}, "pocket_position_scatter leaves no play: 3 standard deviations"),
+    (
+        {"ball_diameter_scatter": 2e-4},
+        "half the diameter together, 300 um, must be smaller than half the play",
+    ),
+    (
+        {"pocket_clearance": 0.0, "ball_diameter_scatter": 1e-6},
+        "ball_diameter_scatter leaves no play",
+    ),
+    (
+        {
+            "pocket_shape": PocketShape.CYLINDRICAL,
+            "pocket_axial_offset": 2.8e-4,
+            "pocket_position_scatter": 5e-5,
+        },
+        "150 um, must be smaller than half the play, 107.7 um",
+    ),
+    ({"ball_diameter_scatter": -1e-6}, "ball_diameter_scatter must be >= 0"),
+    ({"pocket_spacing_scatter": 0.5}, "pocket_spacing_scatter must be >= 0 and < 0.5"),
+    (
+        {"pocket_spacing_scatter": 0.1, "pocket_angles": (0.0, 2.0, 4.0)},
+        "pocket_spacing_scatter and pocket_angles exclude each other",
+    ),
+    ({"pocket_angles": (0.0, 2.0, 2.0)}, "pocket_angles must rise, none twice (items 2 and 3)"),
+    ({"pocket_angles": (0.0, 4.0, 2.0)}, "got 114.6 deg after 229.2 deg"),
+    ({"pocket_angles": (0.0, math.nan, 2.0)}, "pocket_angles must each be a finite angle"),
+    ({"pocket_angles": (0.0, 2.0, 7.0)}, "pocket_angles must each be a finite angle within one turn of 0"),
+    ({"pocket_angles": (-1.0, 2.0, 6.0)}, "pocket_angles must lie within one turn"),
+    ({"land_count": 3} | GUIDED, "land_count must be a whole number from 1 to 2; got 3"),
+    ({"land_count": 2}, "land_count has no meaning for a cage guided by its balls"),
+    ({"land_out_of_round": 1e-5}, "land_out_of_round has no meaning for a cage guided by its balls"),
+    ({"land_lobes": 1} | GUIDED, "land_lobes must be a whole number from 2 to 100; got 1. One lobe is no"),
+    ({"land_out_of_round": 1e-4} | GUIDED, "the square of land_lobes, 100 um: beyond it a lobe touches"),
+    (
+        {"land_out_of_round": 5e-5, "land_lobes": 3} | GUIDED,
+        "half the land's clearance over the square of land_lobes, 44.44 um: beyond it",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), RECORDS)
+def test_a_cage_that_cannot_be_is_refused_in_one_line(changes, words):
+    """Field, rule, value; what to do where it is not plain."""
+    with pytest.raises(InputError) as caught:
+        design(**changes)
+    assert words in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+RAMPS = [
+    ({"ramp_time": -1.0}, "Operation.ramp_time must be >= 0"),
+    ({"ramp_start": 0.0}, "Operation.ramp_start must be > 0 and <= 1; got 0. It is the share"),
+    ({"ramp_start": 1.5}, "Operation.ramp_start must be > 0 and <= 1"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), RAMPS)
+def test_a_ramp_that_cannot_be_is_refused(changes, words):
+    """From a share above 0 to full speed."""
+    with pytest.raises(InputError) as caught:
+        Operation(inner_speed=1000.0, axial_load=1000.0, **changes)
+    assert words in str(caught.value)
+
+
+FILES = [
+    ({"operation": "ramp_start = 0.2"}, "[operation] ramp_start needs ramp_time: without it"),
+    ({"cage": "land_lobes = 3"}, "[cage] land_lobes needs land_out_of_round: without it the land is round"),
+    ({"cage": "pocket_angles = []"}, "[cage] pocket_angles must not be empty"),
+    ({"cage": 'pocket_angles = ["0 deg", 3]'}, "pocket_angles, item 2, needs a unit of angle"),
+    ({"cage": 'pocket_angles = "30 deg"'}, "[cage] pocket_angles must be a list"),
+    (
+        {"cage": 'pocket_angles = ["0 deg", "30 deg"]'},
+        "line 5: [cage] pocket_angles must hold one angle for each of the 13 balls; got 2",
+    ),
+    (
+        {"cage": f"pocket_angles = [{EVEN.replace('27.692308', '9.0')}]"},
+        "leave no bar between pockets 1 and 2: must stand more than 20.76 deg apart; got 9 deg",
+    ),
+    (
+        {"cage": f"pocket_angles = [{EVEN.replace('332.307692', '350')}]"},
+        "leave no bar between pockets 13 and 1",
+    ),
+    (
+        {"cage": f"pocket_spacing_scatter = 0.01\npocket_angles = [{EVEN}]"},
+        "[cage] pocket_angles and pocket_spacing_scatter exclude each other",
+    ),
+    (
+        {"cage": "pocket_spacing_scatter = 0.126"},
+        "[cage] pocket_spacing_scatter must be < 0.1251, where two neighbours",
+    ),
+    ({"cage": 'pocket_shape = "round"'}, 'must be "square", "cylindrical" or "elongated"; got "round"'),
+    ({"cage": 'pocket_contact = "soft"'}, 'must be "linear" or "hertz"; got "soft"'),
+    ({"cage": "land_count = 2.0"}, "[cage] land_count must be a whole number; got 2.0. Write 2."),
+    ({"cage": "pocket_axial_offset = 0.1"}, "[cage] pocket_axial_offset needs a unit of length"),
+    (
+        {"cage": 'unbalance = "813 g mm"'},
+        "[cage] unbalance must be smaller than mass times pitch radius, 812.5 g mm",
+    ),
+    (
+        {"cage": 'pocket_clearance = "4.5 mm"'},
+        "[cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm",
+    ),
+    ({"cage": 'guidance = "outer"\nland_clearance = "0 mm"'}, "[cage] land_clearance must be > 0"),
+]
+
+
+@pytest.mark.parametrize(("keys", "words"), FILES)
+def test_a_file_whose_cage_cannot_fit_is_refused_in_one_line(keys, words, read):
+    """The place in the file is named."""
+    with pytest.raises(InputError) as caught:
+        read(**keys)
+    assert words in str(caught.value)
+    assert str(caught.value).startswith("case.toml")
+    assert str(caught.value).isprintable()
+
+
+def test_uneven_pockets_fit_up_to_their_bars(read):
+    """Just inside the limit of the refusals: neighbours 20.76 deg apart, a scatter of 0.1251 pitches."""
+    assert read(cage="pocket_spacing_scatter = 0.125").cage.pocket_spacing_scatter == 0.125
+    near = EVEN.replace("27.692308", "20.77")
+    assert read(cage=f"pocket_angles = [{near}]").cage.pocket_angles[1] < 0.363
+
+
+def test_a_land_tighter_than_the_pockets_is_a_land_guided_cage(read):
+    """No fault: its pockets touch by turning, and as balls lead and lag; the report says what is met."""
+    tight = read(cage='guidance = "outer"\nland_clearance = "0.3 mm"\nland_out_of_round = "10 um"')
+    rows = dict(room(resolved(tight)["cage"]))
+    assert rows["Land"] == "reached at an offset of 140 um, before its pockets"
+    wide = read(cage='guidance = "outer"\nland_clearance = "1 mm"')
+    assert dict(room(resolved(wide)["cage"]))["Land"] == "reached at an offset of 500 um, after its pockets"
+    landless = dict(room(resolved(read(cage='guidance = "ball"'))["cage"]))
+    assert landless["Land"] == "none: the balls guide the cage"
+
+
+def test_the_report_shows_what_shape_and_offset_leave(read):
+    """Half play and lean of an elongated pocket: 0.3 - 0.2 + sqrt(0.2^2 - 0.1^2) mm, asin(0.1/0.2)."""
+    cage = 'pocket_shape = "elongated"\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "0.1 mm"'
+    rows = dict(room(resolved(read(cage=cage))["cage"]))
+    assert rows["Half play in a pocket"] == "273.2 um, along the circumference"
+    assert rows["Lean of its contact"] == "30 deg, towards the bearing axis"
+
+
+SHAPES = [
+    (PocketShape.SQUARE, {}, 3e-4, 0.0),
+    (PocketShape.CYLINDRICAL, {}, 3e-4, 0.0),
+    (PocketShape.CYLINDRICAL, {"pocket_axial_offset": 1.8e-4}, 2.4e-4, 0.6),  # 3, 4, 5
+    (PocketShape.CYLINDRICAL, {"pocket_axial_offset": -1.8e-4}, 2.4e-4, -0.6),
+    (PocketShape.ELONGATED, {"pocket_axial_clearance": 4e-4}, 3e-4, 0.0),
+    (
+        PocketShape.ELONGATED,
+        {"pocket_axial_clearance": 4e-4, "pocket_axial_offset": 1.2e-4},
+        1e-4 + 1.6e-4,
+        0.6,
+    ),
+]
+
+
+@pytest.mark.parametrize(("shape", "sizes", "play", "sine"), SHAPES)
+def test_a_round_pocket_has_less_play_off_its_middle(shape, sizes, play, sine):
+    """sqrt(c^2 - z^2) in a bore, c - c_a + sqrt(c_a^2 - z^2) in a slot; sin psi = z over the round's play."""
+    cage = design(pocket_shape=shape, **sizes)
+    assert half_play(cage) == pytest.approx(play, rel=1e-12)  # rounding
+    assert tilt(cage) == pytest.approx((math.sqrt(1 - sine**2), sine), rel=1e-12)  # rounding
+
+
+def test_a_slot_of_equal_plays_is_a_bore():
+    """The elongated pocket with c_a = c."""
+    bore = design(pocket_shape=PocketShape.CYLINDRICAL, pocket_axial_offset=1e-4)
+    slot = replace(bore, pocket_shape=PocketShape.ELONGATED, pocket_axial_clearance=6e-4)
+    assert half_play(slot) == pytest.approx(half_play(bore), rel=1e-12)  # rounding
+    assert tilt(slot) == tilt(bore)
+
+
+def test_a_variant_drops_what_its_pocket_does_not_have(tmp_path):
+    """Shape and spacing replace those of the base; a cage guided by its balls has no lobes."""
+    base = tmp_path / "base.toml"
+    sizes = 'pocket_shape = "elongated"\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "0.1 mm"\n'
+    land = 'land_out_of_round = "20 um"\nland_lobes = 3\nland_count = 2\npocket_spacing_scatter = 0.1\n'
+    base.write_text(f'extends = "cryogenic-turbopump"\n[cage]\n{sizes}{land}')
+    path = tmp_path / "case.toml"
+
+    def variant(text):
+        path.write_text(f'extends = "base.toml"\n[cage]\n{text}\n')
+        return read_study(path).cage
+
+    assert variant('pocket_shape = "square"').pocket_axial_offset == 0.0
+    bore = variant('pocket_shape = "cylindrical"')
+    assert (bore.pocket_axial_clearance, bore.pocket_axial_offset) == (None, 1e-4)
+    assert variant(f"pocket_angles = [{EVEN}]").pocket_spacing_scatter == 0.0
+    landless = variant('guidance = "ball"')
+    assert (landless.land_count, landless.land_out_of_round) == (1, 0.0)
+
+
+def test_a_ramp_longer_than_the_runs_draws_a_note(read):
+    """They are judged before full speed is reached; the shipped runs take 0.3 s."""
+    with pytest.warns(ValidityWarning, match=r"ramp_time 250 ms: runs of 300 ms are judged over their last"):
+        study = read(operation='ramp_time = "250 ms"')
+    assert study.operation.ramp_time == 0.25
+    assert read(operation='ramp_time = "240 ms"').operation.ramp_time == 0.24
+
+
+def test_a_contact_that_leans_steeply_draws_a_note(read):
+    """Beyond 30 deg the cage would be pushed along its axis."""
+    with pytest.warns(ValidityWarning, match="lean by more than 30 deg"):
+        read(cage='pocket_shape = "cylindrical"\npocket_axial_offset = "0.16 mm"')
+    assert read(cage='pocket_shape = "cylindrical"\npocket_axial_offset = "0.14 mm"').cage is not None
