@@ -5,13 +5,18 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import beta
 
 from separatrix.hertz import contact_modulus
 from separatrix.restitution import (
     ball_pocket_stiffness,
     damping_for,
     damping_ratio,
+    equal_energy_stiffness,
     free_ring_restitution_factor,
+    hertz_coefficient,
+    hertz_coefficient_for,
+    hertzian_restitution_factor,
     race_damping,
     race_damping_free_spin,
     restitution_factor,
@@ -141,3 +146,82 @@ def test_blow_lasts_half_a_period():
     assert pi / (sqrt(STIFFNESS / MASS) * sqrt(1 - zeta**2)) == pytest.approx(
         0.406e-3, rel=2e-3
     )  # three digits
+
+
+def hertz_blow(mass, coefficient, damping, speed):
+    """The same with Hertz's contact in place of the spring, by another integrator."""
+
+    def rates(_, state):
+        force = coefficient * max(state[1], 0.0) ** 1.5
+        return [-force / mass, state[0] - force / damping]
+
+    def parting(_, state):
+        return state[1]
+
+    parting.terminal, parting.direction = True, -1.0
+    depth = (1.25 * mass * speed**2 / coefficient) ** 0.4
+    run = solve_ivp(
+        rates, (0.0, 1.0), [speed, 1e-12 * depth], events=parting, rtol=1e-12, atol=1e-15, method="DOP853"
+    )
+    return -run.y_events[0][0][0] / speed
+
+
+@pytest.mark.parametrize("damping", [20000.0, 2000.0, 600.0, 300.0, 150.0])
+@pytest.mark.parametrize("speed", [0.1, 2.0])
+def test_the_series_of_a_hertzian_blow_equals_the_integrated_blow(damping, speed):
+    """In newtons and metres with a stepped integrator; 1e-9: its own 1e-12, after up to a thousand steps."""
+    K = hertz_coefficient(11.1125e-3, STEEL, polymer(4e9))
+    zeta = damping_ratio(equal_energy_stiffness(K, MASS, speed), MASS, damping)
+    eta = hertzian_restitution_factor(zeta)
+    assert hertz_blow(MASS, K, damping, speed) == pytest.approx(eta, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("zeta", "eta"),
+    [
+        (0.05, 0.8302215),
+        (0.1, 0.6924030),
+        (0.2, 0.4841633),
+        (0.5, 0.1544072),
+        (1.0, 0.0134869),
+        (2.0, 4.2456e-4),
+    ],
+)
+def test_hertzian_restitution_of_the_table(zeta, eta):
+    """The table of docs/theory/restitution.md, to its digits."""
+    assert hertzian_restitution_factor(zeta) == pytest.approx(eta, rel=2e-5 if eta < 1e-3 else 0, abs=5e-8)
+
+
+def test_a_weakly_damped_hertzian_blow_loses_what_perturbation_says():
+    """1 - eta = 1.25^0.6 B(1/2, 8/5) beta for small damping: 3.783 zeta, the linear spring pi zeta."""
+    zeta = 1e-6
+    slope = 2.0 * 1.25**0.6 * beta(0.5, 1.6) / sqrt(0.8 * 1.25**0.2)
+    assert slope == pytest.approx(3.783, abs=5e-4)
+    # the next term is of order zeta
+    assert (1.0 - hertzian_restitution_factor(zeta)) / zeta == pytest.approx(slope, rel=1e-5)
+    assert hertzian_restitution_factor(0.0) == 1.0
+
+
+def test_a_strongly_damped_hertzian_blow_forgets_its_start():
+    """Eta goes as the group to the power -5, with a constant of the blow's last part; never quite nothing."""
+    group = 2.0 / sqrt(0.8 * 1.25**0.2)
+    ends = [hertzian_restitution_factor(zeta) * (group * zeta) ** 5 for zeta in (2.3, 2.7, 3.0, 100.0)]
+    assert ends == pytest.approx([0.67929306] * 4, abs=5e-9)  # digits of the docs
+    assert restitution_factor(2.3) == 0.0
+
+
+def test_a_harder_blow_returns_less_from_a_hertzian_pocket():
+    """A harder blow meets a stiffer pocket; zeta as the fifth root of the speed, here twenty times."""
+    K = hertz_coefficient(11.1125e-3, STEEL, polymer(4e9))
+    slow, fast = (damping_ratio(equal_energy_stiffness(K, MASS, v), MASS, 2000.0) for v in (0.1, 2.0))
+    assert fast / slow == pytest.approx(20.0**0.2, rel=1e-12)  # rounding
+    assert hertzian_restitution_factor(fast) < hertzian_restitution_factor(slow)
+
+
+def test_a_given_stiffness_and_its_hertz_coefficient_store_alike():
+    """There and back, and the same as the stiffness from the materials; rounding only."""
+    K = hertz_coefficient_for(3e6, MASS, 0.5)
+    assert equal_energy_stiffness(K, MASS, 0.5) == pytest.approx(3e6, rel=1e-12)
+    k = ball_pocket_stiffness(11.1125e-3, STEEL, polymer(4e9), cage_mass=MASS, impact_speed=0.5)
+    there = hertz_coefficient(11.1125e-3, STEEL, polymer(4e9))
+    assert hertz_coefficient_for(k, MASS, 0.5) == pytest.approx(there, rel=1e-12)

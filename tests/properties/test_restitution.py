@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from separatrix.restitution import (
     damping_for,
     damping_ratio,
+    hertzian_restitution_factor,
     race_damping,
     race_damping_free_spin,
     restitution,
@@ -42,3 +43,12 @@ def test_more_damping_returns_more(inner, outer, factor):
     assert more.restitution_factor >= less.restitution_factor
     assert more.restitution_factor_free_spin >= less.restitution_factor_free_spin
     assert 0.0 <= less.restitution_factor_free_spin <= less.restitution_factor + 1e-15 < 1.0
+
+
+@settings(derandomize=True, max_examples=50, deadline=None)
+@given(st.floats(1e-6, 1e3), st.floats(1.01, 100.0))
+def test_a_hertzian_blow_returns_between_all_and_nothing(zeta, factor):
+    """Strictly between 0 and 1, less for more damping, and beside the linear one as the docs say."""
+    less, more = hertzian_restitution_factor(factor * zeta), hertzian_restitution_factor(zeta)
+    assert 0.0 < less < more < 1.0
+    assert -0.0428 < more - restitution_factor(zeta) < 0.0227
