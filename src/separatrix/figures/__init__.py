@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from separatrix.figures import bearing, ranking, restitution, simulation, stability, traction
 from separatrix.figures.style import journal, save, settled
 
-__all__ = ["figures", "save"]
+__all__ = ["compared", "figures", "save"]
 
 Draw = Callable[[xr.Dataset], Figure]
 
@@ -27,6 +27,22 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
 
 NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness"}
 """Verb -> dimension without which nothing is drawn: an interrupted ranking, bare races without a film."""
+
+
+def compared(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Figure:
+    """Return the figure of two simulations together.
+
+    Parameters
+    ----------
+    first, second : Dataset
+        From two answers of `simulate`.
+    names : tuple of str
+        What the legend calls them.
+    """
+    from separatrix.figures.comparison import comparison
+
+    with journal():
+        return settled(comparison(first, second, names))
 
 
 def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:

@@ -1,76 +1,184 @@
-"""The stability curve with its band (the paper's Fig. 2)."""
+"""The stability curve with its band (the paper's Fig. 2), its limits, and the candidates beside it."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, canvas
+from separatrix.figures.style import (
+    BLACK,
+    BLUE,
+    CYCLE,
+    GREEN,
+    GREY,
+    MARKERS,
+    PAGE,
+    canvas,
+    legend_below,
+)
+from separatrix.units import Array
 
 HIGHEST = 0.5
 """Friction at the top of the picture: above it no cage material is of interest."""
 
 ETA_LABEL = r"restitution factor $\eta$ [-]"
 FRICTION_LABEL = r"ball/cage friction $f_{BC}$ [-]"
+RUG = 0.012
+"""Height of the ticks at the foot that mark the computed restitution factors, as a share of the picture."""
 
 
 def stability(data: xr.Dataset) -> Figure:
-    """Critical friction against restitution factor: curve, band, linear limit, and the bearing's own eta."""
-    figure, axes = canvas(PAGE, 3.9)
-    frame(axes, data, highest(data))
+    """Critical friction against restitution factor, and the frictions of the candidates, if there are any."""
+    candidates = "material_friction" in data and bool(np.isfinite(data["material_friction"].values).any())
+    if candidates:
+        shares = [3.0, 1.0 + 0.12 * data.sizes["material"]]
+        figure, (axes, beside) = canvas(PAGE, 4.6, ncols=2, sharey=True, width_ratios=shares)
+    else:
+        figure, axes = canvas(PAGE, 4.1)
+    frame(axes, data, highest(data, candidates=candidates))
     chain_lines(axes, data)
-    axes.text(0.42, 0.05, "stable", transform=axes.transAxes, color=GREY, style="italic")
-    axes.text(0.97, 0.5, "unstable", transform=axes.transAxes, color=GREY, style="italic", ha="right")
-    axes.set_title("Stability of the cage: critical friction and its band")
-    figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
+    _ends(axes, data)
+    axes.set_title(f"{'a  ' if candidates else ''}Critical friction and its band")
+    if candidates:
+        _candidates(beside, data)
+    legend_below(figure)
     return figure
 
 
-def highest(data: xr.Dataset) -> float:
-    """Friction at the top of the picture: the band, up to a limit."""
-    found = data["critical_friction_high"].values
-    found = found[np.isfinite(found)]
-    return float(min(HIGHEST, 1.5 * found.max())) if found.size else HIGHEST
+def highest(data: xr.Dataset, *, candidates: bool = False) -> float:
+    """Friction at the top of the picture: the band, and the candidates if they are drawn, up to a limit."""
+    names = ("critical_friction_high", "scatter_high", *(["material_friction"] if candidates else []))
+    found = np.concatenate([[0.0], *(data[name].values.ravel() for name in names if name in data)])
+    top = 1.25 * float(np.nanmax(found))
+    return min(HIGHEST, top) if top > 0.0 else HIGHEST
 
 
 def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
-    """Draw the curve with its band and the linear limit; the band reaches the edge where it has no end."""
-    eta = data["restitution_factor"].values
-    middle, low, high = (data[f"critical_friction{end}"].values for end in ("", "_low", "_high"))
-    kicks = data["kicks"].values
+    """Draw the curve with its band and its limits; the band reaches the edge where it has no end."""
     axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
-    low, high = (np.where(np.isnan(end), edge, end) for end, edge in ((low, 0.0), (high, 2 * top)))
-    known = np.isfinite(middle)
-    ends = f"{kicks.min():g} to {kicks.max():g} m/s"
-    several = f"10 % of the runs grow at some kick, to 90 % at every kick ({ends})"
-    span = several if kicks.size > 1 else f"10 to 90 % of the runs grow, kick {kicks[0]:g} m/s"
+    eta = data["restitution_factor"].values
     label = f"half of {int(data['runs'])} runs grow, kick {float(data['middle_kick']):g} m/s"
-    axes.plot(eta, middle, color=BLUE, label=label)
+    axes.plot(eta, data["critical_friction"].values, color=BLUE, marker=".", ms=4, label=label)
     scatter = data["scatter_low"].values, data["scatter_high"].values
-    axes.fill_between(eta, *scatter, color=BLUE, alpha=0.3, lw=0, label="its 95 % interval")
-    axes.fill_between(
-        eta,
-        low,
-        high,
-        where=known,
-        color=BLUE,
-        alpha=0.15,
-        lw=0,
-        label=span,
-    )
-    limit = data["linear_limit_critical_friction"].values
-    axes.plot(
-        eta, limit, color=GREY, lw=0.9, ls=(0, (4, 2)), label="linear limit: no clearance, balls at rest"
-    )
+    axes.fill_between(eta, *scatter, color=BLUE, alpha=0.35, lw=0, label="its 95 % interval")
+    _band(axes, eta, data, top)
+    _limits(axes, data)
+
+
+def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
+    """Return both ends of the band at each restitution factor, as far as anything is known there.
+
+    An end without a number is at 0 (runs grow without friction) or beyond `top` (they die up to the most).
+    """
+    low, high = (data[f"critical_friction_{end}"].values.astype(float) for end in ("low", "high"))
+    unknown = np.isnan(low) & np.isnan(high) & np.isnan(data["critical_friction"].values.astype(float))
+    ends = np.where(np.isnan(low), 0.0, low), np.where(np.isnan(high), 2 * top, high)
+    return np.where(unknown, np.nan, ends[0]), np.where(unknown, np.nan, ends[1])
+
+
+def _band(axes: Axes, eta: Array, data: xr.Dataset, top: float) -> None:
+    """Shade what lies between the band's ends, where the kick decides, and name it."""
+    low, high = band_ends(data, top)
+    kicks = data["kicks"].values
+    span = f"{kicks.min():g} to {kicks.max():g} m/s" if kicks.size > 1 else f"{kicks[0]:g} m/s"
+    label = f"sub-critical band: the kick decides ({span})" if kicks.size > 1 else f"10 to 90 % grow, {span}"
+    axes.fill_between(eta, low, high, color=BLUE, alpha=0.15, lw=0, label=label)
+    every, some = ("every kick", "some kick") if kicks.size > 1 else ("that kick", "that kick")
+    for end, style, text in (
+        (high, "-.", rf"$f_{{high}}$: above it at least 90 % grow at {every}"),
+        (low, ":", rf"$f_{{low}}$: from it on 10 % grow at {some}"),
+    ):
+        axes.plot(eta, np.where(end > top, np.nan, end), color=BLUE, lw=0.8, ls=style, label=text)
+
+
+LIMITS = (
+    ("linear_limit_critical_friction", GREY, (0, (5, 2)), "linear limit: no clearance, balls at rest"),
+    ("hard_limit_critical_friction", GREEN, (0, (6, 1.5, 1, 1.5)), "hard-impact limit"),
+)
+
+
+def _limits(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the limits that the dataset has."""
+    for name, colour, style, label in LIMITS:
+        if name in data and np.isfinite(data[name].values.astype(float)).any():
+            axes.plot(
+                data["restitution_factor"].values,
+                data[name].values,
+                color=colour,
+                lw=1.0,
+                ls=style,
+                label=label,
+            )
+
+
+CHAIN_LINES = {
+    "chain_restitution_factor": ("-", r"this bearing, $\eta$ = {:.2f} (Eq. 18)"),
+    "chain_restitution_factor_free_spin": (":", r"the same, ball free to spin, $\eta$ = {:.2f}"),
+}
 
 
 def chain_lines(axes: Axes, data: xr.Dataset) -> None:
     """Draw the restitution factors of the chain as upright lines."""
-    for name, style, text in (
-        ("chain_restitution_factor", "-", r"this bearing, $\eta$ = {:.2f} (Eq. 18)"),
-        ("chain_restitution_factor_free_spin", ":", r"the same, ball free to spin, $\eta$ = {:.2f}"),
-    ):
+    for name, (style, text) in CHAIN_LINES.items():
         value = float(data[name])
         axes.axvline(value, color=BLACK, ls=style, lw=1.0, label=text.format(value))
+
+
+def _ends(axes: Axes, data: xr.Dataset) -> None:
+    """Name both sides in places that the curve leaves free, and mark where it was computed."""
+    lines = np.array([float(data[name]) for name in CHAIN_LINES])
+    free = max(np.linspace(0.15, 0.6, 10), key=lambda eta: float(np.abs(lines - eta).min()))
+    look: Any = {"transform": axes.transAxes, "color": GREY, "style": "italic"}
+    axes.text(free, 0.035, "stable", ha="center", **look)
+    axes.text(0.98, 0.95, "unstable", ha="right", **look)
+    axes.vlines(data["restitution_factor"].values, 0, RUG * axes.get_ylim()[1], color=BLUE, lw=0.6)
+
+
+def _candidates(axes: Axes, data: xr.Dataset) -> None:
+    """Draw each candidate's friction in every environment, with the band at its own restitution factor."""
+    data = data.isel(material=np.argsort(np.nanmean(_frictions(data), axis=0), kind="stable"))
+    count = data.sizes["material"]
+    axes.set(xlim=(-0.6, count - 0.4), title=r"b  Candidates at their $\eta$")
+    axes.set_xticks(range(count), data["material"].values.astype(str), rotation=90, fontsize=6.5)
+    axes.tick_params(axis="x", length=0)
+    _own_bands(axes, data)
+    friction, error = _frictions(data), _errors(data)
+    for place in range(count):
+        if np.isfinite(friction[:, place]).any():
+            ends = np.nanmin(friction[:, place]), np.nanmax(friction[:, place])
+            axes.vlines(place, *ends, color=GREY, lw=0.8)
+    shift = 0.5 / max(1, friction.shape[0])
+    for i, name in enumerate(data["environment"].values.astype(str)):
+        places = np.arange(count) + shift * (i - 0.5 * (friction.shape[0] - 1))
+        look = {"marker": MARKERS[i % len(MARKERS)], "color": CYCLE[i % len(CYCLE)], "ms": 3.4, "ls": ""}
+        axes.errorbar(places, friction[i], yerr=error[i], elinewidth=0.9, label=name, **look)
+
+
+def _frictions(data: xr.Dataset) -> Array:
+    """Return the friction of each environment and material."""
+    return data["material_friction"].transpose("environment", "material").values.astype(float)
+
+
+def _errors(data: xr.Dataset) -> Array:
+    """Return the stated error of each friction, 0 where there is none."""
+    if "material_friction_error" not in data:
+        return np.zeros_like(_frictions(data))
+    return np.nan_to_num(data["material_friction_error"].transpose("environment", "material").values)
+
+
+def _own_bands(axes: Axes, data: xr.Dataset) -> None:
+    """Shade the band at each candidate's restitution factor, with a line where half the runs grow."""
+    eta, top = data["restitution_factor"].values, axes.get_ylim()[1]
+    low, high = band_ends(data, top)
+    middle = data["critical_friction"].values
+    own = data["material_restitution_factor"].transpose("environment", "material").values.astype(float)
+    for place in range(data.sizes["material"]):
+        at = float(np.nanmean(own[:, place])) if np.isfinite(own[:, place]).any() else np.nan
+        if eta.size and eta[0] <= at <= eta[-1]:
+            ends = np.interp(at, eta, low), np.interp(at, eta, high)
+            axes.fill_between([place - 0.4, place + 0.4], *ends, color=BLUE, alpha=0.15, lw=0)
+            axes.hlines(np.interp(at, eta, middle), place - 0.4, place + 0.4, color=BLUE, lw=1.3)
