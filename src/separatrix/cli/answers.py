@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from separatrix.cage import History
     from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
     from separatrix.lubrication import LubricationCurve
@@ -22,16 +24,20 @@ SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 STRIPS = 5
 """Strips in which the shear is shown."""
 
-SAMPLES_A_WHIRL = 6
+SAMPLES_A_WHIRL = 15
 """Samples of a simulated run in a period of the linear whirl."""
+
+MOST_SAMPLES = 20_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Work:
-    """How the computing is to be done: threads, and whom to tell how far it is."""
+    """How the computing is to be done: threads, whom to tell how far it is, and where files may be."""
 
     jobs: int
     progress: Callable[[int, int], None] | None
+    folder: Path | None = None
+    quiet: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +73,7 @@ class StabilityAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationAnswer:
-    """One run of the ensemble, from the middle kick."""
+    """One run of the ensemble, from one kick."""
 
     cage: CageState
     history: History
@@ -174,23 +180,29 @@ def stability(study: Study, work: Work) -> StabilityAnswer:
     return StabilityAnswer(cage=state, curve=curve)
 
 
-def simulate(study: Study, work: Work) -> SimulationAnswer:  # noqa: ARG001
-    """Follow the first run of the ensemble from the middle kick."""
+def simulate(
+    study: Study,
+    work: Work,  # noqa: ARG001
+    kick: MetrePerSecond | None = None,
+    run: int = 0,
+) -> SimulationAnswer:
+    """Follow one run of the ensemble, by default the first from the middle kick."""
     from separatrix.cage import linear_whirl_frequency, simulate
     from separatrix.chain import cage_state
 
     state, settings = cage_state(study), study.stability
+    speed = settings.middle_kick if kick is None else kick
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(state.cage) * settings.duration
     history = simulate(
         state.cage,
-        kick=settings.middle_kick,
-        run=0,
+        kick=speed,
+        run=run,
         seed=settings.seed,
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
-        samples=int(min(max(samples, 1000), 20_000)),
+        samples=int(min(max(samples, 1000), MOST_SAMPLES)),
     )
-    return SimulationAnswer(cage=state, history=history, kick=settings.middle_kick, run=0)
+    return SimulationAnswer(cage=state, history=history, kick=speed, run=run)
 
 
 def rank(study: Study, work: Work) -> RankingAnswer:

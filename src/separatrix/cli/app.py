@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y
+from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
+from separatrix.cli.mapping import MapOptions, whole_map
 from separatrix.cli.run import Options, make_study, run
+from separatrix.cli.simulating import SimulateOptions
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
 
@@ -27,6 +33,16 @@ StudyArgument = Annotated[
     str, typer.Argument(metavar="STUDY", help="A study file, or the name of a shipped study.")
 ]
 MOST_JOBS = 1024
+
+AXIS = "LOW..HIGH[unit][:N][:log]"
+KICK_HELP = 'For instance "0.5 m/s" [default: the middle kick of the study].'
+ADAPTIVE_HELP = "Run only points near a change of the answer; the others are marked as not run."
+EPILOGS = {
+    "map": "An axis is a numeric key of the study file with its section, or restitution_factor, "
+    "ball_cage_friction, kick: --x cage.pocket_clearance=0.1..1mm --y film.race_friction=0.02..0.3:40:log. "
+    "Finished points are kept in the folder of the answer: after Ctrl-C the same call goes on from them. "
+    "With --json and no --out nothing is kept."
+}
 
 HELP = """Will the cage of this dry-lubricated ball bearing run stably, and which cage material is best?
 
@@ -68,6 +84,17 @@ def folder(out: str | None) -> Path | None:
     return None if out is None else Path(out)
 
 
+def _answer(verb: Verb, study: str, *, json: bool, out: str | None, quiet: bool, jobs: int | None) -> int:
+    """Answer the question of a verb and return the exit status."""
+    options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs))
+    try:
+        with Interruptible():
+            return run(verb, study, options)
+    except KeyboardInterrupt:  # here, for typer would swallow it
+        kept = verb.keeps_points and not (json and out is None)
+        return interrupted("points that were finished are kept." if kept else "nothing was written.")
+
+
 def _command(verb: Verb) -> Callable[..., int]:
     """Return the function behind the command of one verb."""
 
@@ -78,14 +105,56 @@ def _command(verb: Verb) -> Callable[..., int]:
         quiet: Quiet = False,
         jobs: Jobs = None,
     ) -> int:
-        options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs))
-        try:
-            with Interruptible():
-                return run(verb, study, options)
-        except KeyboardInterrupt:  # here, for typer would swallow it
-            return interrupted("nothing was written.")
+        return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
 
     return command
+
+
+def _map(
+    study: StudyArgument,
+    x: Annotated[str, typer.Option("--x", metavar="AXIS", help=f"PARAM={AXIS}.")] = DEFAULT_X,
+    y: Annotated[str, typer.Option("--y", metavar="AXIS", help="The same, upward.")] = DEFAULT_Y,
+    points: Annotated[int, typer.Option(metavar="N", help="Values of an axis that says no number.")] = 100,
+    runs: Annotated[int, typer.Option(metavar="N", help="Most runs of a point.")] = 16,
+    kick: Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)] = None,
+    adaptive: Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Run again what an earlier call has finished.")
+    ] = False,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    asked = MapOptions(x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive, fresh=fresh)
+    verb = replace(VERB["map"], compute=partial(whole_map, options=asked))
+    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+
+
+def _simulate(
+    study: StudyArgument,
+    kick: Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)] = None,
+    number: Annotated[int, typer.Option("--run", metavar="N", help="Which run of the ensemble.")] = 0,
+    animate: Annotated[str | None, typer.Option(metavar="gif|mp4", help="Also write an animation.")] = None,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    asked = SimulateOptions(kick=kick, run=number, animate=animate)
+    asked.check(writes=not json or out is not None)
+    verb = replace(VERB["simulate"], compute=asked.compute, draw=asked.draw)
+    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+
+
+def _compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of an answer of simulate.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress bar; there is none.")] = False,  # noqa: ARG001
+) -> int:
+    return compare(first, second, folder(out), as_json=json)
 
 
 def _new(
@@ -96,13 +165,21 @@ def _new(
     return make_study(path, as_json=json, quiet=quiet)
 
 
+OWN: dict[str, Callable[..., int]] = {"map": _map, "simulate": _simulate}
+"""Verbs with options of their own."""
+
+VERB = {verb.name: verb for verb in VERBS}
+
+
 def _application() -> typer.Typer:
     """Return the command line, with the verbs in the order of the chain."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     app.callback(invoke_without_command=True, help=HELP)(_start)
     app.command("new", help="Write a commented study file to fill in.")(_new)
     for verb in VERBS:
-        app.command(verb.name, help=verb.help)(_command(verb))
+        function = OWN.get(verb.name) or _command(verb)
+        app.command(verb.name, help=verb.help, epilog=EPILOGS.get(verb.name))(function)
+    app.command("compare", help="Two saved answers of simulate, side by side.")(_compare)
     return app
 
 
@@ -118,7 +195,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(["new", *(verb.name for verb in VERBS)])
+        verbs = ", ".join(["new", *VERB, "compare"])
         raise InputError("The command line", f"lacks a verb: {verbs}", cure='Try "separatrix --help".')
 
 

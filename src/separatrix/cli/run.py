@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,8 @@ from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from separatrix.study import Study
 
 ANSWERED = 0
@@ -55,16 +58,17 @@ def run(verb: Verb, name: str, options: Options) -> int:
         study = read_study(name)
         require(study, verb.name, *verb.needs)
         with _folder(verb, study, options) as folder:
-            document = _document(verb, study, options, notes)
-            _deliver(verb, document, folder, as_json=options.json)
-    return _status(document)
+            document = _document(verb, study, options, notes, folder)
+            _deliver(verb, document, folder, options)
+    return _status(document, goes_on=verb.keeps_points and folder is not None)
 
 
-def _status(document: Mapping[str, Any]) -> int:
+def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
     """Return the exit status; an answer cut short says so on standard error."""
     if document.get("complete", True):
         return ANSWERED
-    return interrupted("what was finished is in the answer, marked complete: false.")
+    more = " The same call goes on from there." if goes_on else ""
+    return interrupted(f"what was finished is in the answer, marked complete: false.{more}")
 
 
 def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:
@@ -76,22 +80,26 @@ def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractCo
     return writable_folder(Path(study.name))
 
 
-def _document(verb: Verb, study: Study, options: Options, notes: list[str]) -> dict[str, Any]:
+def _document(
+    verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None
+) -> dict[str, Any]:
     """Compute the answer and return it as plain data with its provenance."""
     from separatrix.results import document
 
     with progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress:
-        record = verb.compute(study, Work(jobs=options.jobs, progress=progress))
-    return document(verb.name, record, study, notes)
+        work = Work(jobs=options.jobs, progress=progress, folder=folder, quiet=options.quiet)
+        record = verb.compute(study, work)
+    return document(verb.name, record, study, grouped(notes))
 
 
-def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, *, as_json: bool) -> None:
+def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options: Options) -> None:
     """Write the files, then the answer: who reads "figures are in ..." finds them there."""
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     summary = _summary(verb, document, folder)
     if folder is not None:
-        _write_files(verb, document, folder, {".json": text, ".txt": summary})
-    answer(text if as_json else summary)
+        with staged(folder) as stage:
+            _write_files(verb, document, stage, {".json": text, ".txt": summary}, quiet=options.quiet)
+    answer(text if options.json else summary)
 
 
 def _summary(verb: Verb, document: dict[str, Any], folder: Path | None) -> str:
@@ -100,17 +108,20 @@ def _summary(verb: Verb, document: dict[str, Any], folder: Path | None) -> str:
     return report(verb.name, document, where=str(folder) if folder else None)
 
 
-def _write_files(verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str]) -> None:
-    """Write texts, dataset and figures aside, then put them in their places together."""
-    with staged(folder) as stage:
-        for suffix, text in texts.items():
-            path = stage / f"{verb.name}{suffix}"
-            path.write_text(text, encoding="utf-8", errors="backslashreplace")
-        if verb.writes_files:
-            _write_data(verb, document, stage)
+def _write_files(
+    verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str], *, quiet: bool
+) -> None:
+    """Write texts, dataset and pictures."""
+    for suffix, text in texts.items():
+        path = folder / f"{verb.name}{suffix}"
+        path.write_text(text, encoding="utf-8", errors="backslashreplace")
+    if verb.writes_files:
+        data = _write_data(verb, document, folder)
+        if verb.draw is not None:
+            verb.draw(data, folder, quiet=quiet)
 
 
-def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> None:
+def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> xr.Dataset:
     """Write the dataset and the figures made from it; matplotlib keeps its remarks on fonts to itself."""
     import logging
 
@@ -122,6 +133,7 @@ def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> None:
     for name, figure in figures.figures(verb.name, data):
         for suffix in (".png", ".svg"):
             figures.save(figure, folder / f"{name}{suffix}")
+    return data
 
 
 def make_study(path: Path, *, as_json: bool, quiet: bool) -> int:
@@ -144,10 +156,19 @@ def make_study(path: Path, *, as_json: bool, quiet: bool) -> int:
     return ANSWERED
 
 
+def grouped(notes: Iterable[str]) -> list[str]:
+    """Return the first of the sentences that differ in numbers only, and how many more there are."""
+    alike: dict[str, list[str]] = {}
+    for note in notes:
+        alike.setdefault(re.sub(r"[0-9][0-9.e+-]*", "0", note), []).append(note)
+    return [f"{n[0]} (And {len(n) - 1} more with other numbers.)" if n[1:] else n[0] for n in alike.values()]
+
+
 @contextlib.contextmanager
 def noted_warnings() -> Iterator[list[str]]:
     """Collect what is said about validity, each sentence once; other warnings take their usual way."""
     notes: list[str] = []
+    known: set[str] = set()
     with warnings.catch_warnings():
         warnings.simplefilter("always", ValidityWarning)
         usual = warnings.showwarning
@@ -155,7 +176,8 @@ def noted_warnings() -> Iterator[list[str]]:
         def note(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
             if not issubclass(category, ValidityWarning):
                 usual(message, category, *place, **rest)
-            elif str(message) not in notes:
+            elif str(message) not in known:
+                known.add(str(message))
                 notes.append(str(message))
 
         warnings.showwarning = note  # put back by catch_warnings

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
-from separatrix.cli import answers
+from separatrix.cli import answers, mapping
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    import xarray as xr
+
     from separatrix.study import Study
+
+
+class Draw(Protocol):
+    """Writes pictures of a dataset into a folder."""
+
+    def __call__(self, data: xr.Dataset, folder: Path, *, quiet: bool) -> None:
+        """Write them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,6 +29,8 @@ class Verb:
 
     `needs` are the sections of a study that may be left out but not for this question. How the record is
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
+    `keeps_points` is for an answer whose parts are kept in its folder as they are finished; `draw` is for
+    pictures beside the figures.
     """
 
     name: str
@@ -25,6 +38,8 @@ class Verb:
     compute: Callable[[Study, answers.Work], Any]
     needs: tuple[str, ...] = ()
     writes_files: bool = True
+    keeps_points: bool = False
+    draw: Draw | None = None
 
 
 VERBS: tuple[Verb, ...] = (
@@ -55,6 +70,13 @@ VERBS: tuple[Verb, ...] = (
         help="Critical friction against restitution factor.",
         compute=answers.stability,
         needs=("cage",),
+    ),
+    Verb(
+        name="map",
+        help="Where the cage is stable in the plane of two parameters.",
+        compute=mapping.whole_map,
+        needs=("cage",),
+        keeps_points=True,
     ),
     Verb(
         name="simulate",

@@ -7,6 +7,7 @@ from typing import Any
 
 from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
+from separatrix.report.map import stability_map
 from separatrix.report.ranking import rank
 from separatrix.report.study import check
 from separatrix.report.tables import heading, paragraph
@@ -17,6 +18,7 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "traction": traction,
     "restitution": restitution,
     "stability": stability,
+    "map": stability_map,
     "simulate": simulate,
     "rank": rank,
 }

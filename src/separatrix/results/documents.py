@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from separatrix.results import maps
 from separatrix.results.plain import plain, plain_record
 
 if TYPE_CHECKING:
@@ -154,6 +155,11 @@ def ranking(record: Any) -> Document:
     return plain_record(record.ranking, "ranking") | cage(record.cage)
 
 
+def stability_map(record: Any) -> Document:
+    """Return a map, with the chain and the cage of the study itself."""
+    return maps.stability_map(record.map, cage(record.cage))
+
+
 def _nothing(record: Any) -> Document:  # noqa: ARG001 - the answer is the study itself
     return {}
 
@@ -164,6 +170,7 @@ DOCUMENTS: Mapping[str, Callable[[Any], Document]] = {
     "traction": traction,
     "restitution": restitution,
     "stability": stability,
+    "map": stability_map,
     "simulate": simulation,
     "rank": ranking,
 }

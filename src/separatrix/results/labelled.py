@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from separatrix.errors import InputError
+from separatrix.results import maps
 from separatrix.results.labels import GROUPS, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
 Columns = dict[str, tuple[tuple[str, ...], Any]]
@@ -28,9 +29,21 @@ def dataset(document: Mapping[str, Any]) -> xr.Dataset:
     document : mapping
         What `results.document` returns, or a parsed ``--json`` answer.
     """
-    body = {RENAMED.get(key, key): value for key, value in document.items() if key not in PROVENANCE}
+    own = maps.ITS_OWN if document["verb"] == "map" else ()
+    body = {RENAMED.get(k, k): value for k, value in document.items() if k not in (*PROVENANCE, *own)}
     variables = {name: _variable(name, dims, values) for name, (dims, values) in _flatten(body).items()}
+    if own:
+        variables |= _of_a_map(document)
     return xr.Dataset(variables, attrs=_provenance(document))
+
+
+def _of_a_map(document: Mapping[str, Any]) -> dict[str, xr.Variable]:
+    """Return the variables that stand on the plane of a map, with units that depend on its parameters."""
+    found = {}
+    for name, (dims, values, attributes) in maps.grid(document).items():
+        found[name] = _variable(name, dims, values)
+        found[name].attrs |= attributes
+    return found
 
 
 def save(data: xr.Dataset, path: Path) -> None:

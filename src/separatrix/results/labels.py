@@ -134,6 +134,7 @@ OTHER_UNITS = {
     "drift_rate": "1/s",
     "friction": "-",
     "linear_limit": "-",
+    "growth_rate": "1/s",
 } | {f"work_{source}": "J" for source in SOURCES}
 """Units of arrays, whose type does not carry one."""
 

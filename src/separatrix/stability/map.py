@@ -11,7 +11,14 @@ from typing import Any
 import numpy as np
 
 from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, wilson_interval
-from separatrix.chain import TractionState, cage_state, known_friction, pocket_friction, traction_state
+from separatrix.chain import (
+    CageState,
+    TractionState,
+    cage_state,
+    known_friction,
+    pocket_friction,
+    traction_state,
+)
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.stability.growth import cage_at
 from separatrix.stability.map_grid import Place, near_a_change, rounds
@@ -19,7 +26,6 @@ from separatrix.stability.map_parameters import FRICTION, KICK, RESTITUTION, val
 from separatrix.stability.map_pool import work_in_batches
 from separatrix.stability.map_records import (
     NOT_RUN,
-    MapAxis,
     MapChange,
     MapPoint,
     MapQuestion,
@@ -178,8 +184,7 @@ class PointFinder:
         links = self._traction(_Bearing(key))
         if isinstance(links, str):
             raise InputError(links.removesuffix("."), "")
-        friction = values.get(FRICTION, known_friction(study))
-        state = cage_state(study, traction=links, friction=friction)
+        state = cage_state(study, traction=links)
         eta = values.get(RESTITUTION)
         if eta is None:
             return state.cage, state.restitution.restitution.restitution_factor
@@ -258,13 +263,7 @@ def growth_rate(ensemble: Ensemble) -> float:
     return float(np.median(ensemble.growth_rate))
 
 
-def _assembled(
-    question: MapQuestion,
-    grid: Mapping[Place, tuple[float, float]],
-    found: Mapping[Place, MapPoint],
-    *,
-    complete: bool,
-) -> StabilityMap:
+def _assembled(question: MapQuestion, found: Mapping[Place, MapPoint], *, complete: bool) -> StabilityMap:
     """Map of the points found, with their margins; the others say why they were not run."""
     why = AGREED if complete else INTERRUPTED
     points: list[MapPoint] = []
@@ -317,6 +316,10 @@ def stopping(runs: int) -> Stopping:
     )
 
 
-def axis(study: Study, parameter: str, unit: str, values: Iterable[float]) -> MapAxis:
-    """Axis of a map, with the parameter's value in the study."""
-    return MapAxis(parameter=parameter, unit=unit, values=tuple(values), here=value_in(study, parameter))
+def value_here(study: Study, state: CageState, name: str) -> float | None:
+    """Value of a parameter in the study itself; None where it has none."""
+    if name == RESTITUTION:
+        return state.restitution.restitution.restitution_factor
+    if name == FRICTION:
+        return known_friction(study)
+    return study.stability.middle_kick if name == KICK else value_in(study, name)

@@ -30,6 +30,8 @@ WHOLE = ""
 SHORT = {"cage.ball_cage_friction": FRICTION}
 """A key that goes by a name of its own, so that one parameter has one name."""
 
+LONG = {name: key for key, name in SHORT.items()}
+
 Setter = Callable[[Study, Any], Study]
 
 
@@ -65,18 +67,18 @@ def other_keys() -> list[str]:
 def varied(study: Study, name: str, value: float) -> Study:
     """Return the study with another value of one parameter.
 
-    Friction and restitution factor are not written into the study; `map` gives them to the cage.
+    Restitution factor and kick are no keys of a study; the map gives them to the cage and to its runs.
 
     Raises
     ------
     InputError
         The study is refused, in the words of a study file.
     """
-    if name in (RESTITUTION, FRICTION, KICK):
+    if name in (RESTITUTION, KICK):
         return study
     if name in _MADE:
         return _MADE[name][1](study, value)
-    section, _, key = name.partition(".")
+    section, _, key = LONG.get(name, name).partition(".")
     record = getattr(study, section)
     if record is None:
         raise InputError(f"[{section}]", "is missing")

@@ -1,0 +1,146 @@
+"""The verb `map`: its options, and the points that an earlier call has finished."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
+from separatrix.cli.console import complain
+from separatrix.errors import InputError
+from separatrix.units import parse
+
+if TYPE_CHECKING:
+    from separatrix.chain import CageState
+    from separatrix.cli.answers import Work
+    from separatrix.results.ledger import Ledger
+    from separatrix.stability.map_records import MapAxis, MapPoint, MapQuestion, StabilityMap
+    from separatrix.study import Study
+
+MOST_RUNS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapOptions:
+    """What follows `map STUDY`, as text."""
+
+    x: str | None = None
+    y: str | None = None
+    points: int = 100
+    runs: int = 16
+    kick: str | None = None
+    adaptive: bool = False
+    fresh: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAnswer:
+    """The map, and the cage of the study itself."""
+
+    cage: CageState
+    map: StabilityMap
+
+
+def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> MapAnswer:
+    """Run the points of a map that no earlier call has finished.
+
+    Raises
+    ------
+    InputError
+        An option cannot be understood, or no point can be run.
+    """
+    from separatrix.chain import cage_state, known_friction
+    from separatrix.stability.map import stability_map, value_here
+
+    question = map_question(study, options or MapOptions())
+    state = cage_state(study, friction=known_friction(study) or 0.0)
+    x, y = (replace(axis, here=value_here(study, state, axis.parameter)) for axis in (question.x, question.y))
+    with _ledger(question, work, fresh=bool(options and options.fresh)) as ledger:
+        found = stability_map(
+            replace(question, x=x, y=y),
+            jobs=work.jobs,
+            progress=work.progress,
+            known=_known(ledger, question, work),
+            keep=ledger.keep if ledger else None,
+        )
+    return MapAnswer(cage=state, map=found)
+
+
+def map_question(study: Study, options: MapOptions) -> MapQuestion:
+    """Return what is asked, from the text of the options.
+
+    Raises
+    ------
+    InputError
+        One of them is wrong.
+    """
+    from separatrix.stability.map_records import MapQuestion
+
+    points = checked_points(options.points, "--points")
+    if not 1 <= options.runs <= MOST_RUNS:
+        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", value=str(options.runs))
+    x = read_axis(options.x or DEFAULT_X, "--x", points)
+    y = read_axis(options.y or DEFAULT_Y, "--y", points)
+    _refuse_twice(x, y)
+    kick = _kick(options.kick, study, x, y)
+    return MapQuestion(study=study, x=x, y=y, kick=kick, runs=options.runs, adaptive=options.adaptive)
+
+
+def _refuse_twice(x: MapAxis, y: MapAxis) -> None:
+    if x.parameter == y.parameter:
+        cure = f"Without --x it is {DEFAULT_X}, without --y {DEFAULT_Y}."
+        raise InputError("--x and --y", "must be two parameters", value=f"{x.parameter} twice", cure=cure)
+
+
+def _kick(text: str | None, study: Study, x: MapAxis, y: MapAxis) -> float:
+    """Kick of every point; of no meaning where an axis is the kick."""
+    if text is None:
+        return study.stability.middle_kick
+    if "kick" in (x.parameter, y.parameter):
+        raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
+    return kick_speed(text)
+
+
+def kick_speed(text: str) -> float:
+    """Speed of a kick from the text of ``--kick``.
+
+    Raises
+    ------
+    InputError
+        It is no speed above 0.
+    """
+    speed = parse(text, "m/s", "--kick")
+    if not 0.0 < speed <= 1e4:
+        raise InputError("--kick", "must be > 0 and at most 10000", "m/s", f"{speed:g}")
+    return speed
+
+
+@contextlib.contextmanager
+def _ledger(question: MapQuestion, work: Work, *, fresh: bool) -> Iterator[Ledger | None]:
+    """Yield the ledger in the folder of the answer; None where no file is to be written."""
+    if work.folder is None:
+        yield None
+        return
+    from separatrix.results.ledger import NAME, Ledger
+
+    ledger = Ledger(work.folder / NAME, question)
+    try:
+        if fresh:
+            ledger.forget()
+        yield ledger
+    finally:
+        ledger.close()
+
+
+def _known(ledger: Ledger | None, question: MapQuestion, work: Work) -> dict[tuple[float, float], MapPoint]:
+    """Points of this map that were finished before; says on standard error how many."""
+    if ledger is None:
+        return {}
+    known = ledger.points()
+    total = len(question.x.values) * len(question.y.values)
+    here = sum((x, y) in known for x in question.x.values for y in question.y.values)
+    if here and not work.quiet:
+        complain(f"{here} of {total} points were finished by an earlier call; --fresh computes them again.")
+    return known

@@ -1,0 +1,135 @@
+"""Text for a stability map: its shares, and where along y the answer changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from separatrix.report.cage import chain_facts, study_facts
+from separatrix.report.tables import facts, number, paragraph, quantity, section, table
+
+Document = Mapping[str, Any]
+
+COLUMNS = 9
+"""Columns of the map whose bands are printed."""
+
+KINDS = {
+    "STABLE": "stable",
+    "UNSTABLE": "unstable",
+    "UNDECIDED": "undecided",
+    "refused": "refused",
+    "not_run": "not run",
+}
+
+
+def stability_map(document: Document) -> list[str]:
+    """Shares of the plane, bands at a few columns, the rule, and what it holds for."""
+    blocks = [
+        section("Stability map", facts(_axes(document)), "", _shares(document)),
+        section("Where the motion begins to grow", table(_headers(document), _bands(document)), LEGEND),
+        section("What it holds for", facts(_holds_for(document))),
+    ]
+    refused = _first_refusal(document["points"])
+    return [*blocks, paragraph(refused, first="  - : ", indent="      ")] if refused else blocks
+
+
+LEGEND = "\n" + paragraph(
+    "between the last point of a column at which, beyond the scatter, less than half the runs grow and the "
+    "first at which more than half do; margin: distance of the study's own value to that band, positive "
+    "where the motion dies."
+)
+
+
+def _axes(document: Document) -> list[tuple[str, str]]:
+    return [(name, _axis(document[name])) for name in ("x", "y")]
+
+
+def _axis(axis: Document) -> str:
+    low, high = (quantity(axis["values"][i], axis["unit"]) for i in (0, -1))
+    here = "" if axis["here"] is None else f", the study has {quantity(axis['here'], axis['unit'])}"
+    return f"{axis['parameter']}, {low} to {high}, {len(axis['values'])} values{here}"
+
+
+def _shares(document: Document) -> str:
+    total = len(document["points"])
+    rows = [
+        [name, str(document["counts"][kind]), f"{100 * document['counts'][kind] / total:.1f} %"]
+        for kind, name in KINDS.items()
+        if document["counts"][kind] or kind in ("STABLE", "UNSTABLE")
+    ]
+    return table(("", "points", "share"), rows)
+
+
+def _headers(document: Document) -> tuple[str, ...]:
+    return (document["x"]["parameter"], "from", "to", "grows", "margin")
+
+
+def _bands(document: Document) -> list[list[str]]:
+    """Rows for a few columns, evenly chosen; a column that does not change says what it is."""
+    values = document["x"]["values"]
+    chosen = {round(i * (len(values) - 1) / (COLUMNS - 1)) for i in range(COLUMNS)}
+    return [row for i in sorted(chosen) for row in _band(document, values[i])]
+
+
+def _band(document: Document, x: float) -> list[list[str]]:
+    unit, here = document["y"]["unit"], document["y"]["here"]
+    start = quantity(x, document["x"]["unit"])
+    found = [change for change in document["changes"] if change["x"] == x]
+    if not found:
+        return [[start, "-", "-", _of_one_kind(document["points"], x), "-"]]
+    return [
+        [
+            start,
+            *(quantity(change[end], unit) for end in ("y_low", "y_high")),
+            "above" if change["grows_above"] else "below",
+            _margin(change, here, unit),
+        ]
+        for change in found
+    ]
+
+
+def _margin(change: Document, here: float | None, unit: str) -> str:
+    if here is None:
+        return "-"
+    low, high = change["y_low"], change["y_high"]
+    below, above = low - here, here - high
+    distance = max(below, above, 0.0)
+    grows = (here > high) == change["grows_above"] and distance > 0.0
+    return quantity(-distance if grows else distance, unit)
+
+
+def _of_one_kind(points: Sequence[Document], x: float) -> str:
+    shares = [p["probability_grow"] for p in points if p["x"] == x and p["probability_grow"] is not None]
+    if not shares:
+        return "not run"
+    return "nowhere" if max(shares) < 0.5 else "everywhere" if min(shares) >= 0.5 else "undecided"
+
+
+def _holds_for(document: Document) -> list[tuple[str, str]]:
+    return [*study_facts(document["study"]), *chain_facts(document["chain"]), *_ensemble(document)]
+
+
+def _ensemble(document: Document) -> list[tuple[str, str]]:
+    rule = document["stopping"]
+    wrong, other = (number(rule[f"{name}_probability"], 4) for name in ("wrong_side", "other_decision"))
+    early = (
+        f"a point has {rule['most_runs']}, or the first {rule['agreeing_runs']} if those agree; at worst the "
+        f"other majority in {wrong}, another decision in {other} of the draws"
+    )
+    kick = "each point its own" if _is_axis(document, "kick") else quantity(document["kick"], "m/s")
+    return [
+        ("Kick", kick),
+        ("Runs", early),
+        ("Run", f"{quantity(document['duration'], 's')}, ball scatter {document['ball_scatter']:g}"),
+    ]
+
+
+def _is_axis(document: Document, parameter: str) -> bool:
+    return parameter in (document["x"]["parameter"], document["y"]["parameter"])
+
+
+def _first_refusal(points: Sequence[Document]) -> str | None:
+    refused = [p for p in points if not p["runs"] and not p["reason"].startswith("not run")]
+    if not refused:
+        return None
+    return f"{len(refused)} points were refused; the first: {refused[0]['reason']}"
