@@ -23,8 +23,8 @@ _PUBLIC = {
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
     "results": "dataset document load save",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
-    "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation Race "
-    "RankingQuestion StabilitySettings Study",
+    "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
+    "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
     "traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
 }
