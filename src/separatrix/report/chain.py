@@ -123,7 +123,12 @@ def restitution(document: Document) -> list[str]:
         ("Rolling speed", "rolling_speed", "m/s"),
     ]
     stiffness = f"{quantity(document['ball_cage_stiffness'], 'N/m')} ({document['stiffness_source']})"
-    pocket = [("Ball/cage stiffness", stiffness), ("Cage mass", quantity(document["cage_mass"], "kg"))]
+    hertz = quantity(document["restitution_factor_hertz"], "-")
+    pocket = [
+        ("Ball/cage stiffness", stiffness),
+        ("Cage mass", quantity(document["cage_mass"], "kg")),
+        ("eta of a Hertzian pocket", f"{hertz} in a blow at the middle kick, less in a harder one"),
+    ]
     return [
         section("Restitution factor", table(("", "as printed (Eq. 18)", "ball free to spin"), cells)),
         section("From the contacts of the most loaded ball", by_race(document, parts)),
