@@ -154,7 +154,7 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
     shift = 0.5 / max(1, friction.shape[0])
     for i, name in enumerate(data["environment"].values.astype(str)):
         places = np.arange(count) + shift * (i - 0.5 * (friction.shape[0] - 1))
-        look = {"marker": MARKERS[i % len(MARKERS)], "color": CYCLE[i % len(CYCLE)], "ms": 3.4, "ls": ""}
+        look: Any = {"marker": MARKERS[i % len(MARKERS)], "color": CYCLE[i % len(CYCLE)], "ms": 3.4, "ls": ""}
         axes.errorbar(places, friction[i], yerr=error[i], elinewidth=0.9, label=name, **look)
 
 
@@ -167,7 +167,8 @@ def _errors(data: xr.Dataset) -> Array:
     """Return the stated error of each friction, 0 where there is none."""
     if "material_friction_error" not in data:
         return np.zeros_like(_frictions(data))
-    return np.nan_to_num(data["material_friction_error"].transpose("environment", "material").values)
+    found = data["material_friction_error"].transpose("environment", "material").values
+    return np.asarray(np.nan_to_num(found), dtype=float)
 
 
 def _own_bands(axes: Axes, data: xr.Dataset) -> None:

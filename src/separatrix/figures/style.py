@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -93,10 +93,10 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=metadata)
 
 
-def legend_below(figure: Figure, *, columns: int = 2) -> None:
-    """Name everything once, below the picture."""
+def legend_below(figure: Figure, panels: Iterable[Axes] | None = None, *, columns: int = 2) -> None:
+    """Name everything in these panels (or in all) once, below the picture."""
     handles: dict[str, Any] = {}
-    for axes in figure.axes:
+    for axes in figure.axes if panels is None else panels:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
     look: Any = {"fontsize": 6.5, "handlelength": 2.4, "columnspacing": 1.5}
