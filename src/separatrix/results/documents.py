@@ -123,8 +123,13 @@ def stability(record: Any) -> Document:
 
 
 def cage(state: Any) -> Document:
-    """Return the cage, and what the chain found before it moves."""
-    return {"chain": before_cage(state.restitution), "cage": plain_record(state.cage, "cage")}
+    """Return the cage, and what the chain found before it moves; how balls lead and lag beside their play."""
+    orbits = {
+        "half_play": plain(state.cage.half_play),
+        "lead_amplitude": plain(state.cage.lead_amplitude),
+        "orbital_share": plain(state.orbital_share),
+    }
+    return {"chain": before_cage(state.restitution) | orbits, "cage": plain_record(state.cage, "cage")}
 
 
 def simulation(record: Any) -> Document:

@@ -135,6 +135,9 @@ OTHER_UNITS = {
     "friction": "-",
     "linear_limit": "-",
     "growth_rate": "1/s",
+    "half_play": "m",
+    "lead_amplitude": "m",
+    "orbital_share": "-",
 } | {f"work_{source}": "J" for source in SOURCES}
 """Units of arrays, whose type does not carry one."""
 
