@@ -68,12 +68,14 @@ def land(cage: CageDesign) -> _check.Problems:
         )
 
 
-def rising(record: object, field: str, low: float, high: float, most: int) -> _check.Problems:
-    """Refuse a tuple that is empty, too long, not strictly inside the limits, or not strictly increasing."""
+def rising(
+    record: object, field: str, low: float, high: float, *, least: int = 1, most: int
+) -> _check.Problems:
+    """Refuse a tuple that is too short or long, or not strictly inside the limits or increasing."""
     values, where = getattr(record, field), f"{type(record).__name__}.{field}"
     unit = unit_of(type(record), field)
-    if not 0 < len(values) <= most:
-        yield InputError(where, f"must hold 1 to {most} values", "", str(len(values)))
+    if not least <= len(values) <= most:
+        yield InputError(where, f"must hold {least} to {most} values", "", str(len(values)))
     outside = [value for value in values if not _check.is_number(value) or not low < value < high]
     if outside:
         rule = f"must each be a finite number > {low:g} and < {high:g}"

@@ -230,9 +230,14 @@ def test_no_speed_and_no_friction_are_allowed_where_they_mean_something():
 
 
 def test_evenly_spaced_numbers_are_round():
-    """0.15 is 0.15, not 0.15000000000000002; the default grid is the one of the study file."""
+    """0.15 is 0.15, not 0.15000000000000002; exact."""
     assert evenly_spaced(0.05, 0.95, 19)[2] == 0.15
-    assert StabilitySettings().restitution_factors == tuple(round(0.05 * i, 2) for i in range(1, 20))
+    assert evenly_spaced(0.05, 0.95, 19) == tuple(round(0.05 * i, 2) for i in range(1, 20))
+
+
+def test_restitution_factors_need_not_be_given():
+    """None given: they are chosen where the curve bends."""
+    assert StabilitySettings().restitution_factors == ()
 
 
 def test_the_paper_like_example_has_the_numbers_of_its_class():

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from threading import Event
 
-from separatrix.cage import Judgement, judge, run_ensemble
+from separatrix.cage import Judgement, judge
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, measured, overall
@@ -18,17 +19,23 @@ from separatrix.stability import (
     GrowthCounter,
     RestitutionThreshold,
     StabilityCurve,
-    critical_friction,
+    Tracer,
     curve_of_points,
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.pool import Progress, work_through
+from separatrix.stability.curve import Node
+from separatrix.stability.pool import Progress, work_out
+from separatrix.stability.threshold import rising
+from separatrix.stability.whole import whole_ensemble
 from separatrix.study import Candidate, RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
 
 Key = tuple[NewtonPerMetre, Ratio]
-"""Pocket stiffness, and a friction (for a verdict) or a restitution factor (for a point of the curve)."""
+"""Pocket stiffness, and a friction: what a verdict is about."""
+
+Piece = tuple[NewtonPerMetre, Ratio | Node]
+"""Piece of work: a verdict, or with the pocket stiffness a node of its curve."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,9 +44,10 @@ class _Question:
 
     settings: StabilitySettings
     cages: Mapping[NewtonPerMetre, CageState]
-    counters: Mapping[NewtonPerMetre, GrowthCounter]
+    tracers: Mapping[NewtonPerMetre, Tracer]
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
+    stop: Event
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +56,7 @@ class _Findings:
 
     points: Mapping[NewtonPerMetre, Sequence[CriticalFriction]]
     judgements: Mapping[Key, Judgement]
+    traced: Mapping[NewtonPerMetre, bool]
     complete: bool
 
 
@@ -134,12 +143,18 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
     traction = traction_state(study)
     states = {c.name: cage_state(study, material=c.material, traction=traction) for c in asked.candidates}
     cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
+    reference = states[asked.candidates[0].name].cage.ball_cage_stiffness
+    factors, stop = threshold_factors(study.stability), Event()
     return _Question(
         settings=study.stability,
         cages=cages,
-        counters={k: GrowthCounter(state.cage, study.stability) for k, state in cages.items()},
+        tracers={
+            k: Tracer(GrowthCounter(state.cage, study.stability, stop), factors, band=k == reference)
+            for k, state in cages.items()
+        },
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
-        reference=states[asked.candidates[0].name].cage.ball_cage_stiffness,
+        reference=reference,
+        stop=stop,
     )
 
 
@@ -149,42 +164,64 @@ def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
 
 def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: Progress | None) -> _Findings:
     """Critical frictions and verdicts, all in one row of work for the threads."""
-    nodes = [(k, eta) for k in question.cages for eta in threshold_factors(question.settings)]
-    work: list[Callable[[], object]] = [
-        *(lambda node=node: _point(question, node) for node in nodes),
-        *(lambda key=key: _judgement(question, key) for key in keys),
-    ]
-    results = work_through(lambda piece: piece(), work, jobs=jobs, progress=progress)
-    points = {n: r for n, r in zip(nodes, results, strict=False) if isinstance(r, CriticalFriction)}
-    judged = {key: r for key, r in zip(keys, results[len(nodes) :], strict=True) if isinstance(r, Judgement)}
-    return _Findings(points=_by_cage(question, points), judgements=judged, complete=None not in results)
+    nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
+    results = work_out(
+        lambda piece: _computed(question, piece),
+        [*nodes, *keys],
+        more=lambda piece, results: _more(question, piece, results),
+        jobs=jobs,
+        progress=progress,
+        stop=question.stop,
+    )
+    points = {k: _points_of(results, k) for k in question.cages}
+    judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
+    traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
+    return _Findings(
+        points={k: rising(found.values()) for k, found in points.items()},
+        judgements=judged,
+        traced=traced,
+        complete=all(traced.values()) and len(judged) == len(keys),
+    )
 
 
-def _by_cage(
-    question: _Question, points: Mapping[Key, CriticalFriction]
-) -> dict[NewtonPerMetre, list[CriticalFriction]]:
-    return {k: [point for (stiffness, _), point in points.items() if stiffness == k] for k in question.cages}
+def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement:
+    stiffness, what = piece
+    if isinstance(what, tuple):
+        return question.tracers[stiffness].point(what)
+    cage = replace(question.cages[stiffness].cage, ball_cage_friction=what)
+    return judge(cage, whole_ensemble(cage, question.settings, question.stop))
 
 
-def _point(question: _Question, node: Key) -> CriticalFriction:
-    """Critical friction at one restitution factor; with its band where the curve shows it."""
-    stiffness, eta = node
-    shown = stiffness == question.reference and eta in question.settings.restitution_factors
-    cage = question.cages[stiffness].cage
-    return critical_friction(cage, eta, question.settings, counter=question.counters[stiffness], band=shown)
+def _more(
+    question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
+) -> list[Piece]:
+    """Nodes of the same curve that are wanted once this one is known."""
+    stiffness, node = piece
+    if not isinstance(node, tuple):
+        return []
+    wanted = question.tracers[stiffness].more(node, _points_of(results, stiffness))
+    return [(stiffness, node) for node in wanted]
 
 
-def _judgement(question: _Question, key: Key) -> Judgement:
-    cage = replace(question.cages[key[0]].cage, ball_cage_friction=key[1])
-    return judge(cage, run_ensemble(cage, question.settings))
+def _points_of(
+    results: Mapping[Piece, CriticalFriction | Judgement], stiffness: NewtonPerMetre
+) -> dict[Node, CriticalFriction]:
+    """Points of the curve of one pocket stiffness."""
+    return {
+        what: found
+        for (k, what), found in results.items()
+        if k == stiffness and isinstance(what, tuple) and isinstance(found, CriticalFriction)
+    }
 
 
 def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     """Stability curve of the reference cage; None if an interrupt left no point of it."""
-    shown = question.settings.restitution_factors
-    points = [point for point in found.points[question.reference] if point.restitution_factor in shown]
-    cage = question.cages[question.reference].cage
-    return curve_of_points(cage, question.settings, points) if points else None
+    points, shown = found.points[question.reference], question.settings.restitution_factors
+    points = [point for point in points if not shown or point.restitution_factor in shown]
+    if not points:
+        return None
+    cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
+    return curve_of_points(cage, question.settings, points, complete=complete)
 
 
 def _ranked(
@@ -231,7 +268,7 @@ def _row(
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    threshold = _threshold(question, found, stiffness, friction)
+    threshold = _threshold(found, stiffness, friction)
     judgement = found.judgements.get((stiffness, friction.mean))
     if threshold is None or judgement is None:
         return row
@@ -260,11 +297,11 @@ def _row(
 
 
 def _threshold(
-    question: _Question, found: _Findings, stiffness: NewtonPerMetre, friction: MeanFriction
+    found: _Findings, stiffness: NewtonPerMetre, friction: MeanFriction
 ) -> RestitutionThreshold | None:
     """Threshold at the mean friction, its interval widened by those at the ends of the friction's."""
     points = found.points[stiffness]
-    if len(points) < len(threshold_factors(question.settings)):
+    if not found.traced[stiffness]:
         return None
     value, *ends = (restitution_threshold(points, f) for f in (friction.mean, *friction.interval()))
     return replace(value, low=min(t.low for t in ends), high=max(t.high for t in ends))

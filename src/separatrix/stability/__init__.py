@@ -1,17 +1,10 @@
 """When a cage is stable: critical pocket friction against restitution factor, and its inverse."""
 
-from separatrix.stability.crossing import Side
-from separatrix.stability.curve import (
-    SEARCHED_FRICTION,
-    CriticalFriction,
-    LinearLimit,
-    StabilityCurve,
-    critical_friction,
-    curve_of_points,
-    linear_limit,
-    stability_curve,
-)
+from separatrix.stability.curve import StabilityCurve, Tracer, curve_of_points, stability_curve
 from separatrix.stability.growth import Count, GrowthCounter, cage_at, race_damping_at
+from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
+from separatrix.stability.point import CriticalFriction, critical_friction
+from separatrix.stability.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.stability.threshold import (
     RestitutionThreshold,
     restitution_threshold,
@@ -23,14 +16,20 @@ __all__ = [
     "SEARCHED_FRICTION",
     "Count",
     "CriticalFriction",
+    "Crossing",
     "GrowthCounter",
+    "HardLimit",
     "LinearLimit",
+    "Response",
     "RestitutionThreshold",
     "Side",
     "StabilityCurve",
+    "Tracer",
     "cage_at",
+    "closed_hard_limit",
     "critical_friction",
     "curve_of_points",
+    "hard_limit",
     "linear_limit",
     "race_damping_at",
     "restitution_threshold",

@@ -2,88 +2,69 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from separatrix.cage import PlanarCage, linear_critical_friction
-from separatrix.stability.crossing import Counter, Crossing, Side, find_crossing, interval, reaches
-from separatrix.stability.growth import Count, GrowthCounter, cage_at
-from separatrix.stability.pool import Progress, work_through
+from separatrix.cage import PlanarCage
+from separatrix.stability.growth import GrowthCounter
+from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
+from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
+from separatrix.stability.pool import Progress, work_out
+from separatrix.stability.response import SEARCHED_FRICTION, Side
+from separatrix.stability.tracing import COARSE, finer
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio, Second
 
-SEARCHED_FRICTION: Ratio = 1.0
-"""Critical friction is looked for from 0 up to here."""
+FLAT: Ratio = 0.002
+"""Friction by which a line may miss a point however well that is known."""
 
-_STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
-FRICTION_GRID: tuple[Ratio, ...] = (
-    0.0,
-    *(SEARCHED_FRICTION * 10 ** (-i / _STEPS_A_DECADE) for i in range(2 * _STEPS_A_DECADE + 12, -1, -1)),
-)
-"""Frictions at which runs are counted; between two of them the shares are joined by a line."""
-
-BAND_CELLS = 4
-"""A guess of how far the band's ends lie from its middle; it costs or saves time only."""
-
-Found = tuple[Crossing | Side, Ratio, MetrePerSecond]
-"""Where P crosses a target, from which kick."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CriticalFriction:
-    """Critical friction at one restitution factor; None where there is none, with the reason.
-
-    Attributes
-    ----------
-    restitution_factor : float
-        eta [-].
-    critical_friction : float or None
-        Friction at which half the runs grow from the middle kick [-].
-    critical_friction_low, critical_friction_high : float or None
-        Smallest friction at which one run in ten grows from some kick, and largest at which nine in ten
-        grow from every kick: the band [-].
-    scatter_low, scatter_high : float or None
-        95 % interval of `critical_friction` from the number of runs [-].
-    side : Side or None
-        Where `critical_friction` is None: whether P(grow) lies above one half throughout, or below.
-    reason : str or None
-        Why something is None.
-    """
-
-    restitution_factor: Ratio
-    critical_friction: Ratio | None = None
-    critical_friction_low: Ratio | None = None
-    critical_friction_high: Ratio | None = None
-    scatter_low: Ratio | None = None
-    scatter_high: Ratio | None = None
-    side: Side | None = None
-    reason: str | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinearLimit:
-    """Critical friction without clearance in a ball set at rest, in closed form."""
-
-    restitution_factor: Ratio
-    critical_friction: Ratio
+HERE = -1.0
+"""Stands in the row of work for the cage's own race damping, beside restitution factors from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityCurve:
-    """Stability curve, the linear limit beside it, and the ensemble it holds for.
+    """Stability curve, its limits, and the ensemble it holds for.
 
-    `complete` is False if an interrupt left points out.
+    Attributes
+    ----------
+    curve : tuple of CriticalFriction
+        Rising restitution factors.
+    here : CriticalFriction or None
+        The same at the cage's own race damping; None if an interrupt left it out.
+    linear_limit : tuple of LinearLimit
+        Beside each point: without clearance, ball set at rest, in closed form.
+    hard_limit : tuple of HardLimit
+        Beside each point: walls instead of springs, ball set at rest, even pockets; empty without clearance.
+    hard_limit_closed : float or None
+        Where dead hard impacts begin to whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even [-].
+    band_few, band_most : float
+        Shares of growing runs at the ends of the band [-].
+    kicks, middle_kick, runs, duration, ball_scatter
+        The ensemble.
+    searched_friction : float
+        The friction up to which was looked [-].
+    adaptive : bool
+        Whether the restitution factors were chosen here.
+    complete : bool
+        False if an interrupt left points out.
     """
 
     curve: tuple[CriticalFriction, ...]
+    here: CriticalFriction | None = None
     linear_limit: tuple[LinearLimit, ...]
+    hard_limit: tuple[HardLimit, ...] = ()
+    hard_limit_closed: Ratio | None = None
+    band_few: Ratio
+    band_most: Ratio
     kicks: tuple[MetrePerSecond, ...]
     middle_kick: MetrePerSecond
     runs: int
     duration: Second
     ball_scatter: Ratio
     searched_friction: Ratio
+    adaptive: bool
     complete: bool
 
 
@@ -95,18 +76,18 @@ def stability_curve(
     progress: Progress | None = None,
     counter: GrowthCounter | None = None,
 ) -> StabilityCurve:
-    """Critical friction at each restitution factor of the settings.
+    """Critical friction against restitution factor, and at the cage's own race damping.
 
     Parameters
     ----------
     cage : PlanarCage
-        Its race damping and friction are replaced.
+        Its friction is replaced; its race damping but for `here`.
     settings : StabilitySettings
-        Restitution factors, kicks, runs and seed.
+        Kicks, runs and seed; restitution factors, or none: then they are chosen where the curve bends.
     jobs : int
         Threads; the numbers do not depend on it.
     progress : callable, optional
-        Called with (done, total) points.
+        Called with (done, total so far) points.
     counter : GrowthCounter, optional
         To share counts with other questions about the same cage and settings.
 
@@ -116,147 +97,147 @@ def stability_curve(
         Interrupted before the first point was finished; later the finished points are returned.
     """
     counts = counter or GrowthCounter(cage, settings)
-    etas = settings.restitution_factors
-    points = work_through(
-        lambda eta: critical_friction(cage, eta, settings, counter=counts), etas, jobs=jobs, progress=progress
+    tracer = Tracer(counts, settings.restitution_factors, band=True)
+    found = work_out(
+        lambda node: tracer.point(node),
+        [*tracer.first, (HERE, None)],
+        more=lambda node, results: tracer.more(node, results),
+        jobs=jobs,
+        progress=progress,
+        stop=counts.stop,
     )
-    finished = [point for point in points if point is not None]
-    if etas and not finished:
+    if not found:
         raise KeyboardInterrupt
-    return curve_of_points(cage, settings, finished)
+    here = found.pop((HERE, None), None)
+    return curve_of_points(
+        cage, settings, list(found.values()), here=here, complete=here is not None and tracer.complete(found)
+    )
+
+
+Node = tuple[Ratio, Ratio | None]
+"""A restitution factor (or `HERE`), and a guess of its critical friction."""
+
+
+class Tracer:
+    """Which points of a curve are wanted, and how one is computed.
+
+    Parameters
+    ----------
+    counter : GrowthCounter
+        Counts the runs, and knows cage and settings.
+    given : sequence of float
+        Restitution factors; if none, they are chosen: halves, ever finer where the curve bends by more than
+        its scatter.
+    band : bool
+        Whether the points have their band; if so, its ends are followed as well.
+    """
+
+    def __init__(self, counter: GrowthCounter, given: Sequence[Ratio], *, band: bool) -> None:
+        self.counter, self.given, self.band = counter, tuple(given), band
+
+    @property
+    def first(self) -> list[Node]:
+        """Where to begin."""
+        return [(eta, None) for eta in self.given or COARSE]
+
+    def point(self, node: Node) -> CriticalFriction:
+        """Critical friction at a node."""
+        counts = self.counter
+        eta = None if node[0] == HERE else node[0]
+        return critical_friction(
+            counts.cage, eta, counts.settings, counter=counts, band=self.band, guess=node[1]
+        )
+
+    def more(self, node: Node, found: Mapping[Node, CriticalFriction]) -> list[Node]:
+        """Nodes that are wanted once this one is known."""
+        if self.given or node[0] == HERE:
+            return []
+        known = {at: point for (at, _), point in found.items() if at != HERE}
+        return [_between(known[low], known[high]) for low, high in finer(node[0], known, bends)]
+
+    def complete(self, found: Mapping[Node, CriticalFriction]) -> bool:
+        """Whether no point is wanted that is not known."""
+        known = {at for at, _ in found}
+        wanted = {at for at, _ in self.first} | {at for node in found for at, _ in self.more(node, found)}
+        return wanted <= known
+
+
+def _between(low: CriticalFriction, high: CriticalFriction) -> Node:
+    """Node half way between two points, and what a line between them lets guess of it."""
+    eta = 0.5 * (low.restitution_factor + high.restitution_factor)
+    if low.critical_friction is None or high.critical_friction is None:
+        return eta, None
+    return eta, 0.5 * (low.critical_friction + high.critical_friction)
+
+
+def bends(low: CriticalFriction, middle: CriticalFriction, high: CriticalFriction) -> bool:
+    """Whether the line between two points misses the middle one, or its band, by more than the scatter."""
+    return any(_misses(ends(low), ends(middle), ends(high)) for ends in (_curve, _band_low, _band_high))
+
+
+def _misses(low: Heights, middle: Heights, high: Heights) -> bool:
+    """Whether a middle lies off the line by more than both are uncertain."""
+    off = middle[0] - 0.5 * (low[0] + high[0])
+    of_line = 0.5 * math.hypot(low[2] - low[1], high[2] - high[1])
+    return abs(off) > FLAT + 0.5 * math.hypot(middle[2] - middle[1], of_line)
+
+
+def height(point: CriticalFriction) -> Ratio:
+    """Critical friction, with 0 or the top of the searched range where there is none."""
+    if point.critical_friction is not None:
+        return point.critical_friction
+    return 0.0 if point.side is Side.ABOVE else SEARCHED_FRICTION
+
+
+Heights = tuple[Ratio, Ratio, Ratio]
+"""A friction with its 95 % interval."""
+
+
+def _curve(point: CriticalFriction) -> Heights:
+    at = height(point)
+    return at, _or(point.scatter_low, at), _or(point.scatter_high, at)
+
+
+def _band_low(point: CriticalFriction) -> Heights:
+    at = _or(point.critical_friction_low, 0.0)
+    return at, _or(point.low_scatter_low, at), _or(point.low_scatter_high, at)
+
+
+def _band_high(point: CriticalFriction) -> Heights:
+    at = _or(point.critical_friction_high, SEARCHED_FRICTION)
+    return at, _or(point.high_scatter_low, at), _or(point.high_scatter_high, at)
+
+
+def _or(value: Ratio | None, other: Ratio) -> Ratio:
+    return other if value is None else value
 
 
 def curve_of_points(
-    cage: PlanarCage, settings: StabilitySettings, points: Sequence[CriticalFriction]
+    cage: PlanarCage,
+    settings: StabilitySettings,
+    points: Iterable[CriticalFriction],
+    *,
+    here: CriticalFriction | None = None,
+    complete: bool = True,
 ) -> StabilityCurve:
     """Return the curve of the points that were finished, rising restitution factors first."""
     rising = sorted(points, key=lambda point: point.restitution_factor)
+    etas = [point.restitution_factor for point in rising]
+    hard = [hard_limit(cage, eta, settings) for eta in etas]
     return StabilityCurve(
         curve=tuple(rising),
-        linear_limit=tuple(linear_limit(cage, point.restitution_factor) for point in rising),
+        here=here,
+        linear_limit=tuple(linear_limit(cage, eta) for eta in etas),
+        hard_limit=tuple(limit for limit in hard if limit is not None),
+        hard_limit_closed=closed_hard_limit(cage.ball_count),
+        band_few=BAND_FEW,
+        band_most=BAND_MOST,
         kicks=settings.kicks,
         middle_kick=settings.middle_kick,
         runs=settings.runs,
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
         searched_friction=SEARCHED_FRICTION,
-        complete=len(points) == len(settings.restitution_factors),
+        adaptive=not settings.restitution_factors,
+        complete=complete,
     )
-
-
-def linear_limit(cage: PlanarCage, restitution_factor: Ratio) -> LinearLimit:
-    """Critical friction of the linear law, 2 zeta sqrt(2/Z), at one restitution factor."""
-    critical = linear_critical_friction(cage_at(cage, restitution_factor, 0.0))
-    return LinearLimit(restitution_factor=restitution_factor, critical_friction=critical)
-
-
-def critical_friction(
-    cage: PlanarCage,
-    restitution_factor: Ratio,
-    settings: StabilitySettings,
-    *,
-    counter: GrowthCounter | None = None,
-    band: bool = True,
-) -> CriticalFriction:
-    """Friction at which half the runs grow from the middle kick, and the band over all kicks.
-
-    Parameters
-    ----------
-    cage : PlanarCage
-        Its race damping and friction are replaced.
-    restitution_factor : float
-        Nominal, of the whole cage mass [-].
-    settings : StabilitySettings
-        Kicks, runs and seed.
-    counter : GrowthCounter, optional
-        To share counts with other questions about the same cage and settings.
-    band : bool
-        Whether the band is wanted; its ends are counted with half the runs.
-    """
-    counts = counter or GrowthCounter(cage, settings)
-    middle = _counter(counts, restitution_factor, settings.middle_kick, settings.runs)
-    half = max(1, settings.runs // 2)
-    at = {kick: _counter(counts, restitution_factor, kick, half) for kick in sorted(settings.kicks)}
-    start = _guess(cage, restitution_factor)
-    found = find_crossing(middle, FRICTION_GRID, 0.5, start)
-    low, high = (None, None)
-    if isinstance(found, Crossing):
-        low, high = interval(middle, FRICTION_GRID, found, 0.5)
-        start = found.cell
-    ends = [(found, 0.5, settings.middle_kick)]
-    ends += [_first(at, 0.1, start), _last(at, 0.9, start)] if band else []
-    values = [end[0].value if isinstance(end[0], Crossing) else None for end in ends] + [None, None]
-    return CriticalFriction(
-        restitution_factor=restitution_factor,
-        critical_friction=values[0],
-        critical_friction_low=values[1],
-        critical_friction_high=values[2],
-        scatter_low=low,
-        scatter_high=high,
-        side=found if isinstance(found, Side) else None,
-        reason=_reason(ends),
-    )
-
-
-def _guess(cage: PlanarCage, eta: Ratio) -> int:
-    """Cell of the friction grid to start from, by the linear law; it costs or saves time only."""
-    limit = linear_limit(cage, min(eta, 0.9)).critical_friction
-    return min(max(bisect_left(FRICTION_GRID, 0.8 * limit), 1), len(FRICTION_GRID) - 2)
-
-
-def _reason(ends: Sequence[Found]) -> str | None:
-    """Return why a crossing is missing; None if none is."""
-    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends if isinstance(side, Side)]
-    return "; ".join(dict.fromkeys(reasons)) or None
-
-
-_REASONS = {
-    Side.ABOVE: "from {1:g} m/s a share of {0:g} of the runs grows even without pocket friction",
-    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to friction {SEARCHED_FRICTION:g}",
-}
-
-
-def _counter(counts: GrowthCounter, eta: Ratio, kick: MetrePerSecond, most: int) -> Counter:
-    def count(friction: Ratio, target: Ratio | None) -> Count:
-        return counts.count(eta, friction, kick, target=target, most=most)
-
-    return count
-
-
-def _first(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
-    """Smallest crossing of the target over the kicks; ABOVE if one is above it without friction."""
-    for kick, count in at.items():
-        if reaches(count, FRICTION_GRID[0], target):
-            return Side.ABOVE, target, kick
-    best: Found = (Side.BELOW, target, max(at))
-    for kick in sorted(at, reverse=True):
-        known = best[0]
-        cell = known.cell if isinstance(known, Crossing) else start - BAND_CELLS
-        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[cell], target).share < target:
-            continue  # this kick needs more friction than the best one
-        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, cell), target, kick), sign=1)
-    return best
-
-
-def _last(at: dict[MetrePerSecond, Counter], target: Ratio, start: int) -> Found:
-    """Largest crossing of the target over the kicks; BELOW if one is below it at the top."""
-    for kick, count in at.items():
-        if not reaches(count, FRICTION_GRID[-1], target):
-            return Side.BELOW, target, kick
-    best: Found = (Side.ABOVE, target, min(at))
-    for kick in sorted(at):
-        known = best[0]
-        cell = known.cell if isinstance(known, Crossing) else start + BAND_CELLS
-        if isinstance(known, Crossing) and at[kick](FRICTION_GRID[cell + 1], target).share >= target:
-            continue  # this kick needs less friction than the best one
-        best = _better(best, (find_crossing(at[kick], FRICTION_GRID, target, cell), target, kick), sign=-1)
-    return best
-
-
-def _better(best: Found, other: Found, *, sign: int) -> Found:
-    """Return the one with the smaller value (sign 1) or the larger (-1); a crossing beats none."""
-    if not isinstance(other[0], Crossing):
-        return best
-    if not isinstance(best[0], Crossing) or sign * other[0].value < sign * best[0].value:
-        return other
-    return best

@@ -1,17 +1,19 @@
-"""How often a cage's motion grows, counted run by run and no more often than the question needs."""
+"""How often a cage's motion grows, counted run by run."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf
+from threading import Event
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
 from separatrix.restitution import damping_for
+from separatrix.stability.pool import Stopped
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
 
-LOOKS = (8, 24)
-"""Runs after which a count is looked at: far from the target few are enough."""
+ALIKE = 24
+"""So many runs that all agree are enough: more would tell nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +34,11 @@ class Count:
 
     @property
     def unanimous(self) -> bool:
-        """True if all of many runs agree: more would tell nothing."""
-        return self.runs >= LOOKS[-1] and self.grown in (0, self.runs)
+        """True if all of many runs agree."""
+        return self.runs >= ALIKE and self.grown in (0, self.runs)
 
-    def decides(self, target: Ratio) -> bool:
-        """True if the target lies outside the 95 % interval, or all of many runs agree."""
-        low, high = self.interval()
-        return not low <= target <= high or self.unanimous
+    def __add__(self, other: Count) -> Count:
+        return Count(self.grown + other.grown, self.runs + other.runs)
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
@@ -57,44 +57,43 @@ def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecond
 class GrowthCounter:
     """Counts growing runs at points (eta, f, kick) and remembers them.
 
-    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers), so
-    neighbouring points differ by the physics and less by luck.
+    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers). `stop`,
+    once set, lets the runs under way end and starts no others.
     """
 
-    def __init__(self, cage: PlanarCage, settings: StabilitySettings) -> None:
-        self.cage, self.settings = cage, settings
-        self._counts: dict[tuple[Ratio, Ratio, MetrePerSecond], Count] = {}
+    def __init__(self, cage: PlanarCage, settings: StabilitySettings, stop: Event | None = None) -> None:
+        self.cage, self.settings, self.stop = cage, settings, stop or Event()
+        self._counts: dict[tuple[Ratio | None, Ratio, MetrePerSecond, int, int], Count] = {}
+
+    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> PlanarCage:
+        """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
+        if restitution_factor is None:
+            return replace(self.cage, ball_cage_friction=friction)
+        return cage_at(self.cage, restitution_factor, friction)
 
     def count(
         self,
-        restitution_factor: Ratio,
+        restitution_factor: Ratio | None,
         friction: Ratio,
         kick: MetrePerSecond,
         *,
-        target: Ratio | None = None,
-        most: int | None = None,
+        first_run: int,
+        runs: int,
     ) -> Count:
-        """Count at a point; with a target, only as many runs as tell on which side of it P lies.
+        """Count the growing runs among those numbered from `first_run`.
 
-        `most` runs at the most, by default those of the settings; 24 that agree are enough.
+        Raises
+        ------
+        Stopped
+            `stop` was set.
         """
-        key = (restitution_factor, friction, kick)
-        most = self.settings.runs if most is None else most
-        known = self._counts.get(key, Count(0, 0))
-        for runs in (*LOOKS, most):
-            told = known.decides(target) if known.runs and target is not None else known.unanimous
-            if known.runs >= most or told:
-                break
-            known = self._extend(key, known, min(runs, most))
-        return known
-
-    def _extend(self, key: tuple[Ratio, Ratio, MetrePerSecond], known: Count, runs: int) -> Count:
-        more = runs - known.runs
-        if more > 0:
-            cage = cage_at(self.cage, key[0], key[1])
+        key = (restitution_factor, friction, kick, first_run, runs)
+        if key not in self._counts:
+            if self.stop.is_set():
+                raise Stopped
+            cage = self.cage_at(restitution_factor, friction)
             found = run_ensemble(
-                cage, self.settings, kicks=(key[2],), runs=more, first_run=known.runs, growth_only=True
+                cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, growth_only=True
             )
-            known = Count(known.grown + int(found.count(RunOutcome.GROWS)[0]), runs)
-            self._counts[key] = known
-        return known
+            self._counts[key] = Count(int(found.count(RunOutcome.GROWS)[0]), runs)
+        return self._counts[key]

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage
-from separatrix.stability.crossing import Side
-from separatrix.stability.curve import SEARCHED_FRICTION, CriticalFriction, critical_friction
+from separatrix.stability.curve import Tracer, height
 from separatrix.stability.growth import GrowthCounter
-from separatrix.stability.pool import Progress, work_through
+from separatrix.stability.point import CriticalFriction
+from separatrix.stability.pool import Progress, work_out
+from separatrix.stability.response import Side
 from separatrix.study import StabilitySettings
 from separatrix.units import Ratio
 
 OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.98, 1.0)
-"""Restitution factors beside those of the settings, so that thresholds are solved over all of 0 to 1."""
+"""Restitution factors beside those that a study gives, so that thresholds are solved over all of 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,12 +51,13 @@ def restitution_threshold(points: Sequence[CriticalFriction], friction: Ratio) -
 
 
 def _first_below(
-    points: Sequence[CriticalFriction], friction: Ratio, height: Callable[[CriticalFriction], Ratio | None]
+    points: Sequence[CriticalFriction], friction: Ratio, end: Callable[[CriticalFriction], Ratio | None]
 ) -> Ratio:
     """Smallest restitution factor at which a curve through the points is below `friction`; 1 if none is."""
     before: tuple[Ratio, Ratio] | None = None
     for point in points:
-        eta, f = point.restitution_factor, _height(point, height(point))
+        known = end(point)
+        eta, f = point.restitution_factor, height(point) if known is None else known
         if f < friction or point.side is Side.ABOVE:
             if before is None:
                 return eta
@@ -66,13 +68,6 @@ def _first_below(
             )
         before = eta, f
     return 1.0
-
-
-def _height(point: CriticalFriction, value: Ratio | None) -> Ratio:
-    """Critical friction, with 0 or the top of the searched range where there is none."""
-    if value is not None:
-        return value
-    return 0.0 if point.side is Side.ABOVE else SEARCHED_FRICTION
 
 
 def threshold_points(
@@ -91,19 +86,21 @@ def threshold_points(
         Interrupted: a threshold needs all the points.
     """
     counts = counter or GrowthCounter(cage, settings)
-    etas = threshold_factors(settings)
-    points = work_through(
-        lambda eta: critical_friction(cage, eta, settings, counter=counts, band=False),
-        etas,
-        jobs=jobs,
-        progress=progress,
+    tracer = Tracer(counts, threshold_factors(settings), band=False)
+    found = work_out(
+        tracer.point, tracer.first, more=tracer.more, jobs=jobs, progress=progress, stop=counts.stop
     )
-    finished = [point for point in points if point is not None]
-    if len(finished) < len(etas):
+    if not tracer.complete(found):
         raise KeyboardInterrupt
-    return finished
+    return rising(found.values())
+
+
+def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
+    """Return the points in the order of their restitution factors."""
+    return sorted(points, key=lambda point: point.restitution_factor)
 
 
 def threshold_factors(settings: StabilitySettings) -> list[Ratio]:
-    """Restitution factors of the settings and those beside them, rising."""
-    return sorted({*settings.restitution_factors, *OUTER_FACTORS})
+    """Restitution factors of the settings and those beside them, rising; none if they are to be chosen."""
+    given = settings.restitution_factors
+    return sorted({*given, *OUTER_FACTORS}) if given else []

@@ -1,0 +1,220 @@
+"""Critical friction at one restitution factor, and the band over the kicks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from separatrix.cage import PlanarCage, linear_critical_friction
+from separatrix.restitution import damping_ratio
+from separatrix.restitution import restitution_factor as nominal
+from separatrix.stability.growth import Count, GrowthCounter
+from separatrix.stability.response import SEARCHED_FRICTION, Crossing, Look, Response, Side
+from separatrix.study import StabilitySettings
+from separatrix.units import MetrePerSecond, Ratio
+
+BAND_FEW, BAND_MOST = 0.1, 0.9
+"""Shares of growing runs at which a kick is said to die, and to grow."""
+
+MIDDLE_RUNS, OTHER_RUNS = 1.5, 0.75
+"""Runs spent near a crossing, in parts of those of the settings: on the critical friction, on the others."""
+
+APART = 1.4
+"""A guess of the ratio between two crossings of one kick; it costs or saves time only."""
+
+Found = Crossing | Side
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriticalFriction:
+    """Critical friction at one restitution factor; None where there is none, with the reason.
+
+    Attributes
+    ----------
+    restitution_factor : float
+        eta [-].
+    critical_friction : float or None
+        Friction at which half the runs grow from the middle kick [-].
+    critical_friction_low, critical_friction_high : float or None
+        The sub-critical band: below the first nine in ten runs die from every kick, above the second nine
+        in ten grow from every kick [-].
+    scatter_low, scatter_high : float or None
+        95 % interval of `critical_friction` from the number of runs [-].
+    low_scatter_low, low_scatter_high, high_scatter_low, high_scatter_high : float or None
+        The same of the ends of the band [-].
+    kick_low, kick_critical_friction, kick_high : tuple
+        Frictions at which a tenth, half, nine tenths of the runs grow, for each kick by itself; None where
+        there is none, empty if the band was not asked for [-].
+    side : Side or None
+        Where `critical_friction` is None: whether P(grow) lies above one half throughout, or below.
+    reason : str or None
+        Why one of the first three is None.
+    """
+
+    restitution_factor: Ratio
+    critical_friction: Ratio | None = None
+    critical_friction_low: Ratio | None = None
+    critical_friction_high: Ratio | None = None
+    scatter_low: Ratio | None = None
+    scatter_high: Ratio | None = None
+    low_scatter_low: Ratio | None = None
+    low_scatter_high: Ratio | None = None
+    high_scatter_low: Ratio | None = None
+    high_scatter_high: Ratio | None = None
+    kick_low: tuple[Ratio | None, ...] = ()
+    kick_critical_friction: tuple[Ratio | None, ...] = ()
+    kick_high: tuple[Ratio | None, ...] = ()
+    side: Side | None = None
+    reason: str | None = None
+
+
+def critical_friction(
+    cage: PlanarCage,
+    restitution_factor: Ratio | None,
+    settings: StabilitySettings,
+    *,
+    counter: GrowthCounter | None = None,
+    band: bool = True,
+    guess: Ratio | None = None,
+) -> CriticalFriction:
+    """Friction at which half the runs grow from the middle kick, and the band over all kicks.
+
+    Parameters
+    ----------
+    cage : PlanarCage
+        Its friction is replaced, and its race damping unless that is asked for.
+    restitution_factor : float or None
+        Nominal, of the whole cage mass [-]; None for the cage's own race damping.
+    settings : StabilitySettings
+        Kicks, runs and seed.
+    counter : GrowthCounter, optional
+        To share counts with other questions about the same cage and settings.
+    band : bool
+        Whether the other kicks and the band are wanted.
+    guess : float, optional
+        A friction near the critical one, to save time; by default from the linear law.
+    """
+    counts = counter or GrowthCounter(cage, settings)
+    eta = own_restitution_factor(cage) if restitution_factor is None else restitution_factor
+    start = linear_guess(counts, restitution_factor) if guess is None else guess
+    responses = {
+        kick: Response(_look(counts, restitution_factor, kick), settings.runs) for kick in settings.kicks
+    }
+    most = max(1, round(MIDDLE_RUNS * settings.runs))
+    found = responses[settings.middle_kick].crossing(0.5, most, start)
+    if not band:
+        return _point(eta, settings, found, {})
+    start = found.value if isinstance(found, Crossing) else start
+    few = max(1, round(OTHER_RUNS * settings.runs))
+    each = {kick: _crossings(response, few, start) for kick, response in responses.items()}
+    each[settings.middle_kick] = (each[settings.middle_kick][0], found, each[settings.middle_kick][2])
+    return _point(eta, settings, found, each)
+
+
+def own_restitution_factor(cage: PlanarCage) -> Ratio:
+    """Nominal restitution factor of a cage's own race damping."""
+    if not isfinite(cage.race_damping):
+        return 1.0
+    return nominal(damping_ratio(cage.ball_cage_stiffness, cage.mass, cage.race_damping))
+
+
+def linear_guess(counts: GrowthCounter, restitution_factor: Ratio | None) -> Ratio:
+    """Friction to start from, by the linear law."""
+    eta = None if restitution_factor is None else min(restitution_factor, 0.9)
+    return 0.8 * linear_critical_friction(counts.cage_at(eta, 0.0))
+
+
+def _look(counts: GrowthCounter, eta: Ratio | None, kick: MetrePerSecond) -> Look:
+    def look(friction: Ratio, first_run: int, runs: int) -> Count:
+        return counts.count(eta, friction, kick, first_run=first_run, runs=runs)
+
+    return look
+
+
+def _crossings(response: Response, runs: int, start: Ratio) -> tuple[Found, Found, Found]:
+    """Crossings of a tenth, one half and nine tenths, from one kick; the runs go to the ends."""
+    middle = response.crossing(0.5, runs // 3, start)
+    near = middle.value if isinstance(middle, Crossing) else start
+    low = response.crossing(BAND_FEW, runs, near / APART)
+    high = response.crossing(BAND_MOST, runs, near * APART)
+    return low, response.crossing(0.5, 0, near), high
+
+
+def _point(
+    eta: Ratio,
+    settings: StabilitySettings,
+    found: Found,
+    each: Mapping[MetrePerSecond, tuple[Found, Found, Found]],
+) -> CriticalFriction:
+    """Record of the crossings, with the reasons of those that are missing."""
+    lows = {kick: three[0] for kick, three in each.items()}
+    highs = {kick: three[2] for kick, three in each.items()}
+    low, high = _first(lows), _last(highs)
+    middle = (found, 0.5, settings.middle_kick)
+    band = [(low[0], BAND_FEW, low[1]), (high[0], BAND_MOST, high[1])] if each else []
+    return CriticalFriction(
+        restitution_factor=eta,
+        critical_friction=_value(found),
+        critical_friction_low=_value(low[0]),
+        critical_friction_high=_value(high[0]),
+        scatter_low=_low(found),
+        scatter_high=_high(found),
+        low_scatter_low=_low(low[0]),
+        low_scatter_high=_high(low[0]),
+        high_scatter_low=_low(high[0]),
+        high_scatter_high=_high(high[0]),
+        kick_low=tuple(_value(three[0]) for three in each.values()),
+        kick_critical_friction=tuple(_value(three[1]) for three in each.values()),
+        kick_high=tuple(_value(three[2]) for three in each.values()),
+        side=found if isinstance(found, Side) else None,
+        reason=_reason([middle, *band]),
+    )
+
+
+def _first(found: Mapping[MetrePerSecond, Found]) -> tuple[Found | None, MetrePerSecond]:
+    """Smallest crossing over the kicks; ABOVE if one kick is above its target without friction."""
+    if not found:
+        return None, 0.0
+    above = [kick for kick, end in found.items() if end is Side.ABOVE]
+    if above:
+        return Side.ABOVE, above[0]
+    crossings = [(end.value, kick) for kick, end in found.items() if isinstance(end, Crossing)]
+    kick = min(crossings)[1] if crossings else max(found)
+    return found[kick], kick
+
+
+def _last(found: Mapping[MetrePerSecond, Found]) -> tuple[Found | None, MetrePerSecond]:
+    """Largest crossing over the kicks; BELOW if one kick is below its target at the top."""
+    if not found:
+        return None, 0.0
+    below = [kick for kick, end in found.items() if end is Side.BELOW]
+    if below:
+        return Side.BELOW, below[0]
+    crossings = [(end.value, kick) for kick, end in found.items() if isinstance(end, Crossing)]
+    kick = max(crossings)[1] if crossings else min(found)
+    return found[kick], kick
+
+
+def _value(found: Found | None) -> Ratio | None:
+    return found.value if isinstance(found, Crossing) else None
+
+
+def _low(found: Found | None) -> Ratio | None:
+    return found.low if isinstance(found, Crossing) else None
+
+
+def _high(found: Found | None) -> Ratio | None:
+    return found.high if isinstance(found, Crossing) else None
+
+
+def _reason(ends: Sequence[tuple[Found | None, Ratio, MetrePerSecond]]) -> str | None:
+    """Return why a crossing is missing; None if none is."""
+    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends if isinstance(side, Side)]
+    return "; ".join(dict.fromkeys(reasons)) or None
+
+
+_REASONS = {
+    Side.ABOVE: "from {1:g} m/s a share of {0:g} of the runs grows even without pocket friction",
+    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to friction {SEARCHED_FRICTION:g}",
+}
