@@ -286,6 +286,10 @@ EDITS = {
         ["[stability] restitution_factors must increase"],
     ),
     "one restitution factor": (("count = 19", "count = 1"), ["restitution_factors", "count from 2", "got 1"]),
+    "no restitution factors": (
+        ("{ from = 0.05, to = 0.95, count = 19 }", "[]"),
+        ["[stability] restitution_factors must not be empty", "Leave it out"],
+    ),
     "restitution factors without count": ((", count = 19", ""), ["restitution_factors lacks: count"]),
     "duration negative": (("runs = 64", 'duration = "-1 s"'), ["[stability] duration must be > 0"]),
     "scatter above one": (

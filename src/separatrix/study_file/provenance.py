@@ -22,6 +22,7 @@ _WITHOUT = {
     "cage.pocket_axial_clearance": "not given: that of the shape",
     "cage.pocket_angles": "default: evenly spaced",
     "cage.land_clearance": "not given: no land",
+    "stability.restitution_factors": "default: chosen where the curve bends",
     "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
 }
 """What the absence of a value means."""

@@ -96,6 +96,8 @@ def pocket_angles(value: Any, where: str) -> tuple[float, ...]:
 
 def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
     """Read ``{ from = 0.05, to = 0.95, count = 19 }``, or a list of numbers."""
+    if not value and isinstance(value, list):
+        raise InputError(where, "must not be empty", cure="Leave it out to have them chosen.")
     if isinstance(value, list):
         return tuple(list_of(ratio)(value, where))
     given = table(value, where, {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
