@@ -18,6 +18,8 @@ FEWEST, MOST = 2, 1000
 EXAMPLE = 'Write it like "cage.pocket_clearance=0.1..1mm" or "film.thickness=0.05..5um:40:log".'
 DEFAULT_X, DEFAULT_Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
 
+HIGHEST = {"restitution_factor": 1.0, "ball_cage_friction": 2.0}
+
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _COUNT = re.compile(r"[0-9]{1,6}")
 
@@ -120,8 +122,9 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
 
 
 def _refuse_no_share(parameter: Parameter, ends: tuple[float, float], text: str, where: str) -> None:
-    if parameter.name == "restitution_factor" and not 0.0 <= ends[0] < ends[1] <= 1.0:
-        raise InputError(where, "must lie between 0 and 1", "-", shown(text))
+    top = HIGHEST.get(parameter.name)
+    if top is not None and not 0.0 <= ends[0] < ends[1] <= top:
+        raise InputError(where, f"must lie between 0 and {top:g}", "-", shown(text))
 
 
 def _plain(text: str, where: str) -> float:

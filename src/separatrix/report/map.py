@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from separatrix.report.cage import chain_facts, study_facts
-from separatrix.report.tables import facts, number, paragraph, quantity, section, table
+from separatrix.report.tables import facts, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]
 
@@ -110,18 +110,22 @@ def _holds_for(document: Document) -> list[tuple[str, str]]:
 
 
 def _ensemble(document: Document) -> list[tuple[str, str]]:
-    rule = document["stopping"]
-    wrong, other = (number(rule[f"{name}_probability"], 4) for name in ("wrong_side", "other_decision"))
-    early = (
-        f"a point has {rule['most_runs']}, or the first {rule['agreeing_runs']} if those agree; at worst the "
-        f"other majority in {wrong}, another decision in {other} of the draws"
-    )
     kick = "each point its own" if _is_axis(document, "kick") else quantity(document["kick"], "m/s")
     return [
         ("Kick", kick),
-        ("Runs", early),
+        ("Runs", _runs(document["stopping"])),
         ("Run", f"{quantity(document['duration'], 's')}, ball scatter {document['ball_scatter']:g}"),
     ]
+
+
+def _runs(rule: Document) -> str:
+    if rule["agreeing_runs"] == rule["most_runs"]:
+        return f"{rule['most_runs']} at every point"
+    wrong, other = (100 * rule[f"{name}_probability"] for name in ("wrong_side", "other_decision"))
+    return (
+        f"{rule['most_runs']}, or the first {rule['agreeing_runs']} if those agree: all runs would have the "
+        f"other majority in at most {wrong:.2g} % of the draws, another decision in at most {other:.2g} %"
+    )
 
 
 def _is_axis(document: Document, parameter: str) -> bool:

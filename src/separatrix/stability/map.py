@@ -6,7 +6,7 @@ import functools
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,7 +22,14 @@ from separatrix.chain import (
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.stability.growth import cage_at
 from separatrix.stability.map_grid import Place, near_a_change, rounds
-from separatrix.stability.map_parameters import FRICTION, KICK, RESTITUTION, value_in, varied
+from separatrix.stability.map_parameters import (
+    FRICTION,
+    KICK,
+    RESTITUTION,
+    changes_traction,
+    value_in,
+    varied,
+)
 from separatrix.stability.map_pool import work_in_batches
 from separatrix.stability.map_records import (
     NOT_RUN,
@@ -40,16 +47,23 @@ from separatrix.stability.map_rule import (
     wrong_side_probability,
 )
 from separatrix.stability.pool import Progress
-from separatrix.study import Study
+from separatrix.study import StabilitySettings, Study
 from separatrix.units import MetrePerSecond, Ratio
 
 BATCH = 8
 """Points that a thread computes before it hands them over: some tenths of a second of work."""
 
+MOST_LINKS = 1024
+"""Links of the chain that are remembered."""
+
+OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)
+"""Parameters that change nothing before the cage itself."""
+
 INTERRUPTED = f"{NOT_RUN}: interrupted"
 AGREED = f"{NOT_RUN}: the points around it agree"
 
 
+Values = tuple[tuple[str, float], ...]
 Known = Mapping[tuple[float, float], MapPoint]
 Keep = Callable[[list[MapPoint]], None]
 
@@ -156,12 +170,13 @@ def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint
 
 
 class PointFinder:
-    """Runs the chain and the cage at points of a map; traction is computed once for each bearing and film."""
+    """Runs the chain and the cage at points of a map; each link of the chain once for what changes it."""
 
     def __init__(self, question: MapQuestion) -> None:
         self.question = question
         self._names = (question.x.parameter, question.y.parameter)
-        self._traction = functools.lru_cache(maxsize=1024)(_traction_or_refusal)
+        self._traction = functools.lru_cache(maxsize=MOST_LINKS)(self._find_traction)
+        self._state = functools.lru_cache(maxsize=MOST_LINKS)(self._find_state)
 
     def __call__(self, at: tuple[float, float]) -> MapPoint:
         """Point at (x, y), with the refusal as its reason if it cannot be run."""
@@ -173,52 +188,57 @@ class PointFinder:
 
     def _run(self, x: float, y: float) -> MapPoint:
         values = dict(zip(self._names, (x, y), strict=True))
-        study = functools.reduce(lambda s, item: varied(s, *item), values.items(), self.question.study)
-        cage, eta = self._cage(study, values)
-        ensemble = decided_ensemble(cage, study, values.get(KICK, self.question.kick), self.question.runs)
+        of_the_chain = tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE)
+        state, settings = _found(self._state(of_the_chain))
+        cage, eta = _cage_of(state, values)
+        ensemble = decided_ensemble(cage, settings, values.get(KICK, self.question.kick), self.question.runs)
         return _judged(x, y, cage, eta, ensemble)
 
-    def _cage(self, study: Study, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
-        """Cage of the varied study, and its restitution factor."""
-        key = replace(study, cage=None, ranking=None, stability=self.question.study.stability)
-        links = self._traction(_Bearing(key))
-        if isinstance(links, str):
-            raise InputError(links.removesuffix("."), "")
-        state = cage_state(study, traction=links)
-        eta = values.get(RESTITUTION)
-        if eta is None:
-            return state.cage, state.restitution.restitution.restitution_factor
-        return cage_at(state.cage, eta, state.cage.ball_cage_friction), eta
+    def _varied(self, values: Values) -> Study:
+        """Study with these values; one without a pocket friction gets one, for it is an axis."""
+        study = functools.reduce(lambda found, item: varied(found, *item), values, self.question.study)
+        return study if FRICTION not in self._names else varied(study, FRICTION, 0.0)
+
+    def _find_state(self, values: Values) -> tuple[CageState, StabilitySettings] | str:
+        """Cage and ensemble of a study, or why there is none: a refusal is worth remembering too."""
+        of_traction = tuple(item for item in values if changes_traction(item[0]))
+        try:
+            study = self._varied(values)
+            return cage_state(study, traction=_found(self._traction(of_traction))), study.stability
+        except (InputError, ConvergenceError) as error:
+            return str(error)
+
+    def _find_traction(self, values: Values) -> TractionState | str:
+        try:
+            return traction_state(self._varied(values))
+        except (InputError, ConvergenceError) as error:
+            return str(error)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Bearing:
-    """A study as far as it changes the traction, to be looked up by."""
-
-    study: Study
-
-    def _key(self) -> tuple[Any, ...]:
-        return self.study.bearing, self.study.operation, self.study.film, self.study.kinematics
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Bearing) and self._key() == other._key()
+Link = TypeVar("Link")
 
 
-def _traction_or_refusal(bearing: _Bearing) -> TractionState | str:
-    """Traction of a bearing, or why there is none: a refusal is worth remembering too."""
-    try:
-        return traction_state(bearing.study)
-    except (InputError, ConvergenceError) as error:
-        return str(error)
+def _found(link: Link | str) -> Link:
+    """Return a link of the chain, or raise the refusal it was."""
+    if isinstance(link, str):
+        raise InputError(link.removesuffix("."), "")
+    return link
 
 
-def decided_ensemble(cage: PlanarCage, study: Study, kick: MetrePerSecond, runs: int) -> Ensemble:
+def _cage_of(state: CageState, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
+    """Cage with the friction and restitution factor of a point, and that restitution factor."""
+    friction = values.get(FRICTION, state.cage.ball_cage_friction)
+    eta = values.get(RESTITUTION)
+    if eta is not None:
+        return cage_at(state.cage, eta, friction), eta
+    return replace(state.cage, ball_cage_friction=friction), state.restitution.restitution.restitution_factor
+
+
+def decided_ensemble(
+    cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int
+) -> Ensemble:
     """Runs from one kick: the first few, and the others unless those agree."""
     first = first_look(runs)
-    settings = study.stability
     ensemble = run_ensemble(cage, settings, kicks=(kick,), runs=first, growth_only=True)
     outcomes = ensemble.outcome
     if first == runs or (outcomes == outcomes[0, 0]).all():

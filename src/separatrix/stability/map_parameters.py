@@ -88,6 +88,11 @@ def varied(study: Study, name: str, value: float) -> Study:
         raise _in_the_words_of_a_file(error) from None
 
 
+def changes_traction(name: str) -> bool:
+    """Whether the traction on the races depends on a parameter."""
+    return name.startswith(("bearing.", "operation.", "film."))
+
+
 def value_in(study: Study, name: str) -> float | None:
     """Value of a key in the study; None where it has none, or is not one of its keys."""
     section, _, key = name.partition(".")
