@@ -159,6 +159,15 @@ def _bars(cage: CageDesign, needed: float) -> _check.Problems:
         yield InputError("CageDesign.pocket_angles", rule, "", format_quantity(step, "rad"))
 
 
+def land_wider_than_a_ball(study: Study) -> _check.Problems:
+    """A cage that can move by a ball's radius would lose its balls before it met its land."""
+    widest, cage = study.bearing.ball_diameter, study.cage
+    if cage is not None and cage.land_clearance is not None and cage.land_clearance >= widest:
+        rule = f"must be smaller than a ball, {format_quantity(widest, 'm')}"
+        cure = 'It is the diametral play; for a cage without a land give guidance = "ball".'
+        yield _check.problem(cage, "land_clearance", rule, cure)
+
+
 def unbalance_beyond_the_cage(study: Study) -> _check.Problems:
     """The centre of mass lies inside the cage."""
     if study.cage is None:

@@ -331,6 +331,7 @@ class Study:
             _rules.free_kinematics_without_friction(self),
             _rules.pockets_that_overlap(self),
             _rules.pockets_for_balls(self),
+            _rules.land_wider_than_a_ball(self),
             _rules.unbalance_beyond_the_cage(self),
             _rules.stiffness_of_unknown_origin(self),
         )

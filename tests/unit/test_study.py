@@ -146,7 +146,10 @@ WRONG_RECORDS = [
     (lambda: Film(race_friction=0.1, material=STEEL), "Film.thickness is missing"),
     (lambda: Film(race_friction=0.1, thickness=1e-6), "Film.material is missing"),
     (lambda: CageDesign(mass=0.0, pocket_clearance=1e-3), "CageDesign.mass must be > 0"),
-    (lambda: CageDesign(mass=0.02, pocket_clearance=-1e-3), "CageDesign.pocket_clearance must be >= 0; got -1 mm"),
+    (
+        lambda: CageDesign(mass=0.02, pocket_clearance=-1e-3),
+        "CageDesign.pocket_clearance must be >= 0; got -1 mm",
+    ),
     (
         lambda: CageDesign(mass=0.02, pocket_clearance=1e-3, guidance=Guidance.OUTER),
         "CageDesign.land_clearance is missing: a cage with outer guidance",

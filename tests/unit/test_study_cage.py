@@ -227,6 +227,10 @@ FILES = [
         {"cage": 'pocket_clearance = "4.5 mm"'},
         "[cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm",
     ),
+    (
+        {"cage": 'guidance = "outer"\nland_clearance = "11.2 mm"'},
+        "[cage] land_clearance must be smaller than a ball, 11.11 mm; got",
+    ),
     ({"cage": 'guidance = "outer"\nland_clearance = "0 mm"'}, "[cage] land_clearance must be > 0"),
 ]
 
