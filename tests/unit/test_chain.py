@@ -15,7 +15,9 @@ from separatrix.chain import (
     traction_state,
 )
 from separatrix.errors import InputError, ValidityWarning
+from separatrix.report.cage import chain_facts
 from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.results import documents
 from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape
 from separatrix.study_file import read_study
 
@@ -168,3 +170,17 @@ def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
     assert pushed.lead_amplitude > pushed.half_play
     free = cage_state(study(operation=replace(STUDY.operation, radial_load=100.0))).cage
     assert 0.0 < free.lead_amplitude < free.half_play
+
+
+def test_results_and_report_say_how_far_balls_lead_and_lag():
+    """Beside half their play, with what the harmonics keep; nothing of it where all balls run alike."""
+    loaded = cage_state(study(operation=replace(STUDY.operation, radial_load=100.0)))
+    chain = documents.cage(loaded)["chain"]
+    assert chain["half_play"] == 3e-4
+    assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
+    assert dict(chain_facts(chain))["Balls lead and lag by"] == (
+        "63.58 um if free, of 300 um half play; computed with 100 % of the variance of their speeds"
+    )
+    alike = documents.cage(cage_state(STUDY))["chain"]
+    assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)
+    assert "Balls lead and lag by" not in dict(chain_facts(alike))
