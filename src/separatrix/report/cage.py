@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import hypot
+from statistics import fmean, pstdev
 from typing import Any
 
 from separatrix.report.tables import facts, number, paragraph, quantity, section, significant, table
@@ -88,13 +90,25 @@ def chain_facts(chain: Document) -> list[tuple[str, str]]:
             "Ball/cage stiffness",
             f"{quantity(chain['ball_cage_stiffness'], 'N/m')}, {chain['stiffness_source']}",
         ),
+        *_lead_and_lag(chain),
     ]
+
+
+def _lead_and_lag(chain: Document) -> list[tuple[str, str]]:
+    """Return how far balls run ahead and behind in a bearing whose balls do not run alike."""
+    if chain.get("orbital_share") is None:
+        return []
+    lead, play = (quantity(chain[name], "m") for name in ("lead_amplitude", "half_play"))
+    share = f"{100 * chain['orbital_share']:.4g} % of the variance of their speeds"
+    return [("Balls lead and lag by", f"{lead} if free, of {play} half play; computed with {share}")]
 
 
 def restitution_text(chain: Document) -> str:
     """Return both restitution factors in a few words."""
     printed, free = chain["restitution_factor"], chain["restitution_factor_free_spin"]
-    return f"{number(printed)} as printed (Eq. 18); {number(free)} with the ball free to spin"
+    hertz = number(chain["restitution_factor_hertz"])
+    spins = f"{number(free)} with the ball free to spin"
+    return f"{number(printed)} as printed (Eq. 18); {spins}; {hertz} with a Hertzian pocket"
 
 
 def ensemble_facts(settings: Document) -> list[tuple[str, str]]:
@@ -111,28 +125,12 @@ FIRST = ", the first candidate's; [cage] ball_cage_friction sets it"
 
 
 def simulate(document: Document) -> list[str]:
-    """How one run ended, its largest offset and force, and the work that drove it."""
-    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
-    end = f"{document['outcome']} after {quantity(document['time'][-1], 's')}."
-    ended = [
-        ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
-        ("Pocket friction", number(document["cage"]["ball_cage_friction"]) + origin),
-        ("Ended", f"{end} {document['outcome_sentence']}"),
-        (
-            "Energy growth",
-            f"{significant(document['energy_growth'])}, mean energy at its end over the kick's",
-        ),
-        ("Largest offset", quantity(document["largest_offset"], "m")),
-        ("Largest pocket force", quantity(document["largest_contact_force"], "N")),
-    ]
-    work = [
-        (name.replace("_", " "), f"{1e3 * values[-1]:.4g} mJ")
-        for name, values in document["work"].items()
-        if any(values)
-    ]
+    """How one run ended, where its centre went, its largest forces, and the work that drove it."""
     return [
-        section("The run", facts(ended)),
-        section("Work on the cage", facts(work or [("none", "0 mJ")])),
+        section("The run", facts(_ended(document))),
+        section("Centre of the cage", facts([*orbit_facts(document), room_fact(document)])),
+        section("Largest forces", facts(_forces(document))),
+        section("Work on the cage, and the energy that it has at the end", facts(_energies(document))),
         section(
             "What it holds for", facts([*study_facts(document["study"]), *chain_facts(document["chain"])])
         ),
@@ -141,3 +139,164 @@ def simulate(document: Document) -> list[str]:
             indent="",
         ),
     ]
+
+
+def _ended(document: Document) -> list[tuple[str, str]]:
+    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
+    end = f"{document['outcome']} after {quantity(document['time'][-1], 's')}."
+    return [
+        ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
+        ("Pocket friction", number(document["cage"]["ball_cage_friction"]) + origin),
+        ("Ended", f"{end} {document['outcome_sentence']}"),
+        (
+            "Energy growth",
+            f"{significant(document['energy_growth'])}, mean energy at its end over the kick's",
+        ),
+    ]
+
+
+def orbit_facts(document: Document) -> list[tuple[str, str]]:
+    """Return how far the centre went, and how it moved in the last fifth of the run."""
+    start = LAST * document["time"][-1]
+    at_end = [hypot(*g) for t, g in zip(document["time"], document["position"], strict=True) if t >= start]
+    mean, spread = fmean(at_end), pstdev(at_end)
+    evenness = f"{number(spread / mean, 2)} of it (0: a circle about the axis)" if mean > 0.0 else "none"
+    return [
+        ("Largest offset", quantity(document["largest_offset"], "m")),
+        ("Mean offset at the end", f"{quantity(mean, 'm')}, over the last fifth"),
+        ("Its spread", evenness),
+    ]
+
+
+LAST = 0.8
+
+
+def room_fact(document: Document) -> tuple[str, str]:
+    """Return what the offset is to be held against: half the play of the pockets, and the land."""
+    cage, play = (
+        document["cage"],
+        f"{quantity(document['chain']['half_play'], 'm')} of half play in the pockets",
+    )
+    if cage["guidance"] == "ball":
+        return "Room", f"{play}, no land"
+    return (
+        "Room",
+        f"land of the {cage['guidance']} ring at {quantity(cage['land_clearance'] / 2.0, 'm')}; {play}",
+    )
+
+
+def _forces(document: Document) -> list[tuple[str, str]]:
+    """Return the largest force of a pocket, which one, and of the land."""
+    peaks = [max(map(abs, column)) for column in zip(*document["contact_force"], strict=True)]
+    ball = max(range(len(peaks)), key=peaks.__getitem__)
+    return [
+        ("Pocket", f"{quantity(document['largest_contact_force'], 'N')}, at ball {ball}"),
+        ("Land", quantity(max(document["land_force"]), "N")),
+    ]
+
+
+def _energies(document: Document) -> list[tuple[str, str]]:
+    """Return the work of every source that did any, and the energies at the end."""
+    work = {name: values[-1] for name, values in document["work"].items() if any(values)}
+    held = {key: document[key][-1] for key in document if key in ENERGIES and any(document[key])}
+    return [(name.replace("_", " "), f"{1e3 * value:.4g} mJ") for name, value in (work | held).items()]
+
+
+ENERGIES = ("kinetic_energy", "spring_energy", "land_energy")
+DIRECTIONS = {1: "forward", -1: "backward", 0: "none"}
+
+
+def judgement_facts(found: Document) -> list[tuple[str, str]]:
+    """Return a verdict with its evidence on a few lines: nobody should have to take the word alone.
+
+    Parameters
+    ----------
+    found : mapping
+        The fields of a `Judgement`, as plain data.
+    """
+    return [
+        ("Verdict", f"{found['verdict']}. {found['reason']}"),
+        ("Motion", f"{found['cage_motion']}: {MOTIONS[found['cage_motion']]}"),
+        ("P(stable)", _between(found, "probability_stable", "probability", 2)),
+        ("Growth rate", f"{growth_text(found)}, from {found['growth_kick']:g} m/s, the worst kick"),
+        ("Offset", offset_text(found)),
+        ("Drift rate", drift_text(found)),
+        ("Largest forces", forces_text(found)),
+        ("Impacts", impacts_text(found)),
+        ("Whirl", whirl_text(found)),
+        (
+            "Energy growth",
+            f"{significant(found['energy_growth'], 2)}; frame and loads alone can give "
+            f"{1e3 * found['drive_energy']:.3g} mJ",
+        ),
+        ("Runs", f"{found['runs']} from each kick, of {quantity(found['duration'], 's')}"),
+    ]
+
+
+MOTIONS = {
+    "STABLE": "the centre stays near the axis, or rests where its loads hold it",
+    "CIRCLING": "the centre circles the axis at an even distance",
+    "UNSTABLE": "the cage gains energy, or its centre leaves the play of its pockets",
+}
+
+
+def growth_text(found: Document) -> str:
+    """Return the growth rate with its interval."""
+    rate = f"{significant(found['growth_rate'], 3)} 1/s"
+    if found["growth_rate_low"] is None:
+        return f"{rate} (one run: no interval)"
+    low, high = (significant(found[f"growth_rate_{end}"], 3) for end in ("low", "high"))
+    return f"{rate} (95 %: {low} to {high})"
+
+
+def offset_text(found: Document) -> str:
+    """Return how far the centre went at most, where it was at the end, and how evenly."""
+    largest, mean = (quantity(found[key], "m") for key in ("largest_offset", "mean_offset"))
+    return (
+        f"{largest} at most; {mean} at the end, with a spread of {number(found['orbit_evenness'], 2)} of it"
+    )
+
+
+def drift_text(found: Document) -> str:
+    """Return the drift rate as measured, and by the linear law for a cage without a land."""
+    measured = f"{significant(found['drift_rate'], 3)} 1/s"
+    law = found["drift_rate_law"]
+    return f"{measured}; by the linear law {significant(law, 3)} 1/s" if law else measured
+
+
+def forces_text(found: Document) -> str:
+    """Return the largest forces."""
+    pocket, land = (quantity(found[f"largest_{key}_force"], "N") for key in ("contact", "land"))
+    return f"{pocket} at a pocket, {land} at the land"
+
+
+def impacts_text(found: Document) -> str:
+    """Return which pocket is met most, against an even share, and what the land takes."""
+    shares = found["pocket_impact_shares"]
+    if not any(shares):
+        return "none at a pocket" + (
+            ", all at the land" if found["land_impact_share"] else ", none at the land"
+        )
+    most = max(range(len(shares)), key=shares.__getitem__)
+    return (
+        f"pocket {most} takes {_percent(shares[most])} of those at pockets, an even share being "
+        f"{_percent(1.0 / len(shares))}; the land {_percent(found['land_impact_share'])} of all"
+    )
+
+
+def whirl_text(found: Document) -> str:
+    """Return frequency and direction in the turning frame, and the whirl ratio in the fixed one."""
+    seen = f"{quantity(found['whirl_frequency'], 'Hz')} {DIRECTIONS[found['whirl_direction']]}"
+    ratio = found["whirl_ratio"]
+    if ratio is None:
+        return f"{seen}; the ball set is at rest"
+    return f"{seen}, seen from the balls; the centre orbits at {number(ratio, 2)} of the ball set's speed"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.0f} %"
+
+
+def _between(found: Document, key: str, ends: str, digits: int) -> str:
+    low, high = (number(found[f"{ends}_{end}"], digits) for end in ("low", "high"))
+    return f"{number(found[key], digits)} (95 %: {low} to {high})"
