@@ -19,7 +19,7 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "traction": {"traction-curves": traction.curves, "traction-shear": traction.shear},
     "restitution": {"restitution-film": restitution.lubrication},
     "stability": {"stability-curve": stability.stability},
-    "simulate": {"simulation": simulation.run},
+    "simulate": {"simulation": simulation.run, "simulation-forces": simulation.forces},
     "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
 }
 """Verb -> name of the file -> what draws it."""
