@@ -140,10 +140,10 @@ def rates(t, rising, z, p, out):
 
 
 @numba.njit
-def march(z, steps, h, p, rows):
+def march(z, steps, h, p, rows, most):
     """Take the steps in place; fill `rows` evenly; return the mean kinetic energy of the last fifth [J].
 
-    A run of more than a hundred joules is taken to grow without end.
+    A run of more kinetic energy than `most` is taken to grow without end.
     """
     a, b, c, d = np.empty_like(z), np.empty_like(z), np.empty_like(z), np.empty_like(z)
     every = steps // max(1, len(rows) - 1)
@@ -159,7 +159,7 @@ def march(z, steps, h, p, rows):
         rates(t + h, rising, z + h * c, p, d)
         z += h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
         energy = 0.5 * p.mass * (z[VX] ** 2 + z[VY] ** 2) + 0.5 * p.inertia * z[SPIN] ** 2
-        if energy > 100.0:
+        if energy > most:
             return np.inf
         if i >= first:
             mean += energy
@@ -210,7 +210,7 @@ def follow(
     count = max(1, round(duration / step / every))
     h = duration / (count * every)
     rows = np.empty((count + 1, BALLS + cage.ball_count))
-    march(start(p, kick, direction, ball_lead), count * every, h, p, rows)
+    march(start(p, kick, direction, ball_lead), count * every, h, p, rows, math.inf)
     eccentric = p.eccentricity * np.stack([np.cos(rows[:, THETA]), np.sin(rows[:, THETA])], axis=1)
     return Course(
         time=np.arange(count + 1) * every * h,
@@ -228,8 +228,9 @@ def grows(cage, *, kick, direction, ball_lead, duration, step, half_play=None, p
     """Mean kinetic energy over the last fifth of the run, over that of the kick."""
     p = numbers(cage, half_play, pocket_angle, slip)
     nothing = np.empty((0, BALLS + cage.ball_count))
-    mean = march(start(p, kick, direction, ball_lead), round(duration / step), step, p, nothing)
-    return mean / (0.5 * cage.mass * kick**2)
+    given = 0.5 * cage.mass * kick**2
+    mean = march(start(p, kick, direction, ball_lead), round(duration / step), step, p, nothing, 1e5 * given)
+    return mean / given
 
 
 def start(p, kick, direction, ball_lead):
