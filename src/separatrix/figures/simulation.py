@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from separatrix.figures.orbit import draw_orbit, half_plays, land_boundary
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, PAGE, SKY, VERMILION, canvas, label_lines
@@ -111,7 +112,7 @@ def source_look(name: str) -> dict[str, Any]:
 def draw_energy(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
     """Draw the energy with its kinetic part, and the work of each source since the start.
 
-    Beside other runs the scale has room for them: linear up to about the energy of the kick, logarithmic beyond.
+    Beside other runs the scale has room for them: linear up to about that of the kick, logarithmic beyond.
     """
     time, total = milliseconds(data), 1e3 * total_energy(data)
     axes.plot(time, total, color=BLACK, lw=1.0, label="energy", zorder=2.1)
@@ -214,7 +215,7 @@ def _raster(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
     look: Any = {"cmap": "Greys", "norm": norm, "rasterized": True}
     mesh = axes.pcolormesh(edges, np.arange(count + 1) + 0.5, force.T, **look)
     axes.set(ylabel="pocket")
-    axes.yaxis.get_major_locator().set_params(integer=True, min_n_ticks=1)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     time_axis(axes, data)
     bar = figure.colorbar(mesh, ax=axes, pad=0.01, aspect=14)
     bar.set_label("force [N], root scale")
@@ -259,7 +260,7 @@ def _touches(axes: Axes, data: xr.Dataset) -> None:
     )
     axes.axhline(100 / forward.size, color=GREY, lw=0.8, ls=(0, (4, 1.5)), label="even share")
     axes.set(xlabel="pocket", ylabel="share of touches [%]", xlim=(0.3, forward.size + 0.7))
-    axes.xaxis.get_major_locator().set_params(integer=True, min_n_ticks=1)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axes.set_ylim(0, 1.3 * max(axes.get_ylim()[1], 1.0))
     axes.set_title(f"c  Share of each pocket in the {total:.0f} touches seen in the samples")
     axes.legend(loc="upper right", ncols=3, handlelength=1.6)
