@@ -70,11 +70,11 @@ def test_scatter_of_the_friction_becomes_a_standard_error():
 
 def test_the_papers_word_is_printed_where_it_differs():
     """Stable below 0.6, or unstable above it: the paper says the opposite of the verdict."""
-    assert "would call it inapt" in disagreement(0.5, 0.27, Verdict.STABLE)
-    assert "would keep it" in disagreement(0.7, 0.9, Verdict.UNSTABLE)
-    assert disagreement(0.7, 0.27, Verdict.STABLE) == ""
-    assert disagreement(0.5, 0.9, Verdict.UNSTABLE) == ""
-    assert disagreement(0.5, 0.27, Verdict.UNDECIDED) == ""
+    assert disagreement(0.5, Verdict.STABLE) == "The paper would call it inapt."
+    assert disagreement(0.7, Verdict.UNSTABLE) == "The paper would keep it."
+    assert disagreement(0.7, Verdict.STABLE) == ""
+    assert disagreement(0.5, Verdict.UNSTABLE) == ""
+    assert disagreement(0.5, Verdict.UNDECIDED) == ""
 
 
 def test_the_reason_holds_the_numbers():

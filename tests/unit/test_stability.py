@@ -1,80 +1,211 @@
-"""Counting, crossing and inverting, without any cage: a counter that knows its probabilities."""
+"""Counting, crossing, tracing and inverting, without any cage: a counter that knows its probabilities."""
 
+import math
 import threading
 import time
+from itertools import accumulate, pairwise
 
+import numpy as np
 import pytest
 
-from separatrix.stability import Count, CriticalFriction, Side, restitution_threshold, threshold_factors
-from separatrix.stability.crossing import Crossing, find_crossing, interval
-from separatrix.stability.pool import work_through
+from separatrix.stability import (
+    Count,
+    CriticalFriction,
+    Response,
+    Side,
+    closed_hard_limit,
+    restitution_threshold,
+    threshold_factors,
+)
+from separatrix.stability.curve import Tracer, bends
+from separatrix.stability.pool import Stopped, work_out, work_through
+from separatrix.stability.response import LADDER, cell_of
+from separatrix.stability.tracing import COARSE, FINEST, finer
 from separatrix.study import StabilitySettings
 
-GRID = tuple(i / 20 for i in range(21))
+
+def response(probability, runs=64):
+    """Response whose counts are, run by run, as near to the probability as whole numbers allow."""
+    due = {}
+
+    def look(friction, first_run, count):
+        before = due.get(friction, 0.0)
+        due[friction] = before + count * probability(friction)
+        return Count(math.floor(due[friction] + 0.5) - math.floor(before + 0.5), count)
+
+    return Response(look, runs)
 
 
-def counter(probability, runs=64, few=8):
-    """Count exactly the expected number of growing runs; few of them where a target is far."""
-
-    def count(at, target):
-        p = probability(at)
-        first = Count(round(p * few), few)
-        return first if target is not None and first.decides(target) else Count(round(p * runs), runs)
-
-    return count
+def logistic(middle, slope):
+    """P(grow) logistic in ln f."""
+    return lambda f: 1.0 / (1.0 + (middle / f) ** slope) if f > 0.0 else 0.0
 
 
-def ramp(start, end):
-    """Probability that rises in a straight line."""
-    return lambda x: min(1.0, max(0.0, (x - start) / (end - start)))
-
-
-def test_a_few_runs_decide_far_from_the_target_only():
-    """Eight dead runs tell P from one half but not from a tenth; 24 that agree decide anything."""
-    assert Count(0, 8).decides(0.5)
-    assert not Count(0, 8).decides(0.1)
-    assert not Count(4, 8).decides(0.5)
-    assert Count(0, 24).decides(0.1)
-
-
-@pytest.mark.parametrize("start", [0, 3, 10, 19, 20])
+@pytest.mark.parametrize("slope", [5.0, 10.0, 20.0])
+@pytest.mark.parametrize("guess", [0.03, 0.1, 0.8])
 @pytest.mark.parametrize("target", [0.1, 0.5, 0.9])
-def test_a_crossing_is_found_from_any_start(start, target):
-    """A ramp from 0.2 to 0.7 crosses its target at 0.2 + 0.5 target; one run in 64 is 0.008 here."""
-    found = find_crossing(counter(ramp(0.2, 0.7)), GRID, target, start)
-    assert isinstance(found, Crossing)
-    assert found.value == pytest.approx(0.2 + 0.5 * target, abs=0.008)
+def test_a_crossing_is_found_from_any_guess(guess, slope, target):
+    """A logistic P passes its target where algebra says, inside the interval, and nearer than its half."""
+    at = 0.12 * (target / (1.0 - target)) ** (1.0 / slope)
+    found = response(logistic(0.12, slope)).crossing(target, 96, guess)
+    assert found.low < at < found.high
+    assert abs(math.log(found.value / at)) < 0.5 * math.log(found.high / found.low)
+
+
+def test_the_interval_shrinks_with_the_root_of_the_runs():
+    """Sixteen times the runs, a quarter of the interval; 30 %, for runs stand on a ladder."""
+
+    def width(runs):
+        found = response(logistic(0.1, 8.0), runs).crossing(0.5, runs, 0.1)
+        return math.log(found.high / found.low)
+
+    assert width(64) / width(1024) == pytest.approx(4.0, rel=0.3)
+
+
+def test_the_interval_covers_the_truth_as_often_as_it_says():
+    """Binomial luck, 200 ensembles: at least 90 % hold the truth (95 % less 3 standard deviations of 200)."""
+    numbers = np.random.default_rng(7)
+    held = 0
+    for _ in range(200):
+        look = lambda f, _, runs: Count(int(numbers.binomial(runs, logistic(0.1, 8.0)(f))), runs)  # noqa: E731
+        found = Response(look, 64).crossing(0.5, 96, 0.08)
+        held += found.low <= 0.1 <= found.high
+    assert held >= 180
 
 
 @pytest.mark.parametrize(("share", "side"), [(0.8, Side.ABOVE), (0.2, Side.BELOW)])
 def test_without_a_crossing_the_side_is_told(share, side):
     """P that never meets one half lies above or below it; nothing is extrapolated."""
-    assert find_crossing(counter(lambda _: share), GRID, 0.5) is side
+    assert response(lambda _: share).crossing(0.5, 96, 0.1) is side
 
 
 def test_what_falls_again_is_not_inverted_blindly():
-    """P that is above one half at the low end is ABOVE, though it falls below further up."""
-    assert find_crossing(counter(lambda x: 0.9 - x), GRID, 0.5, start=15) is Side.ABOVE
-
-
-def test_the_interval_holds_the_points_where_counts_do_not_decide():
-    """64 runs at P = 1/2 leave 0.38 to 0.62: a fifth of the ramp on either side, here 0.06."""
-    count = counter(ramp(0.2, 0.7))
-    found = find_crossing(count, GRID, 0.5)
-    low, high = interval(count, GRID, found, 0.5)
-    assert (low, high) == pytest.approx(
-        (0.39, 0.51), abs=0.01
-    )  # rounding of counts, curvature of Wilson's ends
+    """P that is above one half without friction is ABOVE, though it falls below further up."""
+    assert response(lambda f: 0.9 - 0.8 * f).crossing(0.5, 96, 0.9) is Side.ABOVE
 
 
 def test_a_jump_inside_a_cell_leaves_the_whole_cell():
-    """P that steps from 0 to 1 between two points is somewhere between them, and no more is known."""
-    count = counter(lambda x: float(x > 0.42))
-    found = find_crossing(count, GRID, 0.5)
-    assert interval(count, GRID, found, 0.5) == (0.4, 0.45)
+    """P that steps from 0 to 1 between two places is somewhere between them, and no more is known."""
+    found = response(lambda f: float(f > 0.105)).crossing(0.5, 96, 0.1)
+    assert (found.low, found.high) == (LADDER[cell_of(0.1)], LADDER[cell_of(0.11)])
+    assert found.low < found.value < found.high
 
 
-def point(eta, f, spread=0.01, side=None):
+def test_below_the_ladder_is_between_nothing_and_its_first_step():
+    """P that is above one half at the smallest friction but not at none: between the two."""
+    found = response(lambda f: float(f > 0.0)).crossing(0.5, 96, 0.1)
+    assert (found.low, found.high) == (0.0, LADDER[1])
+
+
+def test_few_runs_are_wasted_far_from_the_crossing():
+    """96 runs near it; 8 at each end, and fewer looks than the ladder has places from a far guess."""
+    found = response(logistic(0.1, 8.0))
+    found.crossing(0.5, 96, 0.9)
+    assert 96 <= sum(count.runs for count in found.counts.values()) <= 96 + 8 * 9
+
+
+def test_runs_are_numbered_one_after_the_other():
+    """No run is counted twice, so that the counts are independent."""
+    asked = []
+
+    def look(friction, first_run, runs):
+        asked.append((first_run, runs))
+        return Count(round(runs * logistic(0.1, 8.0)(friction)) if friction else 0, runs)
+
+    Response(look, 64).crossing(0.5, 96, 0.1)
+    ends = [0, *accumulate(runs for _, runs in asked)]
+    assert [first for first, _ in asked] == ends[:-1]
+
+
+def test_24_that_agree_are_unanimous():
+    """Of 8 that agree a tenth may still grow."""
+    assert Count(0, 24).unanimous
+    assert Count(24, 24).unanimous
+    assert not Count(0, 8).unanimous
+    assert not Count(1, 24).unanimous
+
+
+@pytest.mark.parametrize(("balls", "limit"), [(11, 0.1438), (12, 0.2679)])
+def test_hard_dead_blows_have_a_closed_limit(balls, limit):
+    """tan(pi/22) and tan(pi/12), four digits given; two balls leave the cage a way out."""
+    assert closed_hard_limit(balls) == pytest.approx(limit, abs=5e-5)
+    assert closed_hard_limit(2) is None
+
+
+def traced(height, spread=0.002):
+    """Points of a curve that is followed through a known height."""
+
+    def compute(node):
+        return point(node[0], height(node[0]), spread)
+
+    tracer = Tracer(None, (), band=False)
+    found = work_out(compute, tracer.first, more=tracer.more)
+    assert tracer.complete(found)
+    return {node[0]: one for node, one in found.items()}
+
+
+def test_a_straight_curve_has_the_first_points_only():
+    """Nothing bends, nothing is halved."""
+    assert sorted(traced(lambda eta: 0.3 - 0.2 * eta)) == list(COARSE)
+
+
+def test_points_stand_where_the_curve_bends():
+    """A corner at 0.3: points crowd around it, and none is added beyond one half."""
+    etas = sorted(traced(lambda eta: max(0.3 - 0.8 * eta, 0.06)))
+    assert [eta for eta in etas if eta > 0.5] == [0.75, 1.0]
+    assert FINEST in [b - a for a, b in pairwise(etas)]
+    assert len([eta for eta in etas if abs(eta - 0.3) < 0.07]) >= 3
+
+
+def test_the_followed_curve_is_nowhere_far_from_the_true_one():
+    """Straight lines between the points stay within twice the scatter of a smooth curve that bends."""
+
+    def height(eta):
+        return 0.05 + 0.3 * (1.0 - eta) ** 3
+
+    found = traced(height, spread=0.004)
+    etas = sorted(found)
+    for i in range(1001):
+        eta = i / 1000
+        low = max(at for at in etas if at <= eta)
+        high = min(at for at in etas if at >= eta)
+        share = (eta - low) / (high - low) if high > low else 0.0
+        line = (1.0 - share) * found[low].critical_friction + share * found[high].critical_friction
+        assert abs(line - height(eta)) < 0.008
+
+
+def test_scatter_alone_adds_no_points():
+    """What bends by less than its interval is not followed."""
+    assert sorted(traced(lambda eta: 0.2 + 0.01 * math.sin(40.0 * eta), spread=0.02)) == list(COARSE)
+
+
+def test_where_there_is_no_boundary_no_points_are_added():
+    """Unstable without friction at every restitution factor: five points say so."""
+    assert sorted(traced(lambda _: None)) == list(COARSE)
+
+
+def test_an_end_of_the_boundary_is_followed():
+    """Where the critical friction ceases to exist the points crowd to the finest distance."""
+    etas = sorted(traced(lambda eta: 0.2 if eta < 0.7 else None))
+    assert min(b - a for a, b in pairwise(etas)) == FINEST
+
+
+def test_the_order_in_which_points_finish_does_not_matter():
+    """Whatever is known first, the same points are wanted in the end."""
+    heights = {eta: point(eta, 0.3 / (1.0 + 9.0 * eta), 0.002) for eta in (i / 32 for i in range(33))}
+    seen = set()
+    for order in (1, -1):
+        known, queue = {}, list(COARSE)[::order]
+        while queue:
+            eta = queue.pop()
+            known[eta] = heights[eta]
+            queue += [0.5 * (a + b) for a, b in finer(eta, known, bends) if 0.5 * (a + b) not in known]
+        seen.add(tuple(sorted(known)))
+    assert len(seen) == 1
+    assert len(seen.pop()) > len(COARSE)
+
+
+def point(eta, f, spread=0.01, side=Side.ABOVE):
     """Critical friction at one restitution factor."""
     if f is None:
         return CriticalFriction(restitution_factor=eta, side=side)
@@ -124,6 +255,7 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
     """The points go from 0 to 1, whatever restitution factors the study asks for."""
     factors = threshold_factors(StabilitySettings(restitution_factors=(0.3, 0.5)))
     assert factors == [0.0, 0.3, 0.5, 0.98, 1.0]
+    assert threshold_factors(StabilitySettings()) == []
 
 
 def test_work_comes_back_in_order():
@@ -157,3 +289,35 @@ def test_a_fault_in_the_work_is_not_swallowed():
     """An exception of one item is raised, not turned into a gap."""
     with pytest.raises(ZeroDivisionError):
         work_through(lambda x: 1 // x, [1, 0], jobs=2)
+
+
+def test_a_long_computation_is_stopped_by_an_interrupt():
+    """The thread inside a point looks at the flag and gives up; what was finished before is kept."""
+    stop = threading.Event()
+
+    def compute(place):
+        if place == 0:
+            return "done"
+        if not stop.wait(timeout=20.0):
+            return "too late"
+        raise Stopped
+
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    assert work_out(compute, [0, 1], jobs=2, stop=stop, progress=interrupt) == {0: "done"}
+
+
+def test_places_that_follow_are_computed_once():
+    """A place that two others ask for is computed once, and progress counts it."""
+    computed, told = [], []
+
+    def compute(place):
+        computed.append(place)
+        return place
+
+    found = work_out(
+        compute, [1, 2], more=lambda place, _: [3] if place < 3 else [], progress=lambda *at: told.append(at)
+    )
+    assert sorted(computed) == sorted(found) == [1, 2, 3]
+    assert told[-1] == (3, 3)

@@ -28,19 +28,18 @@ def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgeme
     side = f", {abs(margin):.2f} {'below' if margin >= 0 else 'above'} that"
     film = f"the film gives {eta:.2f}{'' if threshold.value in need else side}"
     first = f"With a friction of {friction:.3g} it {allowed}; {film}."
-    return " ".join((first, judgement.reason, disagreement(threshold.value, eta, judgement.verdict))).rstrip()
+    return " ".join((first, judgement.reason, disagreement(threshold.value, judgement.verdict))).rstrip()
 
 
-def disagreement(threshold: Ratio, eta: Ratio, verdict: Verdict) -> str:
+def disagreement(threshold: Ratio, verdict: Verdict) -> str:
     """Return how the paper's statement differs from the verdict; empty if it does not.
 
-    The paper calls a material inapt if it needs a restitution factor below 0.6, whatever its film gives.
+    The paper calls a material inapt if it needs a restitution factor below 0.6, whatever its film gives;
+    `PAPER_STATEMENT` says so once for all of them.
     """
-    limit, inapt = SOLID_LUBRICATION_LIMIT, threshold < SOLID_LUBRICATION_LIMIT
+    inapt = threshold < SOLID_LUBRICATION_LIMIT
     if inapt and verdict is Verdict.STABLE:
-        return (
-            f"The paper would call it inapt: less than {limit:g} is out of reach; this film gives {eta:.2f}."
-        )
+        return "The paper would call it inapt."
     if not inapt and verdict is Verdict.UNSTABLE:
-        return f"The paper would keep it: it needs no less than {limit:g}; but this film gives {eta:.2f}."
+        return "The paper would keep it."
     return ""

@@ -39,7 +39,7 @@ SLOPES: Array = np.geomspace(3.0, 100.0, 13)
 """Slopes of logit P in ln f that are thought possible, equally likely each; measured ones lie between."""
 
 PLACES: Array = np.linspace(-1.3 * NEAR, 1.3 * NEAR, 81) * STEP
-QUARTERS = (0.25, 0.75)
+EITHER_SIDE = (0.1, 0.9)
 ENDS_95 = (0.025, 0.975)
 
 Look = Callable[[Ratio, int, int], Count]
@@ -146,7 +146,7 @@ class Response:
                 return jump
             if sum(count.runs for count in self._near(centre).values()) >= runs:
                 break
-            wanted = math.exp(quantile(place, weight, QUARTERS[turn % 2]))
+            wanted = math.exp(quantile(place, weight, EITHER_SIDE[turn % 2]))
             self.add(cell_of(wanted), max(min(BATCH, runs), runs // 12))
         low, high = (math.exp(quantile(place, weight, q)) for q in ENDS_95)
         return Crossing(math.exp(centre), low, min(high, SEARCHED_FRICTION))
