@@ -188,7 +188,7 @@ def test_new_does_not_overwrite(capsys):
     assert Path("mine.toml").read_text() == "mine"
 
 
-@pytest.mark.parametrize("verb", ["restitution", "stability", "simulate", "rank"])
+@pytest.mark.parametrize("verb", ["restitution", "stability", "map", "simulate", "rank"])
 def test_a_verb_that_needs_a_missing_section_says_so(verb, capsys):
     """The cage verbs refuse a study without [cage]; `rank` one without [ranking]."""
     start = "[ranking]" if verb == "rank" else "[cage]"

@@ -19,7 +19,18 @@ from separatrix.cli.files import staged, writable_folder
 from separatrix.errors import InputError
 
 COMMAND = [sys.executable, "-m", "separatrix"]
-VERBS = ["new", "check", "bearing", "traction", "restitution", "stability", "simulate", "rank"]
+VERBS = [
+    "new",
+    "check",
+    "bearing",
+    "traction",
+    "restitution",
+    "stability",
+    "map",
+    "simulate",
+    "rank",
+    "compare",
+]
 ROOT = Path(__file__).parents[2]
 
 
@@ -43,7 +54,9 @@ def test_help_of_a_verb_names_its_options(verb):
     """Each verb has help; all that take a study have the same four options."""
     done = run(verb, "--help")
     assert done.returncode == 0
-    options = ("--json", "--quiet") if verb == "new" else ("--json", "--out", "--quiet", "--jobs")
+    options = {"new": ("--json", "--quiet"), "compare": ("--json", "--out", "--quiet")}.get(
+        verb, ("--json", "--out", "--quiet", "--jobs")
+    )
     assert all(option in done.stdout for option in options)
 
 

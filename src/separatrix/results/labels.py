@@ -33,6 +33,8 @@ GROUPS = {
     "by_spin_roll_ratio": Group("ratio", "ratio_"),
     "lubrication": Group(prefix="lubrication_"),
     "chain": Group(prefix="chain_"),
+    "stopping": Group(prefix="stopping_"),
+    "counts": Group(prefix="points_"),
     "stability": Group(),
     "curve": Group("restitution_factor", label="restitution_factor"),
     "linear_limit": Group("restitution_factor", "linear_limit_", label="restitution_factor"),
@@ -91,6 +93,7 @@ RECORD_CLASSES = {
     "chain": "RaceContact",
     "cage": "PlanarCage Judgement History",
     "stability": "CriticalFriction StabilityCurve",
+    "stability.map_records": "MapPoint Stopping",
     "ranking": "RankedMaterial Ranking",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""

@@ -1,0 +1,282 @@
+"""The verb `map`: axes, keys, files, errors, and how an interrupted map goes on."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from separatrix import results
+from separatrix.cli import main
+from separatrix.cli.axes import read_axis
+from separatrix.errors import InputError
+from separatrix.results.ledger import NAME
+
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small map"
+
+[cage]
+ball_cage_friction = 0.1
+
+[stability]
+kicks = ["0.5 m/s"]
+duration = "2 ms"
+"""
+KEYS = "x y kick stopping duration ball_scatter adaptive counts changes points chain cage complete seed study"
+OF_A_POINT = (
+    "x y decision probability_grow probability_low probability_high runs grown growth_rate "
+    "restitution_factor margin reason"
+)
+QUICK = ["--points", "4", "--runs", "3", "--quiet"]
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    """Run in a folder with nothing but the small study."""
+    monkeypatch.chdir(tmp_path)
+    Path("small.toml").write_text(SMALL)
+
+
+def mapped(capsys, *options: str) -> dict:
+    """Return the document of a small map."""
+    assert main(["map", "small.toml", "--json", *options]) == 0
+    return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+
+
+def refused(capsys, *options: str) -> str:
+    """Return the line with which a map is refused; nothing is written."""
+    assert main(["map", "small.toml", *options]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n"), [path.name for path in Path().iterdir()]) == ("", 1, ["small.toml"])
+    return err
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "values"),
+    [
+        ("cage.pocket_clearance=0.1..1mm:4", "m", (1e-4, 4e-4, 7e-4, 1e-3)),
+        ("cage.pocket_clearance=100um..1mm:2", "m", (1e-4, 1e-3)),
+        ("cage.mass=1..100 g:3:log", "kg", (1e-3, 1e-2, 1e-1)),
+        ("film.race_friction=0.02..0.3:3", "-", (0.02, 0.16, 0.3)),
+        ("cage.ball_cage_friction=0..0.5:2", "-", (0.0, 0.5)),
+        ("bearing.ball_count=8..12", "-", (8, 9, 10, 11, 12)),
+        ("bearing.ball_count=8..12:3", "-", (8, 10, 12)),
+        ("operation.temperature=-200..0degC:2", "K", (73.15, 273.15)),
+        ("kick=0.1..10 m/s:3:log", "m/s", (0.1, 1.0, 10.0)),
+        ("film.elastic_modulus=1..3GPa:2", "Pa", (1e9, 3e9)),
+    ],
+)
+def test_an_axis_is_read_as_it_is_written(text, unit, values):
+    """Units hold for both ends, values are exact at the ends, whole numbers stay whole."""
+    axis = read_axis(text, "--x", 5)
+    assert (axis.unit, axis.values) == (unit, values)
+    assert all(type(a) is type(b) for a, b in zip(axis.values, values, strict=True))
+
+
+def test_a_parameter_has_one_name():
+    """The friction of the pockets, by its section or without, is the same parameter."""
+    assert read_axis("cage.ball_cage_friction=0..1", "--x", 2).parameter == "ball_cage_friction"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("cage.mass", "needs a parameter"),
+        ("cage.mas=1..2g", "Did you mean cage.mass?"),
+        ("pocket_clearance=1..2mm", "Did you mean cage.pocket_clearance?"),
+        ("cage.guidance=1..2", "is no number"),
+        ("stability.runs=1..2", "is no number"),
+        ("cage.mass=1..2", 'Write "2 g"'),
+        ("cage.mass=1..2mm", "needs a unit of mass"),
+        ("cage.mass=2..1g", "must rise"),
+        ("cage.mass=1..1g", "must rise"),
+        ("cage.mass=1g", "needs a range"),
+        ("cage.mass=1...2g", "needs a range"),
+        ("cage.mass=..2g", "needs a range"),
+        ("cage.mass=1,5..2g", "decimal point"),
+        ("cage.mass=nan..2g", "finite"),
+        ("cage.mass=1..2g:1", "between 2 and 1000 points"),
+        ("cage.mass=1..2g:1e2", "number of points and log"),
+        ("cage.mass=1..2g:log:5", "number of points and log"),
+        ("cage.mass=0..2g:log", "> 0 for log"),
+        ("bearing.ball_count=8.5..16", "whole numbers"),
+        ("bearing.ball_count=8..16mm", "plain numbers"),
+        ("bearing.ball_count=8..16:log", "no log"),
+        ("restitution_factor=0..1.5", "between 0 and 1"),
+        ("ball_cage_friction=-0.1..1", "between 0 and 2"),
+        ("film.race_friction=0,1..1", "decimal point"),
+    ],
+)
+def test_a_wrong_axis_is_refused(text, said):
+    """What is wrong, and the cure."""
+    with pytest.raises(InputError) as refusal:
+        read_axis(text, "--x", 5)
+    assert said in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--x", "cage.mas=1..2g"], "Did you mean cage.mass?"),
+        (["--y", "restitution_factor=0..1"], "restitution_factor twice"),
+        (["--kick", "0.5"], "needs a unit of speed"),
+        (["--kick", "0 m/s"], "must be > 0"),
+        (["--x", "kick=0.1..1m/s", "--kick", "1 m/s"], "exclude each other"),
+        (["--points", "1"], "--points"),
+        (["--runs", "0"], "--runs"),
+        (["--x", "cage.pocket_clearance=20..40mm:2", "--points", "2"], "no point that could be run"),
+    ],
+)
+def test_wrong_options_are_refused_in_one_line(options, said, capsys):
+    """One line, status 2, nothing written."""
+    assert said in refused(capsys, *options)
+
+
+def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
+    """Axes with their unit and the study's own value, every point, the rule with its error rate."""
+    found = mapped(capsys, *QUICK)
+    assert set(KEYS.split()) <= set(found)
+    assert [(found[a]["parameter"], found[a]["unit"]) for a in "xy"] == [
+        ("restitution_factor", "-"),
+        ("ball_cage_friction", "-"),
+    ]
+    assert found["y"]["here"] == 0.1
+    assert found["x"]["here"] == found["chain"]["restitution_factor"]
+    assert len(found["points"]) == 16
+    assert all(set(OF_A_POINT.split()) == set(point) for point in found["points"])
+    assert found["stopping"]["wrong_side_probability"] == 0.0
+    assert sum(found["counts"].values()) == 16
+    assert list(Path().iterdir()) == [Path("small.toml")]
+
+
+def test_a_refused_point_is_a_row_with_its_reason(capsys):
+    """Pockets wider than the gap between balls: no decision, no numbers, the reason; the others are run."""
+    found = mapped(capsys, "--x", "cage.pocket_clearance=1..6mm:3", "--points", "2", "--runs", "2")
+    refusals = [point for point in found["points"] if point["x"] == 0.006]
+    assert [point["decision"] for point in refusals] == [None, None]
+    assert all("gap between balls" in point["reason"] for point in refusals)
+    assert (found["counts"]["refused"], found["complete"]) == (2, True)
+    assert {point["runs"] for point in found["points"] if point["x"] == 0.001} == {2}
+
+
+def test_the_dataset_stands_on_x_and_y(capsys):
+    """Points have the dimensions (y, x) with the parameters' names and units."""
+    clearance = "cage.pocket_clearance=0.2..1mm:3"
+    found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
+    data = results.load("m/map.nc")
+    assert data["probability_grow"].dims == ("y", "x")
+    assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
+    for point in found["points"]:
+        there = data.sel(x=point["x"], y=point["y"])
+        assert float(there["probability_grow"]) == point["probability_grow"]
+        assert str(there["decision"].values) == point["decision"]
+
+
+def test_a_second_call_takes_finished_points_and_says_so(capsys):
+    """The same document; a line on standard error; --fresh runs everything again."""
+    first = mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
+    assert main(["map", "small.toml", "--json", "--points", "3", "--runs", "2", "--out", "m"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out) == first
+    assert err.startswith("separatrix: 9 of 9 points were finished by an earlier call")
+    assert main(["map", "small.toml", "--points", "3", "--runs", "2", "--out", "m", "--fresh"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_finer_grid_goes_on_from_a_coarser_one(capsys):
+    """Points are found by their values: 9 of 25 are known."""
+    mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
+    assert main(["map", "small.toml", "--json", "--points", "5", "--runs", "2", "--out", "m"]) == 0
+    assert capsys.readouterr().err.startswith("separatrix: 9 of 25 points")
+
+
+def test_questions_do_not_mix_in_one_folder(capsys):
+    """Another study, other runs, another kick, other parameters: nothing is taken from the first."""
+    quick = ["--json", "--points", "2", "--out", "m"]
+    Path("other.toml").write_text(SMALL.replace('"2 ms"', '"1 ms"'))
+    for study, *options in (
+        ("small.toml", "--runs", "2"),
+        ("other.toml", "--runs", "2"),
+        ("small.toml", "--runs", "3"),
+        ("small.toml", "--runs", "2", "--kick", "1 m/s"),
+        ("small.toml", "--runs", "2", "--x", "cage.mass=10..20g"),
+    ):
+        assert main(["map", study, *options, *quick]) == 0
+        assert capsys.readouterr().err == ""
+    with sqlite3.connect(Path("m") / NAME) as connection:
+        kept = connection.execute("SELECT question, count(*) FROM point GROUP BY question").fetchall()
+    connection.close()
+    assert [count for _, count in kept] == [4] * 5
+
+
+def test_a_file_that_is_no_ledger_is_refused(capsys):
+    """One line that names the file; it is left as it was."""
+    Path("m").mkdir()
+    (Path("m") / NAME).write_text("mine" * 1000)
+    assert main(["map", "small.toml", "--points", "2", "--runs", "2", "--out", "m"]) == 2
+    assert f"m/{NAME} cannot be used to keep points" in capsys.readouterr().err
+    assert (Path("m") / NAME).read_text() == "mine" * 1000
+
+
+SLOW = ["map", "slow.toml", "--points", "12", "--jobs", "1", "--json"]
+
+
+def command(*options: str) -> list[str]:
+    """Return the real command, as a process is started with."""
+    return [sys.executable, "-m", "separatrix", *SLOW, *options]
+
+
+def kept(folder: str) -> int:
+    """Return how many points are in the ledger of a folder that another process may write."""
+    path = Path(folder) / NAME
+    try:
+        connection = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
+        with connection:
+            return connection.execute("SELECT count(*) FROM point").fetchone()[0]
+    except sqlite3.OperationalError:
+        return 0
+
+
+def started(sent: int) -> tuple[int, str, str]:
+    """Start a map, send a signal once points are kept, and return status and texts."""
+    Path("slow.toml").write_text(SMALL.replace('"2 ms"', '"0.3 s"'))
+    process = subprocess.Popen(
+        command("--out", "m"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    for _ in range(1200):
+        if kept("m") > 0:
+            break
+        time.sleep(0.05)
+    process.send_signal(sent)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
+    """Ctrl-C: what is finished is answered, status 130; going on gives the map of an uninterrupted call."""
+    status, out, err = started(signal.SIGINT)
+    part = json.loads(out)
+    assert (status, part["complete"]) == (130, False)
+    assert err.endswith("The same call goes on from there.\n")
+    left = [point for point in part["points"] if not point["runs"]]
+    assert {point["reason"] for point in left} == {"not run: interrupted"}
+    assert 0 < part["counts"]["not_run"] == len(left) < 144
+    assert main([*SLOW, "--out", "m"]) == 0
+    whole, said = capsys.readouterr()
+    assert f"{144 - len(left)} of 144 points were finished" in said
+    assert main(SLOW) == 0
+    assert json.loads(whole) == json.loads(capsys.readouterr().out)
+
+
+def test_a_killed_map_keeps_its_points():
+    """SIGKILL: the points that were handed over are in the ledger."""
+    status, out, _ = started(signal.SIGKILL)
+    assert (status, out) == (-signal.SIGKILL, "")
+    assert kept("m") > 0

@@ -1,0 +1,269 @@
+"""The stability map: its points, the rule that ends them early, its order and its bands."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import pytest
+
+from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
+from separatrix.cage.verdict import drifts
+from separatrix.chain import cage_state
+from separatrix.errors import InputError
+from separatrix.stability import cage_at
+from separatrix.stability.map import (
+    AGREED,
+    PointFinder,
+    changes_traction,
+    decided_ensemble,
+    stability_map,
+)
+from separatrix.stability.map_grid import near_a_change, rounds
+from separatrix.stability.map_parameters import parameters, varied
+from separatrix.stability.map_records import MapAxis, MapQuestion
+from separatrix.stability.map_rule import (
+    AGREEING,
+    changes,
+    margins,
+    other_decision_probability,
+    wrong_side_probability,
+)
+from separatrix.study import Guidance, PocketShape
+from separatrix.study_file import read_study
+
+
+@pytest.fixture(scope="module")
+def study():
+    """The shipped study with short runs."""
+    found = read_study("cryogenic-turbopump")
+    return replace(found, stability=replace(found.stability, duration=0.02))
+
+
+def question(study, **changed):
+    """A map of restitution factor and friction, 4 by 5, with changes."""
+    given = {
+        "x": MapAxis(parameter="restitution_factor", unit="-", values=(0.0, 0.3, 0.6, 0.9)),
+        "y": MapAxis(parameter="ball_cage_friction", unit="-", values=(0.0, 0.05, 0.1, 0.3, 0.5)),
+        "kick": 0.5,
+        "runs": 12,
+    }
+    return MapQuestion(study=study, **given | changed)
+
+
+def test_a_point_is_the_ensemble_of_its_cage(study):
+    """Runs, growing runs and decision of every point are those of the same cage by itself."""
+    cage = cage_state(study, friction=0.1).cage
+    found = stability_map(question(study))
+    assert [(p.x, p.y) for p in found.points] == list(
+        itertools.product(found.x.values, found.y.values)
+    )  # column after column
+    for point in found.points:
+        there = cage_at(cage, point.x, point.y)
+        alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, growth_only=True)
+        assert point.grown == int(alone.count(RunOutcome.GROWS)[0])
+        assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
+        assert point.runs == 12 or point.grown in (0, point.runs)
+
+
+def test_threads_and_earlier_points_change_nothing(study):
+    """One thread, three, and a call that knows half of the points."""
+    asked = question(study, runs=3)
+    kept = []
+    whole = stability_map(asked, keep=kept.extend)
+    assert stability_map(asked, jobs=3) == whole
+    known = {(p.x, p.y): p for p in kept[::2]}
+    new = []
+    assert stability_map(asked, known=known, keep=new.extend) == whole
+    assert {(p.x, p.y) for p in new} == {(p.x, p.y) for p in whole.points} - set(known)
+
+
+def test_a_cage_that_can_drift_is_never_stable(study):
+    """Without a land, in a turning ball set: where motion dies the point is undecided, and says drift."""
+    free = replace(study.cage, guidance=Guidance.BALL, land_clearance=None)
+    loose = replace(study, cage=free)
+    assert drifts(cage_state(loose, friction=0.0).cage)
+    found = stability_map(question(loose))
+    assert found.counts["STABLE"] == 0
+    calm = [point for point in found.points if point.grown == 0]
+    assert calm
+    assert all("drift" in p.reason for p in calm if "Too short" not in p.reason)
+    assert {p.decision for p in calm} == {Verdict.UNDECIDED}
+
+
+def test_first_runs_that_agree_end_a_point(study):
+    """Eight runs where the first eight agree; all of them otherwise, and as if at once."""
+    cage = cage_state(study, friction=0.0).cage
+    settings = replace(study.stability, duration=0.05)
+    sizes = set()
+    for friction in (0.0, 0.08, 0.12, 0.2):
+        there = cage_at(cage, 0.6, friction)
+        found = decided_ensemble(there, settings, 0.5, 12)
+        whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, growth_only=True)
+        runs = found.outcome.shape[1]
+        first = whole.outcome[0, :AGREEING]
+        assert runs == (AGREEING if (first == first[0]).all() else 12)
+        assert (found.outcome == whole.outcome[:, :runs]).all()
+        sizes.add(runs)
+    assert sizes == {AGREEING, 12}
+
+
+@pytest.mark.parametrize(("runs", "agreeing"), [(7, 2), (8, 3), (9, 4), (6, 3)])
+def test_the_error_of_the_rule_is_that_of_all_orders(runs, agreeing):
+    """Every order of every mixture of outcomes counted: the largest share that ends on the wrong side."""
+    worst = 0.0
+    for kind in range(runs // 2 + 1, runs + 1):
+        orders = list(itertools.combinations(range(runs), kind))  # where those of the majority stand
+        wrong = sum(min(order) >= agreeing for order in orders)
+        worst = max(worst, wrong / len(orders))
+    assert wrong_side_probability(runs, agreeing) == pytest.approx(worst, rel=1e-15)
+
+
+def test_eight_of_sixteen_that_agree_cannot_be_outvoted():
+    """The rule of the map has no wrong side at 16 runs, and 0.18 % of the draws at 64 (33 against 31)."""
+    assert wrong_side_probability(16) == 0.0
+    assert wrong_side_probability(64) == pytest.approx(0.0018, abs=5e-5)  # the digits of the sentence
+    assert other_decision_probability(16) == pytest.approx(
+        (8 * 7) / (16 * 15), rel=1e-15
+    )  # 2 against 14: both in the last 8
+    assert other_decision_probability(8) == 0.0
+
+
+def test_every_point_is_in_one_round():
+    """From the coarse grid on, each place once; the first round spans the plane."""
+    found = [place for _, places in rounds(21, 10) for place in places]
+    assert sorted(found) == list(itertools.product(range(21), range(10)))
+    first = next(rounds(21, 10))[1]
+    assert {(0, 0), (0, 9), (20, 0), (20, 9)} <= set(first)
+
+
+def test_points_near_a_change_are_found():
+    """A step between two coarse columns wants the points between and one cell beyond, no others."""
+    coarser = ([0, 4, 8, 12, 16], [0, 4, 8])
+    answers = {(i, j): i >= 8 for i in coarser[0] for j in coarser[1]}
+    wanted = [i for i in range(17) if near_a_change((i, 2), coarser, answers)]
+    assert wanted == [*range(1, 12)]
+
+
+def test_an_adaptive_map_runs_what_the_full_map_decides_there(study):
+    """Points that are run are those of the full map; the others are marked, and no band is lost."""
+    axes = {
+        "x": MapAxis(parameter="restitution_factor", unit="-", values=tuple(i / 20 for i in range(21))),
+        "y": MapAxis(parameter="ball_cage_friction", unit="-", values=tuple(i / 40 for i in range(21))),
+        "runs": 3,
+    }
+    full = stability_map(question(study, **axes), jobs=2)
+    some = stability_map(question(study, **axes, adaptive=True), jobs=2)
+    run = [p for p in some.points if p.runs]
+    assert len(run) < len(full.points)
+    assert {p.reason for p in some.points if not p.runs} == {AGREED}
+    assert some.counts["not_run"] == len(full.points) - len(run)
+    at = {(p.x, p.y): p for p in full.points}
+    assert all(replace(p, margin=None) == replace(at[p.x, p.y], margin=None) for p in run)
+
+
+def test_bands_and_margins_of_a_column():
+    """Dies, dies, neither, grows: a band from the second to the fourth; distances to it with their sign."""
+    values, sides = (1.0, 2.0, 3.0, 4.0, 6.0), (-1, -1, 0, 1, 1)
+    assert changes(sides) == [(1, 3)]
+    assert margins(values, sides) == [1.0, 0.0, 0.0, 0.0, -2.0]
+    assert margins(values, (-1, 0, -1, -1, 0)) == [None] * 5
+    assert changes((1, -1, -1, 1, 0)) == [(0, 1), (2, 3)]
+
+
+def test_each_link_of_the_chain_is_run_once_for_what_changes_it(study, monkeypatch):
+    """Cage keys leave the traction alone; a film key changes it."""
+    from separatrix.stability import map as module
+
+    calls = []
+    monkeypatch.setattr(module, "traction_state", lambda s: calls.append(s) or traction(s))
+    masses = MapAxis(parameter="cage.mass", unit="kg", values=(0.01, 0.02, 0.03))
+    films = MapAxis(parameter="film.race_friction", unit="-", values=(0.05, 0.1))
+    clearances = MapAxis(parameter="cage.pocket_clearance", unit="m", values=(2e-4, 4e-4))
+    given = replace(study, cage=replace(study.cage, ball_cage_friction=0.1))
+    stability_map(question(given, x=masses, y=films, runs=1))
+    assert len(calls) == 2
+    stability_map(question(given, x=masses, y=clearances, runs=1))
+    assert len(calls) == 3
+
+
+def traction(study):
+    """The real link."""
+    from separatrix.chain import traction_state
+
+    return traction_state(study)
+
+
+@pytest.mark.parametrize("name", sorted(parameters()))
+def test_every_parameter_reaches_the_study(name, study):
+    """Each parameter changes the study, but those that belong to the cage in the plane alone."""
+    slot = {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 2e-4}
+    study = replace(study, cage=replace(study.cage, **slot))
+    value = WHOLE.get(name, 3) if parameters()[name].is_whole else VALUES.get(name, 0.011)
+    assert (varied(study, name, value) == study) == (name in ("restitution_factor", "kick"))
+
+
+WHOLE = {"cage.land_count": 2}
+
+VALUES = {
+    "bearing.pitch_diameter": 0.07,
+    "bearing.inner_conformity": 0.53,
+    "bearing.outer_conformity": 0.53,
+    "film.thickness": 1e-6,
+    "film.elastic_modulus": 2e9,
+    "cage.ball_cage_stiffness": 2e6,
+    "cage.land_stiffness": 2e6,
+    "bearing.radial_clearance": 5e-5,
+    "cage.pocket_clearance": 5e-4,
+    "cage.land_clearance": 1e-4,
+    "cage.pocket_axial_clearance": 1e-4,
+    "cage.pocket_axial_offset": 1e-5,
+    "cage.land_out_of_round": 1e-5,
+    "cage.ball_diameter_scatter": 1e-6,
+    "cage.pocket_position_scatter": 1e-6,
+    "cage.unbalance": 1e-6,
+}
+"""Values inside what a record takes, where 0.011 is not."""
+
+
+def test_what_changes_the_traction_is_known():
+    """Bearing, operation and film; not the cage, nor how it is kicked."""
+    assert changes_traction("operation.axial_load")
+    assert not changes_traction("cage.mass")
+    assert not changes_traction("kick")
+
+
+def test_a_refused_study_is_asked_for_once(study):
+    """The refusal of a value is remembered as its point's reason."""
+    given = replace(study, cage=replace(study.cage, ball_cage_friction=0.1))
+    wide = MapAxis(parameter="cage.pocket_clearance", unit="m", values=(1e-4, 1.0))
+    finder = PointFinder(question(given, x=wide, y=MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))))
+    points = [finder((1.0, kick)) for kick in (0.1, 0.2)]
+    assert points[0].reason == points[1].reason
+    assert points[0].reason.startswith("[cage] pocket_clearance must be smaller than the gap")
+    assert finder._state.cache_info().misses == 1
+
+
+def test_a_map_without_friction_or_of_one_parameter_is_refused(study):
+    """A friction is asked for where no axis is it; two axes of one parameter are none."""
+    bare = replace(study, ranking=None, cage=replace(study.cage, ball_cage_friction=None))
+    with pytest.raises(InputError, match="ball_cage_friction is missing"):
+        stability_map(question(bare, y=MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))))
+    axis = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))
+    with pytest.raises(InputError, match="two different parameters"):
+        question(study, x=axis, y=axis)
+
+
+def test_an_interrupt_leaves_points_that_say_so(study):
+    """The batch that was under way is kept; the others are not run."""
+    told = []
+
+    def interrupt(done: int, total: int) -> None:
+        told.append(done)
+        if len(told) == 1:
+            raise KeyboardInterrupt
+
+    found = stability_map(question(study, runs=1), progress=interrupt)
+    assert not found.complete
+    assert found.counts["not_run"] == 16  # of 20: the first round, the corners, is one batch
+    assert {p.reason for p in found.points if not p.runs} == {"not run: interrupted"}
