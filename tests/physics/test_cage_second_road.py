@@ -130,6 +130,18 @@ def test_an_out_of_round_land_without_losses_keeps_the_energy(guidance, lobes):
     assert np.abs(R * run.rate).max() > 5e-4
 
 
+@pytest.mark.parametrize(
+    ("guidance", "lobes", "way"),
+    [(Guidance.OUTER, 2, -1), (Guidance.OUTER, 3, -1), (Guidance.INNER, 2, -1), (Guidance.INNER, 3, 1)],
+)
+def test_a_lobe_takes_room_where_the_land_is_touched(guidance, lobes, way):
+    """A lobe stands at angle 0; an inner land is touched opposite, where three lobes leave room."""
+    cage = replace(FREE, cage_speed=0.0, guidance=guidance, land_clearance=2e-4)
+    run = go(replace(cage, land_out_of_round=1e-5, land_lobes=lobes), direction=0.0, duration=4e-4, step=1e-7)
+    touched = run.time[np.argmax(run.velocity[:, 0] < 0.5 - 1e-9)]
+    assert touched == pytest.approx((1e-4 + way * 1e-5) / 0.5, abs=2e-7)  # two steps
+
+
 @pytest.mark.parametrize(("count", "restitution"), [(1, 0.1), (2, 0.5), (1, 0.9), (2, 1.0)])
 def test_the_land_returns_its_restitution(count, restitution):
     """Head on, without friction; first order where the damper's force starts with a jump."""
