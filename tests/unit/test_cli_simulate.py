@@ -1,0 +1,138 @@
+"""Which run `simulate` follows, its animation, and two of them side by side."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from separatrix import results
+from separatrix.cli import main
+
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small run"
+
+[cage]
+ball_cage_friction = 0.1
+
+[stability]
+kicks = ["0.5 m/s"]
+duration = "4 ms"
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with two simulations of studies that differ in the cage's mass."""
+    place = tmp_path_factory.mktemp("runs")
+    (place / "small.toml").write_text(SMALL)
+    heavy = SMALL.replace("A small run", "A heavy cage").replace("[cage]", '[cage]\nmass = "50 g"')
+    (place / "heavy.toml").write_text(heavy)
+    for name in ("small", "heavy"):
+        options = ["--out", str(place / name), "--quiet"]
+        assert main(["simulate", str(place / f"{name}.toml"), *options]) == 0
+    return place
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def simulated(folder: Path, capsys, *options: str) -> dict:
+    """Return the document of one run of the small study."""
+    assert main(["simulate", str(folder / "small.toml"), "--json", *options]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def refused(capsys, *arguments: str) -> str:
+    """Return the line with which a command is refused; nothing is written."""
+    assert main(list(arguments)) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n"), list(Path().iterdir())) == ("", 1, [])
+    return err
+
+
+def test_kick_and_run_are_those_asked_for(folder, capsys):
+    """By default the first run from the middle kick; another kick and run give another motion."""
+    usual = simulated(folder, capsys)
+    assert (usual["kick"], usual["run"]) == (0.5, 0)
+    other = simulated(folder, capsys, "--run", "3")
+    assert (other["kick"], other["run"]) == (0.5, 3)
+    assert other["velocity"][0] != usual["velocity"][0]
+    harder = simulated(folder, capsys, "--kick", "200 cm/s")
+    assert harder["kick"] == 2.0
+    assert harder["kinetic_energy"][0] == pytest.approx(
+        16 * usual["kinetic_energy"][0], rel=1e-12
+    )  # the same direction: energy goes as the square of the kick
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--kick", "2"], "needs a unit of speed"),
+        (["--kick", "0 m/s"], "must be > 0"),
+        (["--kick", "-1 m/s"], "must be > 0"),
+        (["--run", "-1"], "--run must lie between"),
+        (["--animate", "avi"], "must be gif or mp4"),
+        (["--animate", "gif", "--json"], "--out DIR"),
+    ],
+)
+def test_wrong_options_are_refused_in_one_line(options, said, capsys):
+    """One line, status 2, nothing written."""
+    assert said in refused(capsys, "simulate", "cryogenic-turbopump", *options)
+
+
+def test_an_animation_is_written_beside_the_figures(folder, capsys):
+    """`--animate gif`: a moving picture of more than one frame, and nothing half-written."""
+    from PIL import Image
+
+    options = ["--animate", "gif", "--out", "moving", "--quiet"]
+    assert main(["simulate", str(folder / "small.toml"), *options]) == 0
+    names = {path.name for path in Path("moving").iterdir()}
+    assert {"simulate.json", "simulate.nc", "simulation.gif", "simulation.png"} <= names
+    assert not [name for name in names if name.startswith(".")]
+    with Image.open("moving/simulation.gif") as film:
+        assert film.n_frames > 1
+
+
+def test_two_runs_are_compared(folder, capsys):
+    """The numbers of both, the inputs that differ, and a figure."""
+    assert (
+        main(["compare", str(folder / "small"), str(folder / "heavy" / "simulate.nc"), "--out", "both"]) == 0
+    )
+    text = capsys.readouterr().out
+    assert "cage.mass" in text
+    found = json.loads(Path("both/compare.json").read_text())
+    assert [run["title"] for run in found["runs"]] == ["A small run", "A heavy cage"]
+    mass = {"key": "cage.mass", "first": 0.025, "second": 0.05, "unit": "kg"}
+    assert found["differences"] == [mass]
+    offsets = [
+        float(results.load(folder / name / "simulate.nc")["largest_offset"]) for name in ("small", "heavy")
+    ]
+    assert [run["largest_offset"] for run in found["runs"]] == offsets
+    names = {path.name for path in Path("both").iterdir()}
+    assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
+    assert Path("both/compare.txt").read_text(encoding="ascii") == text
+
+
+def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
+    """`--json` without `--out`: the document alone."""
+    assert main(["compare", str(folder / "small"), str(folder / "small"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["differences"] == []
+    assert list(Path().iterdir()) == []
+
+
+def test_what_is_no_simulation_is_not_compared(folder, capsys):
+    """Nothing there, another verb's answer, a file that is no dataset."""
+    assert "holds no saved simulation" in refused(capsys, "compare", "nowhere", str(folder / "small"))
+    assert main(["bearing", str(folder / "small.toml"), "--out", str(folder / "bearing")]) == 0
+    capsys.readouterr()
+    other = str(folder / "bearing" / "bearing.nc")
+    assert "must be an answer of simulate; got bearing" in refused(
+        capsys, "compare", str(folder / "small"), other
+    )
+    toml = str(folder / "small.toml")
+    assert "is not a readable netCDF" in refused(capsys, "compare", toml, str(folder / "small"))
