@@ -11,7 +11,7 @@ from typing import Any
 
 _PUBLIC = {
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
-    "linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
+    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
     "chain": "BearingState CageState RaceContact RestitutionState TractionState bearing_state cage_state "
     "restitution_state traction_state",
     "creep": "Creep contact_creep",

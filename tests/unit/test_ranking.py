@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from separatrix.cage import Judgement, Verdict
+from separatrix.cage import CageMotion, Judgement, Verdict
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import measured, overall
@@ -36,6 +37,9 @@ def judgement(verdict):
         reason="So it is.",
         largest_offset=0.0, drift_rate=0.0, largest_contact_force=0.0, whirl_frequency=0.0, whirl_direction=0,
         energy_growth=0.0, energy_imbalance=0.0, duration=0.3, runs=64,
+        cage_motion=CageMotion.STABLE, growth_rate=-20.0, growth_rate_low=-21.0, growth_rate_high=-19.0,
+        growth_kick=0.5, mean_offset=0.0, orbit_evenness=0.0, drift_rate_law=0.0, largest_land_force=0.0,
+        pocket_impact_shares=np.zeros(11), land_impact_share=0.0, whirl_ratio=1.0, drive_energy=0.0,
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from separatrix.cage.ensemble import Ensemble, run_ensemble
 from separatrix.cage.hard import blow_restitution, run_hard_ensemble
 from separatrix.cage.history import History, follow, simulate
+from separatrix.cage.interval import wilson_interval
 from separatrix.cage.linear import (
     drift_law,
     linear_critical_friction,
@@ -10,10 +11,12 @@ from separatrix.cage.linear import (
     linear_whirl_frequency,
     turning_critical_friction,
 )
+from separatrix.cage.orbit import CageMotion
 from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
-from separatrix.cage.verdict import Judgement, growth_probability, judge, wilson_interval
+from separatrix.cage.verdict import Judgement, growth_probability, judge
 
 __all__ = [
+    "CageMotion",
     "Ensemble",
     "History",
     "Judgement",

@@ -1,26 +1,28 @@
-"""From the runs of an ensemble to a verdict, its probability and its reason."""
+"""From the runs of an ensemble to a verdict, its probability, its evidence and its reason."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.cage.linear import drift_law
+from separatrix.cage import reason
+from separatrix.cage.drive import drift_rate_law, drifts, drive_energy
+from separatrix.cage.interval import mean_half_width, wilson_interval
+from separatrix.cage.orbit import CageMotion, cage_motion, driven, left_pockets, sustained
 from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
-from separatrix.units import Array, Hertz, Metre, Newton, Ratio, Second
+from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton, Ratio, Second
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
 
 Counts = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 CLEAR = 0.9
 FEW = 0.5
-NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,14 +37,35 @@ class Judgement:
         Share of all runs that die, and its 95 % Wilson interval [-].
     reason : str
         One sentence.
-    largest_offset : float
-        Largest offset of the cage centre in any run [m].
-    drift_rate : float
-        Median growth rate of the mean offset over the runs that went to the end [1/s].
-    largest_contact_force : float
-        Largest force between a ball and its pocket in any run [N].
+    cage_motion : CageMotion
+        STABLE, CIRCLING or UNSTABLE: what the centre does at the end of the runs from the worst kick.
+    growth_rate : float
+        Mean over the runs from `growth_kick` of half the logarithmic rate of the kinetic energy [1/s].
+    growth_rate_low, growth_rate_high : float or None
+        Student's 95 % interval of that mean; None where fewer than two runs tell none [1/s].
+    growth_kick : float
+        The kick with the largest mean growth rate [m/s].
+    largest_offset, mean_offset : float
+        Largest offset of the cage centre in any run; median over the runs of the mean offset at the end [m].
+    orbit_evenness : float
+        Median over the runs of the offset's spread over its mean: 0 on a circle about the axis, 0.52 in a
+        motion without any preferred radius [-].
+    drift_rate, drift_rate_law : float
+        Median growth rate of the mean offset over the runs that went to the end, and the linear law's for a
+        cage without a land; 0 with one [1/s].
+    largest_contact_force, largest_land_force : float
+        Largest force between a ball and its pocket, and of the land, in any run [N].
+    pocket_impact_shares : ndarray
+        Share of each pocket in the impacts of balls, all runs, shape (ball,); zeros if there was none [-].
+    land_impact_share : float
+        Share of the land in all impacts [-].
     whirl_frequency, whirl_direction
         Medians over the runs that grow, over all runs if none does [Hz]; 1 forward, -1 backward, 0 none.
+    whirl_ratio : float or None
+        Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
+        over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
+    drive_energy : float
+        Kinetic energy that frame and loads can give the cage without a kick [J].
     energy_growth, energy_imbalance : float
         Median of the first over all runs, and the worst of the second [-].
     duration : float
@@ -56,25 +79,28 @@ class Judgement:
     probability_low: Ratio
     probability_high: Ratio
     reason: str
+    cage_motion: CageMotion
+    growth_rate: float
+    growth_rate_low: float | None
+    growth_rate_high: float | None
+    growth_kick: MetrePerSecond
     largest_offset: Metre
+    mean_offset: Metre
+    orbit_evenness: Ratio
     drift_rate: float
+    drift_rate_law: float
     largest_contact_force: Newton
+    largest_land_force: Newton
+    pocket_impact_shares: Array
+    land_impact_share: Ratio
     whirl_frequency: Hertz
     whirl_direction: int
+    whirl_ratio: Ratio | None
+    drive_energy: Joule
     energy_growth: Ratio
     energy_imbalance: Ratio
     duration: Second
     runs: int
-
-
-def wilson_interval(successes: int, count: int) -> tuple[Ratio, Ratio]:
-    """Wilson's 95 % interval of a share [-]; 0 to 1 without a trial."""
-    if count == 0:
-        return 0.0, 1.0
-    p, z2 = successes / count, NORMAL_95**2
-    middle = (p + z2 / (2 * count)) / (1 + z2 / count)
-    half = NORMAL_95 / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def growth_probability(ensemble: Ensemble) -> Array:
@@ -86,68 +112,128 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     """Judge a cage by its ensemble.
 
     STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above
-    one half, and the cage cannot drift. UNSTABLE: at every kick the 95 % interval of the share that grows
+    one half, and the cage neither drifts, nor keeps circling, nor ends outside its pockets' play. UNSTABLE:
+    at every kick the 95 % interval of the share that grows, beyond what frame and loads give by themselves,
     lies above one half. UNDECIDED otherwise. The rule is ours; it asks more of a stable cage than of an
     unstable one.
     """
-    runs = ensemble.outcome.shape[1]
-    verdict, reason = _decide(cage, ensemble, runs)
+    grows = ensemble.outcome == RunOutcome.GROWS
+    drift_rate = float(np.median(ensemble.drift_rate[~grows])) if not grows.all() else 0.0
+    verdict, because = _decide(cage, ensemble, drift_rate)
     dies = int(ensemble.count(RunOutcome.DIES).sum())
     low, high = wilson_interval(dies, ensemble.outcome.size)
-    grows = ensemble.outcome == RunOutcome.GROWS
     whirling = grows if grows.any() else np.ones_like(grows)
+    kick, rate, rate_low, rate_high = _fastest_growth(ensemble)
+    pockets, land = _impact_shares(ensemble)
     return Judgement(
         verdict=verdict,
         probability_stable=dies / ensemble.outcome.size,
         probability_low=low,
         probability_high=high,
-        reason=reason,
+        reason=because,
+        cage_motion=cage_motion(cage, ensemble),
+        growth_rate=rate,
+        growth_rate_low=rate_low,
+        growth_rate_high=rate_high,
+        growth_kick=kick,
         largest_offset=float(ensemble.largest_offset.max()),
-        drift_rate=float(np.median(ensemble.drift_rate[~grows])) if not grows.all() else 0.0,
+        mean_offset=float(np.median(ensemble.mean_offset)),
+        orbit_evenness=_evenness(ensemble),
+        drift_rate=drift_rate,
+        drift_rate_law=drift_rate_law(cage),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
+        largest_land_force=float(ensemble.largest_land_force.max()),
+        pocket_impact_shares=pockets,
+        land_impact_share=land,
         whirl_frequency=float(np.median(ensemble.whirl_frequency[whirling])),
         whirl_direction=int(np.sign(np.median(ensemble.whirl_direction[whirling]))),
+        whirl_ratio=_whirl_ratio(cage, ensemble, whirling),
+        drive_energy=drive_energy(cage),
         energy_growth=float(np.median(ensemble.energy_growth)),
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
-        runs=runs,
+        runs=ensemble.outcome.shape[1],
     )
 
 
-def _decide(cage: PlanarCage, ensemble: Ensemble, runs: int) -> tuple[Verdict, str]:
+def _fastest_growth(ensemble: Ensemble) -> tuple[float, float, float | None, float | None]:
+    """Kick with the largest mean growth rate, that mean, and its interval."""
+    means = ensemble.growth_rate.mean(axis=1)
+    worst = int(np.argmax(means))
+    mean, half = float(means[worst]), mean_half_width(ensemble.growth_rate[worst])
+    low, high = (None, None) if half is None else (mean - half, mean + half)
+    return float(ensemble.kicks[worst]), mean, low, high
+
+
+def _evenness(ensemble: Ensemble) -> Ratio:
+    """Median of spread over mean of the offset, over the runs that left the axis at all."""
+    off = ensemble.mean_offset > 0.0
+    return float(np.median(ensemble.offset_spread[off] / ensemble.mean_offset[off])) if off.any() else 0.0
+
+
+def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
+    """Share of each pocket in the impacts of pockets, and of the land in all."""
+    pockets, land = ensemble.pocket_impacts.sum(axis=(0, 1)), int(ensemble.land_impacts.sum())
+    met = int(pockets.sum())
+    return np.asarray(pockets / max(met, 1), dtype=np.float64), land / max(met + land, 1)
+
+
+def _whirl_ratio(cage: PlanarCage, ensemble: Ensemble, whirling: Mask) -> Ratio | None:
+    if cage.cage_speed == 0.0:
+        return None
+    return float(np.median(ensemble.orbit_speed[whirling])) / abs(cage.cage_speed)  # runs are turned forward
+
+
+def _decide(cage: PlanarCage, ensemble: Ensemble, drift_rate: float) -> tuple[Verdict, str]:
     """Verdict and the sentence that gives its reason."""
-    dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
-    stalled, drifted = ensemble.count(RunOutcome.STALLED), ensemble.count(RunOutcome.DRIFT)
-    quiet = ensemble.kicks[~_touched(cage, ensemble)]
+    runs = ensemble.outcome.shape[1]
+    quiet = ensemble.kicks[~_touched(ensemble)]
     if quiet.size:
-        duration = f"{ensemble.duration:.3g} s"
-        return (
-            Verdict.UNDECIDED,
-            f"Too short to decide: from {quiet[0]:g} m/s nothing touches within {duration}.",
-        )
+        return Verdict.UNDECIDED, reason.untouched(ensemble, quiet)
     if wilson_interval(runs, runs)[0] <= FEW:
         return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
-    if _mostly(grows, runs):
-        return Verdict.UNSTABLE, f"The motion grows in {_percent(grows, runs)} of the runs at every kick."
-    if not _clear(dies + drifted + stalled, runs):
-        return Verdict.UNDECIDED, _mixed_reason(ensemble.kicks, dies, grows, runs)
-    if stalled.any():
-        count, total = int(stalled.sum()), ensemble.outcome.size
-        return Verdict.UNDECIDED, f"{count} of {total} runs met too many impacts in no time and were ended."
+    explained = driven(cage, ensemble)
+    gains = ensemble.count(RunOutcome.GROWS) - explained.sum(axis=1)
+    if _mostly(gains, runs):
+        return Verdict.UNSTABLE, reason.at_every_kick("The motion grows", gains, runs)
+    why = _not_stable(cage, ensemble, explained, drift_rate)
+    dies = ensemble.count(RunOutcome.DIES)
+    if why:
+        return Verdict.UNDECIDED, why
+    return Verdict.STABLE, reason.at_every_kick("The motion dies", dies, runs)
+
+
+def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask, drift_rate: float) -> str:
+    """Return why a cage that does not grow at every kick is not stable either; empty if it is stable."""
+    runs = ensemble.outcome.shape[1]
+    dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
+    if not _clear(runs - grows, runs):
+        if _clear(runs - grows + explained.sum(axis=1), runs):
+            return reason.too_weak(cage, ensemble, explained)
+        calm, wild = dies / runs >= CLEAR, grows / runs >= CLEAR
+        return reason.mixed(ensemble.kicks, calm, wild, grows, runs)
+    if ensemble.count(RunOutcome.STALLED).any():
+        return reason.stalled(ensemble)
     if drifts(cage) or not _clear(dies, runs):
-        return Verdict.UNDECIDED, _drift_reason(cage, ensemble)
-    return Verdict.STABLE, f"The motion dies in {_percent(dies, runs)} of the runs at every kick."
+        return reason.drift(cage, ensemble, drift_rate)
+    return _odd_end(cage, ensemble)
 
 
-def _touched(cage: PlanarCage, ensemble: Ensemble) -> NDArray[np.bool_]:
+def _odd_end(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return what else keeps a motion that lost energy from being stable; empty if nothing does."""
+    runs = ensemble.outcome.shape[1]
+    circles, left = sustained(cage, ensemble), left_pockets(cage, ensemble)
+    if not _clear(runs - circles.sum(axis=1), runs):
+        return reason.keeps_circling(cage, ensemble, circles)
+    if not _clear(runs - left.sum(axis=1), runs):
+        return reason.out_of_pockets(cage, ensemble, left)
+    return ""
+
+
+def _touched(ensemble: Ensemble) -> Mask:
     """Whether any run from each kick met a ball or the land, shape (kick,): flight alone decides nothing."""
-    met = (ensemble.largest_contact_force > 0.0) | (ensemble.largest_offset >= cage.land_gap)
+    met = (ensemble.largest_contact_force > 0.0) | (ensemble.largest_land_force > 0.0)
     return np.asarray(met.any(axis=1))
-
-
-def drifts(cage: PlanarCage) -> bool:
-    """Whether nothing holds the cage centre: no land, and the turning of the ball set or gravity moves it."""
-    return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
 def _mostly(counts: Counts, runs: int) -> bool:
@@ -157,30 +243,3 @@ def _mostly(counts: Counts, runs: int) -> bool:
 
 def _clear(counts: Counts, runs: int) -> bool:
     return _mostly(counts, runs) and all(n / runs >= CLEAR for n in counts)
-
-
-def _percent(counts: Counts, runs: int) -> str:
-    least = int(counts.min())
-    return "all" if least == runs else f"at least {100 * least // runs} %"
-
-
-def _drift_reason(cage: PlanarCage, ensemble: Ensemble) -> str:
-    passed, total = int(ensemble.count(RunOutcome.DRIFT).sum()), ensemble.outcome.size
-    seen = f"its offset passed the play of its pockets in {passed} of {total} runs"
-    rate = drift_law(cage)
-    if rate > 0.0 and math.isinf(cage.land_gap):
-        return (
-            f"The motion dies, but the cage has no land and drifts: {seen}, and by the linear law it grows "
-            f"e-fold every {1.0 / rate:.3g} s."
-        )
-    return f"The motion dies, but the cage has no land and drifts: {seen}."
-
-
-def _mixed_reason(kicks: Array, dies: Counts, grows: Counts, runs: int) -> str:
-    order = np.argsort(kicks)
-    calm = [kicks[i] for i in order if dies[i] / runs >= CLEAR]
-    wild = [kicks[i] for i in order if grows[i] / runs >= CLEAR]
-    if calm and wild and max(calm) < min(wild):
-        return f"Sub-critical: the motion dies from {max(calm):g} m/s and grows from {min(wild):g} m/s."
-    shares = ", ".join(f"{100 * grows[i] / runs:.0f} % from {kicks[i]:g} m/s" for i in order)
-    return f"No clear answer: the motion grows in {shares}."
