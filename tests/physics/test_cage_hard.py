@@ -11,11 +11,9 @@ from separatrix.cage import (
     RunOutcome,
     blow_restitution,
     growth_probability,
+    hard,
     run_hard_ensemble,
-    slots,
 )
-from separatrix.cage.coefficients import ball_directions, coefficients
-from separatrix.cage.flight import fly
 from separatrix.cage.hard import next_blow
 from separatrix.study import StabilitySettings
 
@@ -100,17 +98,18 @@ def test_a_collapse_of_impacts_is_ended_as_stalled():
 def test_no_wall_is_passed_before_the_next_blow():
     """In a fast frame the flight up to the time that `next_blow` gives stays between the pockets' walls."""
     cage = replace(CAGE, cage_speed=2000.0)
-    p, (cos, sin) = coefficients(cage, 1.0), ball_directions(11)
+    p, angles = hard._walls(cage, may_turn=True), np.array(cage.ball_angles)
+    cos, sin = np.cos(angles), np.sin(angles)
     generator = np.random.default_rng(1)
     for _ in range(200):
-        s = np.zeros(slots.STATE)
-        s[[slots.X, slots.Y]] = generator.uniform(-1e-4, 1e-4, 2)
-        s[[slots.VX, slots.VY]] = generator.uniform(-0.3, 0.3, 2)
+        s = np.zeros(6)
+        s[[hard.X, hard.Y]] = generator.uniform(-1e-4, 1e-4, 2)
+        s[[hard.VX, hard.VY]] = generator.uniform(-0.3, 0.3, 2)
         dt, _, _ = next_blow(p, cos, sin, np.zeros(11), s, 1e-3)
         for _ in range(20):
-            fly(p, 0.0, s, dt / 20, math.cos(2000.0 * dt / 20), math.sin(2000.0 * dt / 20))
+            hard.fly(p, s, dt / 20)
             # rounding of the flight, relative to the play
-            assert np.abs(s[slots.Y] * cos - s[slots.X] * sin).max() <= cage.half_play * (1 + 1e-9)
+            assert np.abs(s[hard.Y] * cos - s[hard.X] * sin).max() <= cage.half_play * (1 + 1e-9)
 
 
 def test_threads_change_no_bit_of_the_hard_form():

@@ -272,7 +272,9 @@ def test_as_many_runs_grow():
     ours = np.mean(run_ensemble(CAGE, settings).outcome == RunOutcome.GROWS)
     begun = random_starts(CAGE, settings, 0, runs)
     ends = [
-        small_step.grows(CAGE, kick=kick, direction=s[0], ball_lead=s[1:], duration=0.3, step=4e-6, slip=5e-3)
+        small_step.grows(
+            CAGE, kick=kick, direction=s[0], ball_lead=s[1:14], duration=0.3, step=4e-6, slip=5e-3
+        )
         for s in begun
     ]
     theirs = np.mean(np.array(ends) > 1.0)

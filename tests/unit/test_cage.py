@@ -70,7 +70,7 @@ def test_races_that_grip_the_balls_have_infinite_damping():
     assert np.all(result.energy_growth > 0.0)
 
 
-@pytest.mark.parametrize("damping", [1e-9, 1e-3, 1e9])
+@pytest.mark.parametrize("damping", [1e-3, 1.0, 1e9])
 def test_the_balls_yield_stably_at_any_damping(damping):
     """A ball that follows at once, or hardly ever, gives numbers; the first takes all the energy."""
     result = run_ensemble(replace(CAGE, race_damping=damping, ball_cage_friction=0.0), SETTINGS)
@@ -127,7 +127,7 @@ def test_the_hard_form_refuses_what_it_leaves_out(change):
 def test_a_start_depends_on_seed_and_run_only():
     """Run 3 of seed 5 starts alike however many runs there are, and unlike its neighbours."""
     assert np.array_equal(random_start(5, 3, 11), random_start(5, 3, 11))
-    assert np.array_equal(random_start(5, 3, 11), random_start(5, 3, 20)[:12])
+    assert np.array_equal(random_start(5, 3, 11)[:2], random_start(5, 3, 20)[:2, :11])
     assert not np.array_equal(random_start(5, 3, 11), random_start(5, 4, 11))
     assert not np.array_equal(random_start(5, 3, 11), random_start(6, 3, 11))
 
@@ -135,9 +135,13 @@ def test_a_start_depends_on_seed_and_run_only():
 def test_starts_are_uniform():
     """Directions fill the circle and leads the play: means of 2000 within four standard errors."""
     starts = np.array([random_start(1, run, 3) for run in range(2000)])
-    assert abs(starts[:, 0].mean() - math.pi) < 4 * 2 * math.pi / math.sqrt(12 * 2000)
-    assert np.all(np.abs(starts[:, 1:]) <= 1.0)
-    assert abs(starts[:, 1:].mean()) < 4 * 2 / math.sqrt(12 * 6000)
+    assert abs(starts[:, 0, 0].mean() - math.pi) < 4 * 2 * math.pi / math.sqrt(12 * 2000)
+    for row in (1, 4):
+        assert np.all(np.abs(starts[:, row]) <= 1.0)
+        assert abs(starts[:, row].mean()) < 4 * 2 / math.sqrt(12 * 6000)
+    for row in (2, 3):  # normal, cut at 3: a standard deviation of 0.986
+        assert np.all(np.abs(starts[:, row]) <= 3.0)
+        assert abs(starts[:, row].std() - 0.986) < 4 / math.sqrt(2 * 6000)
 
 
 @pytest.mark.parametrize("land", [{}, {"guidance": Guidance.OUTER, "land_clearance": 4e-4}])

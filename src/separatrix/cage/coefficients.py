@@ -1,4 +1,4 @@
-"""Numbers of a cage as the kernels want them, and the steps that its contacts ask for."""
+"""Numbers of a cage as the kernels want them: lengths in metres, time in units, forces over the mass."""
 
 from __future__ import annotations
 
@@ -8,110 +8,125 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from separatrix.cage.land import rebound_damping
+from separatrix.cage.slots import BALLS
 from separatrix.study import Guidance
+from separatrix.units import Array, MetrePerSecond, Second
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from separatrix.cage.planar import PlanarCage
-    from separatrix.units import Array, Second
 
-STEPS_PER_RADIAN = 6.0
-UNITS = 4
-CALM_RADIANS = 17.0
-LONGEST_FLIGHT = 1024
+ONSET = 1e-5
+"""Depth at which a Hertz contact starts and ends, over that of a blow at the kick's speed: at zero depth the
+force has no power series. The force there is 3e-8 of the blow's largest."""
 
 
 class Coefficients(NamedTuple):
-    """Numbers of one cage as the kernel wants them; `dt` and what follows from it included."""
+    """Numbers of one cage and one kick."""
 
-    unit: float
-    mass: float
-    inertia: float
-    lightness: float  # 1 / mass
-    swiftness: float  # 1 / inertia
+    unit: float  # of time [s]
+    inertia: float  # J / (M R^2)
+    swiftness: float  # its inverse
     radius: float
     turning: float
     stiffness: float
+    hertz: float  # 0: linear
+    onset: float
     yielding: float  # 1 / C_mu
-    half_play: float
-    friction: float  # sigma f
-    longest_flight: float
-    calm_after: float  # units of lasting contact after which steps may be longer
+    friction: float  # sigma f over the cosine of the contact's tilt
+    slowest: float  # speed whose rounding is of no interest
+    gravity: float
+    eccentricity: float
     land_side: float
     land_gap: float
     land_stiffness: float
     land_damping: float
     land_friction: float
     ring_slide: float
-    eccentricity: float
-    gravity: float
+    roundness: float  # positive takes from the gap where the cosine is positive
+    lobes: int
+    lobe_rows: int
+    harmonics: int
+    drive: Array  # free speeds' cosines and sines, shape (2 harmonic, ball)
+    ramp_time: float
+    ramp_start: float
+    needs_rotation: bool
+    needs_frame: bool
+    gripped: bool  # no play: both sides of a pocket hold its ball
+    fastest: float  # bound on the rate of the motion in contact
 
 
-def unit_step(cage: PlanarCage) -> Second:
-    """Unit of time of which every step is a multiple: a quarter of the step with all balls in touch [s]."""
-    return _step(_contact_rate(cage, cage.ball_count)) / UNITS
-
-
-def step_counts(cage: PlanarCage, unit: Second) -> NDArray[np.int64]:
-    """Units in a step, by the number of balls in touch, shape (ball + 1,).
-
-    One more ball than touches at the start may touch within the step; the land may as well.
-    """
-    rates = [_contact_rate(cage, min(n + 1, cage.ball_count)) for n in range(cage.ball_count + 1)]
-    return np.array([max(1, int(_step(rate) / unit * (1 + 1e-9))) for rate in rates])
-
-
-def _step(rate_squared: float) -> Second:
-    return 1.0 / (STEPS_PER_RADIAN * math.sqrt(rate_squared))
-
-
-def _contact_rate(cage: PlanarCage, touching: int) -> float:
-    """Bound on the squared rate of the fastest motion with this many balls in touch, and the land [1/s2]."""
-    turning, k = cage.pitch_radius**2 / cage.moment_of_inertia, cage.ball_cage_stiffness
-    few = touching * k * (turning + 1.0 / cage.mass)
-    rate = min(few, cage.ball_count * k * max(turning, 0.5 / cage.mass))
-    if cage.guidance is not Guidance.BALL:
-        rate += cage.land_stiffness / cage.mass
-    return rate
-
-
-def _longest_flight(cage: PlanarCage, unit: Second) -> Second:
-    """Longest step without touch: the frame turns by no more than a tenth of a radian in it [s]."""
-    turning = 0.1 / abs(cage.cage_speed) if cage.cage_speed else math.inf
-    return min(turning, LONGEST_FLIGHT * unit)
-
-
-def coefficients(cage: PlanarCage, dt: Second) -> Coefficients:
-    """Kernel's numbers of a cage at a step."""
-    k, m = cage.ball_cage_stiffness, cage.mass
+def coefficients(cage: PlanarCage, angles: Array, kick: MetrePerSecond) -> Coefficients:
+    """Kernel's numbers of a cage whose pockets lie at these angles, shape (ball,) [rad]."""
+    T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
+    tilt = cage.pocket_tilt[0]
+    rotating = cage.unbalance != 0.0 or cage.land_out_of_round != 0.0
+    K = 0.0 if cage.hertz_coefficient is None else cage.hertz_coefficient * tilt**2.5
+    harmonics = len(cage.orbital_cosines)
+    land_stiffness = cage.land_count * cage.land_stiffness
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(land_stiffness * M)
+    sign = -1.0 if cage.guidance is Guidance.INNER and cage.land_lobes % 2 else 1.0
     return Coefficients(
-        unit=dt,
-        mass=m,
-        inertia=cage.moment_of_inertia,
-        lightness=1.0 / m,
-        swiftness=1.0 / cage.moment_of_inertia,
-        radius=cage.pitch_radius,
-        turning=cage.cage_speed,
-        stiffness=k,
-        yielding=1.0 / cage.race_damping,
-        half_play=cage.half_play,
-        friction=cage.friction_sense * cage.ball_cage_friction,
-        longest_flight=_longest_flight(cage, dt),
-        calm_after=CALM_RADIANS * STEPS_PER_RADIAN * UNITS,
+        unit=T,
+        inertia=cage.moment_of_inertia / (M * R * R),
+        swiftness=M * R * R / cage.moment_of_inertia,
+        radius=R,
+        turning=cage.cage_speed * T,
+        stiffness=cage.ball_cage_stiffness * tilt**2 * T * T / M,
+        hertz=K * T * T / M,
+        onset=ONSET * (1.25 * M * kick**2 / K) ** 0.4 if K > 0.0 else 0.0,
+        yielding=M / (cage.race_damping * T),
+        friction=cage.friction_sense * cage.ball_cage_friction / tilt,
+        slowest=1e-3 * kick * T,
+        gravity=cage.gravity * T * T,
+        eccentricity=cage.unbalance / M,
         land_side=side,
         land_gap=cage.land_gap,
-        land_stiffness=cage.land_stiffness,
-        land_damping=2.0 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * m),
+        land_stiffness=land_stiffness * T * T / M,
+        land_damping=damping * T / M,
         land_friction=cage.land_friction,
-        ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * cage.pitch_radius,
-        eccentricity=cage.unbalance / m,
-        gravity=cage.gravity,
+        ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * R * T,
+        roundness=sign * cage.land_out_of_round,
+        lobes=cage.land_lobes,
+        lobe_rows=BALLS + 2 * cage.ball_count,
+        harmonics=harmonics,
+        drive=_drive(cage, angles) * T,
+        ramp_time=cage.ramp_time / T,
+        ramp_start=cage.ramp_start,
+        needs_rotation=rotating,
+        needs_frame=harmonics > 0 or cage.gravity > 0.0,
+        gripped=cage.half_play == 0.0,
+        fastest=fastest_rate(cage) * T,
     )
 
 
-def ball_directions(count: int) -> tuple[Array, Array]:
-    """Cosines and sines of the balls' angles, shape (ball,) each [-]."""
-    angle = 2.0 * np.pi * np.arange(count) / count
-    return np.cos(angle), np.sin(angle)
+def _drive(cage: PlanarCage, angles: Array) -> Array:
+    """Free speed of each ball as it goes round, by harmonics: cosines and sines, shape (2 harmonic, ball)."""
+    rows = []
+    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
+        c, s = np.cos(h * angles), np.sin(h * angles)
+        rows += [a * c + b * s, b * c - a * s]
+    return np.array(rows).reshape(len(rows), angles.size)
+
+
+def series_columns(cage: PlanarCage) -> int:
+    """Columns of the series of a step."""
+    return BALLS + 2 * cage.ball_count + 2 * cage.land_lobes
+
+
+def time_unit(cage: PlanarCage) -> Second:
+    """Unit of time: a radian of the motion with one ball in touch [s]."""
+    R, J = cage.pitch_radius, cage.moment_of_inertia
+    return 1.0 / math.sqrt(cage.ball_cage_stiffness * (1.0 / cage.mass + R * R / J))
+
+
+def fastest_rate(cage: PlanarCage) -> float:
+    """Bound on the rates of any motion in contact [1/s]."""
+    turning, k, Z = cage.pitch_radius**2 / cage.moment_of_inertia, cage.ball_cage_stiffness, cage.ball_count
+    squared = Z * k * (turning + 1.0 / cage.mass)
+    rate = 1.0 / cage.race_damping * k
+    if cage.guidance is not Guidance.BALL:
+        K = cage.land_count * cage.land_stiffness
+        squared += K / cage.mass
+        rate += 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(K / cage.mass)
+    return math.sqrt(squared) + rate + abs(cage.cage_speed)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from separatrix.cage import slots
-from separatrix.cage.coefficients import Coefficients, ball_directions, coefficients, step_counts, unit_step
+from separatrix.cage.coefficients import coefficients, fastest_rate, series_columns, time_unit
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk
+from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk, series_of
 from separatrix.errors import InputError
 from separatrix.units import Array, Joule, MetrePerSecond, Second
 
@@ -23,11 +23,12 @@ if TYPE_CHECKING:
 
     from separatrix.study import StabilitySettings
 
-CHUNK_UNITS = 10_000_000
-"""Time of the runs that one call of the kernel takes, in units: some tenths of a second of work."""
+CHUNK_RADIANS = 200_000.0
+"""Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
+second of work."""
 
-MOST_UNITS = 1_000_000_000
-"""Longest run, in units."""
+MOST_RADIANS = 1e8
+"""Longest run, in radians of the fastest motion."""
 
 GROWN, DEAD = 100.0, 1e-4
 """A run ends early, as growing or dying, at these multiples of the energy scale; it changes no outcome."""
@@ -48,18 +49,29 @@ class Ensemble:
     outcome : ndarray
         `RunOutcome` of each run, integer.
     energy_growth : ndarray
-        Mean kinetic energy at the end (last fifth; last fiftieth if ended early) over the kick's [-].
+        Mean kinetic energy at the end (last fifth; what was run of the last window if ended early) over the
+        kick's [-].
+    growth_rate : ndarray
+        Half the logarithm of `energy_growth` over the time to the middle of that window [1/s].
     largest_offset : ndarray
         Largest offset of the cage centre [m].
+    mean_offset, offset_spread : ndarray
+        Mean and standard deviation of the offset over the last window [m].
+    orbit_speed : ndarray
+        Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
+        squared offset, over the last window [rad/s].
     drift_rate : ndarray
         Growth rate of the mean offset between the last two fifths; 0 if the run ended early [1/s].
     whirl_frequency, whirl_direction : ndarray
         Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
         its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
-    largest_contact_force : ndarray
-        Largest force between a ball and its pocket [N].
+    largest_contact_force, largest_land_force : ndarray
+        Largest force between a ball and its pocket, and between cage and land [N].
+    pocket_impacts, land_impacts : ndarray
+        How often each pocket met its ball, shape (kick, run, ball), and the cage its land.
     energy_imbalance : ndarray
-        What the ledger of sources and sinks leaves unexplained, over the work done [-].
+        What the ledger of sources and sinks leaves unexplained, over the work done [-]; 0 if only growth was
+        asked for.
     duration : float
         Length of a run that is not ended early [s].
     """
@@ -67,11 +79,18 @@ class Ensemble:
     kicks: Array
     outcome: NDArray[np.int64]
     energy_growth: Array
+    growth_rate: Array
     largest_offset: Array
+    mean_offset: Array
+    offset_spread: Array
+    orbit_speed: Array
     drift_rate: Array
     whirl_frequency: Array
     whirl_direction: NDArray[np.int64]
     largest_contact_force: Array
+    largest_land_force: Array
+    pocket_impacts: NDArray[np.int64]
+    land_impacts: NDArray[np.int64]
     energy_imbalance: Array
     duration: Second
 
@@ -115,55 +134,91 @@ def run_ensemble(
     """
     cage = turned_forward(cage)
     speeds, runs = chosen(settings, kicks, runs)
-    engine = prepare(cage, settings.duration)
+    check_length(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)
     evidence = np.zeros((len(speeds), runs, slots.EVIDENCE))
-    nothing = np.zeros((0, slots.BALLS))
+    hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
 
     def work(i: int, rows: slice) -> None:
-        limits = run_limits(cage, speeds[i], growth_only=growth_only)
-        run_chunk(*engine.kernel_arguments, starts[rows], speeds[i], engine.fifth, limits,
-        cage.rotation_sense,
-                  nothing, evidence[i, rows])  # fmt: skip
+        run_rows(cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows],
+                 growth_only=growth_only)  # fmt: skip
 
-    spread(work, len(speeds), runs, max(1, CHUNK_UNITS // (FIFTHS * engine.fifth)), jobs)
-    return gathered(speeds, evidence, settings.duration)
-
-
-@dataclass(frozen=True, slots=True)
-class Engine:
-    """One cage made ready for the kernel: its numbers, and the units in a fifth of a run."""
-
-    coefficients: Coefficients
-    fifth: int
-    cos: Array
-    sin: Array
-    counts: NDArray[np.int64]
-
-    @property
-    def kernel_arguments(self) -> tuple[Coefficients, Array, Array, NDArray[np.int64]]:
-        """The first arguments of every kernel."""
-        return self.coefficients, self.cos, self.sin, self.counts
+    size = max(1, int(CHUNK_RADIANS / (settings.duration * fastest_rate(cage))))
+    spread(work, len(speeds), runs, size, jobs)
+    return gathered(speeds, evidence, hits, settings.duration)
 
 
-def prepare(cage: PlanarCage, duration: Second) -> Engine:
-    """Choose the unit of time from the cage, so that it divides a fifth of the duration."""
-    unit = unit_step(cage)
-    if not duration / unit <= MOST_UNITS:
-        cure = "Shorten the run, or check the cage's stiffnesses, mass and moment of inertia."
-        longest = f"must be at most {MOST_UNITS * unit:.3g} for this cage"
-        raise InputError("[stability] duration", longest, "s", f"{duration:g}", cure)
-    fifth = max(1, math.ceil(duration / FIFTHS / unit))
-    p = coefficients(cage, duration / FIFTHS / fifth)
-    return Engine(p, fifth, *ball_directions(cage.ball_count), step_counts(cage, p.unit))
+def run_rows(
+    cage: PlanarCage,
+    duration: Second,
+    kick: MetrePerSecond,
+    starts: Array,
+    evidence: Array,
+    hits: NDArray[np.int64],
+    *,
+    growth_only: bool = False,
+    rows: Array | None = None,
+) -> None:
+    """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
+
+    The ledger of work is kept unless only growth is asked for; the motion is the same.
+    """
+    unit, balls = time_unit(cage), cage.ball_count
+    p = coefficients(cage, np.array(cage.ball_angles), kick)
+    history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
+    limits = run_limits(cage, kick, growth_only=growth_only)
+    fifth = duration / FIFTHS / unit
+    series = series_of(series_columns(cage))
+    run_chunk(p, starts, kick * unit, series, fifth, limits, cage.rotation_sense, history,
+              not growth_only, evidence, hits)  # fmt: skip
+    evidence[:, [slots.FORCE, slots.LAND_FORCE]] *= cage.mass
+
+
+def check_length(cage: PlanarCage, duration: Second) -> None:
+    """Refuse a run that would take longer than anyone waits.
+
+    Raises
+    ------
+    InputError
+        It would need too many steps.
+    """
+    longest = MOST_RADIANS / fastest_rate(cage)
+    if not duration <= longest:
+        cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moment of inertia."
+        rule = f"must be at most {longest:.3g} for this cage"
+        raise InputError("[stability] duration", rule, "s", f"{duration:g}", cure)
 
 
 def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
-    """Direction of the kick [rad] and lead of each ball [m] of every run, shape (run, 1 + ball)."""
-    numbers = range(first_run, first_run + runs)
-    starts = np.array([random_start(settings.seed, run, cage.ball_count) for run in numbers])
-    starts[:, 1:] *= settings.ball_scatter * cage.half_play
+    """Start of every run, shape (run, 1 + 3 ball).
+
+    Direction of the kick [rad]; then by pocket the lead of its ball [m], its half play [m] and its angle
+    [rad]. A lead is random within the play, times `ball_scatter`, about the ball's free place among those
+    that a radial load speeds up and slows down; no ball starts beyond its play. A pocket out of its place is
+    a lead of its ball.
+    """
+    angles, half = np.array(cage.ball_angles), cage.half_play
+    free = free_leads(cage, angles)
+    starts = np.empty((runs, 1 + 3 * cage.ball_count))
+    for i in range(runs):
+        drawn = random_start(settings.seed, first_run + i, cage.ball_count)
+        play = half - 0.5 * cage.ball_diameter_scatter * drawn[2]
+        lead = settings.ball_scatter * play * drawn[1] + free - cage.pocket_position_scatter * drawn[3]
+        pitch = 2.0 * math.pi / cage.ball_count
+        starts[i, 0] = drawn[0, 0]
+        by_pocket = starts[i, 1:].reshape(3, -1)
+        by_pocket[0] = np.clip(lead, -play, play)
+        by_pocket[1] = play
+        by_pocket[2] = angles + cage.pocket_spacing_scatter * pitch * drawn[4]
     return starts
+
+
+def free_leads(cage: PlanarCage, angles: Array) -> Array:
+    """Lead of each ball in its free orbit at the start, which a radial load makes uneven [m]."""
+    lead = np.zeros(angles.size)
+    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
+        lead += (a * np.sin(h * angles) - b * np.cos(h * angles)) / (h * cage.cage_speed)
+    return lead
 
 
 def chosen(
@@ -190,7 +245,8 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, *, growth_only: bool = Fa
     """
     landless = math.isinf(cage.land_gap)
     driven = not landless or cage.cage_speed != 0 or cage.gravity > 0
-    scale, given = energy_scale(cage, kick), 0.5 * cage.mass * kick**2
+    scale = energy_scale(cage, kick) / cage.mass * time_unit(cage) ** 2
+    given = 0.5 * (kick * time_unit(cage)) ** 2
     return Limits(
         drift=2.0 * cage.half_play if landless and cage.half_play > 0 else math.inf,
         grows_above=GROWN * scale,
@@ -226,7 +282,7 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(kicks: Array, evidence: Array, duration: Second) -> Ensemble:
+def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second) -> Ensemble:
     """Record of the evidence of all runs, shape (kick, run, evidence)."""
 
     def column(slot: int) -> Array:
@@ -236,11 +292,18 @@ def gathered(kicks: Array, evidence: Array, duration: Second) -> Ensemble:
         kicks=kicks,
         outcome=column(slots.OUTCOME).astype(np.int64),
         energy_growth=column(slots.GROWTH),
-        largest_offset=column(slots.OFFSET),
+        growth_rate=column(slots.GROWTH_RATE),
+        largest_offset=column(slots.LARGEST_OFFSET),
+        mean_offset=column(slots.MEAN_OFFSET),
+        offset_spread=column(slots.OFFSET_SPREAD),
+        orbit_speed=column(slots.ORBIT_SPEED),
         drift_rate=column(slots.DRIFT_RATE),
         whirl_frequency=column(slots.WHIRL),
         whirl_direction=column(slots.DIRECTION).astype(np.int64),
         largest_contact_force=column(slots.FORCE),
+        largest_land_force=column(slots.LAND_FORCE),
+        pocket_impacts=hits,
+        land_impacts=column(slots.LAND_IMPACTS).astype(np.int64),
         energy_imbalance=column(slots.IMBALANCE),
         duration=duration,
     )

@@ -8,12 +8,11 @@ hold their places.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from separatrix.cage import slots
-from separatrix.cage.coefficients import ball_directions, coefficients
 from separatrix.cage.ensemble import (
     GROWN,
     Ensemble,
@@ -23,23 +22,16 @@ from separatrix.cage.ensemble import (
     random_starts,
     spread,
 )
-from separatrix.cage.flight import fly
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.slots import (
     DIRECTION,
     FORCE,
     GROWTH,
+    GROWTH_RATE,
     IMBALANCE,
-    OFFSET,
+    LARGEST_OFFSET,
     OUTCOME,
-    SPIN,
-    STATE,
-    THETA,
-    VX,
-    VY,
     WHIRL,
-    X,
-    Y,
 )
 from separatrix.compiled import kernel
 from separatrix.errors import InputError
@@ -58,12 +50,25 @@ STILL = 1e-12
 """Share of the cage's speed at which a pocket slides along its ball and strikes no blow."""
 
 CHUNK_RUNS = 8
+X, Y, VX, VY, THETA, SPIN = range(6)
 TIME, WORK, DONE, FAR, LATE_ENERGY, SWEPT, AREA, PEAK = range(8)
 NOTES = 8
 UNKNOWN = -1
 DIES, GROWS, DRIFT, STALLED = (
     int(outcome) for outcome in (RunOutcome.DIES, RunOutcome.GROWS, RunOutcome.DRIFT, RunOutcome.STALLED)
 )
+
+
+class Walls(NamedTuple):
+    """Numbers of the cage as the kernels want them, in SI units."""
+
+    mass: float
+    inertia: float
+    radius: float
+    turning: float
+    stiffness: float
+    half_play: float
+    friction: float  # sigma f
 
 
 def felt_mass(cage: PlanarCage, *, may_turn: bool = True) -> float:
@@ -81,6 +86,19 @@ def blow_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
     m = felt_mass(cage, may_turn=may_turn)
     zeta = math.sqrt(cage.ball_cage_stiffness * m) / (2.0 * cage.race_damping)
     return math.exp(-math.pi * zeta / math.sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0
+
+
+@kernel
+def fly(p, s, dt):  # type: ignore[no-untyped-def]
+    """Advance the free motion exactly: a line in space, seen in the turning frame."""
+    W = p.turning
+    c, i = np.cos(W * dt), np.sin(W * dt)
+    ux, uy = s[VX] - W * s[Y], s[VY] + W * s[X]
+    x, y = s[X] + ux * dt, s[Y] + uy * dt
+    s[X], s[Y] = c * x + i * y, c * y - i * x
+    s[VX] = c * ux + i * uy + W * s[Y]
+    s[VY] = c * uy - i * ux - W * s[X]
+    s[THETA] += s[SPIN] * dt
 
 
 @kernel
@@ -120,8 +138,7 @@ def next_blow(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
 def coast(p, s, note, dt, late):  # type: ignore[no-untyped-def]
     """Fly freely for a time, and note the frame's work and the mean energy since the time `late`."""
     before, swept, far = energy_of(p, s), s[X] * s[VY] - s[Y] * s[VX], s[X] * s[X] + s[Y] * s[Y]
-    angle = p.turning * dt
-    fly(p, note[TIME], s, dt, np.cos(angle), np.sin(angle))
+    fly(p, s, dt)
     note[TIME] += dt
     farther = s[X] * s[X] + s[Y] * s[Y]
     work = 0.5 * p.mass * p.turning * p.turning * (farther - far)
@@ -180,15 +197,16 @@ def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # typ
 @kernel
 def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
     """Run from one kick, blow by blow; outcome and evidence into `out`, shape (evidence,)."""
-    s, note = np.zeros(STATE), np.zeros(NOTES)
+    s, note = np.zeros(6), np.zeros(NOTES)
     s[VX], s[VY] = kick * np.cos(direction), kick * np.sin(direction)
     start = energy_of(p, s)
     outcome = follow(p, cos, sin, lead, s, note, eta, mass, duration, limits[1])
     late = note[TIME] - 0.8 * duration
     out[GROWTH] = (note[LATE_ENERGY] / late if late > 0.0 else energy_of(p, s)) / start
-    out[OFFSET] = np.sqrt(note[FAR])
+    out[LARGEST_OFFSET] = np.sqrt(note[FAR])
+    out[GROWTH_RATE] = 0.5 * np.log(out[GROWTH]) / (0.9 * duration if late > 0.0 else note[TIME])
     if outcome == UNKNOWN:
-        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits[0] else DIES)
+        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[LARGEST_OFFSET] > limits[0] else DIES)
     whirl = note[SWEPT] / note[AREA] if note[AREA] > 0.0 else 0.0
     out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
@@ -199,9 +217,10 @@ def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, se
 
 @kernel
 def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
-    """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+    """Run from every row of `starts`, as in `run_chunk`; evidence into `out`, shape (run, evidence)."""
     for i in range(starts.shape[0]):
-        hard_run(p, cos, sin, starts[i, 0], kick, starts[i, 1:], eta, mass, duration, limits, sense, out[i])
+        lead = starts[i, 1 : 1 + cos.size]
+        hard_run(p, cos, sin, starts[i, 0], kick, lead, eta, mass, duration, limits, sense, out[i])
 
 
 def run_hard_ensemble(
@@ -244,8 +263,9 @@ def run_hard_ensemble(
     speeds, runs = chosen(settings, kicks, runs)
     mass = felt_mass(cage, may_turn=may_turn)
     eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution
-    p = coefficients(cage, 1.0)._replace(radius=cage.pitch_radius if may_turn else 0.0)
-    directions, starts = ball_directions(cage.ball_count), random_starts(cage, settings, 0, runs)
+    p = _walls(cage, may_turn=may_turn)
+    angles, starts = np.array(cage.ball_angles), random_starts(cage, settings, 0, runs)
+    directions = np.cos(angles), np.sin(angles)
     evidence = np.zeros((speeds.size, runs, slots.EVIDENCE))
 
     def work(i: int, rows: slice) -> None:
@@ -255,7 +275,20 @@ def run_hard_ensemble(
                    cage.rotation_sense, evidence[i, rows])  # fmt: skip
 
     spread(work, speeds.size, runs, CHUNK_RUNS, jobs)
-    return gathered(speeds, evidence, settings.duration)
+    hits = np.zeros((speeds.size, runs, cage.ball_count), dtype=np.int64)
+    return gathered(speeds, evidence, hits, settings.duration)
+
+
+def _walls(cage: PlanarCage, *, may_turn: bool) -> Walls:
+    return Walls(
+        mass=cage.mass,
+        inertia=cage.moment_of_inertia,
+        radius=cage.pitch_radius if may_turn else 0.0,
+        turning=cage.cage_speed,
+        stiffness=cage.ball_cage_stiffness,
+        half_play=cage.half_play,
+        friction=cage.friction_sense * cage.ball_cage_friction,
+    )
 
 
 def _refuse(cage: PlanarCage) -> None:

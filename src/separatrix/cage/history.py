@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from separatrix.cage import slots
-from separatrix.cage.ensemble import chosen, prepare, random_starts, run_limits
+from separatrix.cage.coefficients import time_unit
+from separatrix.cage.ensemble import check_length, chosen, random_starts, run_rows
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.run import FIFTHS, run_chunk
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
 from separatrix.units import Array, MetrePerSecond, Radian, Ratio, Second
 
 MOST_SAMPLES = 1_000_000
-SOURCES = ("pocket_friction", "race_dampers", "land", "gravity", "moving_frame", "unbalance")
+SOURCES = slots.SOURCES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +56,10 @@ class History:
     land_force: Array
     kinetic_energy: Array
     spring_energy: Array
+    land_energy: Array
     work: dict[str, Array]
+    pocket_angle: Array
+    half_play: Array
     outcome: RunOutcome
     energy_growth: Ratio
 
@@ -91,14 +94,17 @@ def simulate(
         kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed
     )
     forward = turned_forward(cage)
-    start = random_starts(forward, settings, run, 1)
+    start = random_starts(forward, settings, run, 1)[0]
+    lead, play, angles = start[1:].reshape(3, -1)
     history = follow(
         forward,
         kick=kick,
-        direction=float(start[0, 0]),
-        ball_lead=start[0, 1:],
+        direction=float(start[0]),
+        ball_lead=lead,
         duration=duration,
         samples=samples,
+        half_play=play,
+        pocket_angle=angles,
     )
     return history if forward is cage else _mirrored(history)
 
@@ -114,12 +120,14 @@ def _mirrored(history: History) -> History:
         rotation_rate=-history.rotation_rate,
         ball_lead=-_other_way_round(history.ball_lead),
         contact_force=-_other_way_round(history.contact_force),
+        pocket_angle=-_other_way_round(history.pocket_angle),
+        half_play=_other_way_round(history.half_play),
     )
 
 
 def _other_way_round(by_ball: Array) -> Array:
-    """Return columns of balls counted the other way round, shape (time, ball); ball 0 stays."""
-    return np.roll(by_ball[:, ::-1], 1, axis=1)
+    """Return columns of balls counted the other way round, shape (..., ball); ball 0 stays."""
+    return np.roll(by_ball[..., ::-1], 1, axis=-1)
 
 
 def follow(
@@ -130,6 +138,8 @@ def follow(
     ball_lead: Array,
     duration: Second,
     samples: int = 4000,
+    half_play: Array | None = None,
+    pocket_angle: Array | None = None,
 ) -> History:
     """Follow the run that starts with this direction of the kick [rad] and these leads, shape (ball,) [m].
 
@@ -141,49 +151,45 @@ def follow(
     if not 2 <= samples <= MOST_SAMPLES:
         raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES}", "-", str(samples))
     lead = np.asarray(ball_lead, dtype=np.float64)
-    if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= cage.half_play):
+    play = np.full(cage.ball_count, cage.half_play) if half_play is None else half_play
+    if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= play):
         rule = f"must be {cage.ball_count} numbers within the pockets' play"
         raise InputError("ball_lead", rule, "m", f"{lead.tolist()}")
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)
-    engine = prepare(cage, duration)
-    rows = np.zeros((samples, slots.BALLS + 2 * cage.ball_count))
-    rows[:, 0] = np.linspace(0.0, FIFTHS * engine.fifth, samples)
-    out = np.zeros((1, slots.EVIDENCE))
-    starts = np.concatenate([[direction], lead])[np.newaxis]
-    run_chunk(
-        *engine.kernel_arguments,
-        starts,
-        kick,
-        engine.fifth,
-        run_limits(cage, kick),
-        cage.rotation_sense,
-        rows,
-        out,
-    )
-    return _history(cage, rows[: int(out[0, slots.ROWS])], out[0])
+    check_length(cage, duration)
+    angles = np.array(cage.ball_angles) if pocket_angle is None else pocket_angle
+    starts = np.concatenate([[direction], lead, play, angles])[np.newaxis]
+    rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
+    rows[:, slots.CLOCK] = np.linspace(0.0, duration / time_unit(cage), samples)
+    evidence = np.zeros((1, slots.EVIDENCE))
+    hits = np.zeros((1, cage.ball_count), dtype=np.int64)
+    run_rows(cage, duration, kick, starts, evidence, hits, rows=rows)
+    return _history(cage, rows[: int(evidence[0, slots.ROWS])], evidence[0], play, angles)
 
 
-def _history(cage: PlanarCage, rows: Array, evidence: Array) -> History:
-    """Record of the rows that the kernel filled."""
-    velocity = rows[:, [slots.VX, slots.VY]]
-    turned, rate = rows[:, slots.THETA], rows[:, slots.SPIN]
-    eccentricity = cage.unbalance / cage.mass
-    position = rows[:, [slots.X, slots.Y]] - eccentricity * np.stack([np.cos(turned), np.sin(turned)], axis=1)
-    ledger = rows[:, slots.STATE : slots.LAND_FORCE]
-    count = cage.ball_count
+def _history(cage: PlanarCage, rows: Array, evidence: Array, play: Array, angles: Array) -> History:
+    """Record of the rows that the kernel filled, back in SI units."""
+    T, M, R, Z = time_unit(cage), cage.mass, cage.pitch_radius, cage.ball_count
+    velocity, rate = rows[:, [slots.VX, slots.VY]] / T, rows[:, slots.W] / (R * T)
+    energy, force = M / T**2, M / T**2
+    work = rows[:, slots.ROW_WORK : slots.ROW_POCKET_ENERGY] * energy
+    balls = rows[:, slots.ROW_BALLS :]
     return History(
-        time=rows[:, slots.STEP].copy(),
-        position=position,
+        time=rows[:, slots.CLOCK] * T,
+        position=rows[:, [slots.X, slots.Y]].copy(),
         velocity=velocity,
-        rotation=turned.copy(),
-        rotation_rate=rate.copy(),
-        ball_lead=rows[:, slots.BALLS : slots.BALLS + count].copy(),
-        contact_force=rows[:, slots.BALLS + count :].copy(),
-        land_force=rows[:, slots.LAND_FORCE].copy(),
-        kinetic_energy=0.5 * (cage.mass * (velocity**2).sum(axis=1) + cage.moment_of_inertia * rate**2),
-        spring_energy=ledger[:, slots.STORED].copy(),
-        work={name: ledger[:, i].copy() for i, name in enumerate(SOURCES)},
+        rotation=rows[:, slots.S] / R,
+        rotation_rate=rate,
+        ball_lead=balls[:, :Z].copy(),
+        contact_force=balls[:, Z:] * force,
+        land_force=rows[:, slots.ROW_LAND_FORCE] * force,
+        kinetic_energy=0.5 * (M * (velocity**2).sum(axis=1) + cage.moment_of_inertia * rate**2),
+        spring_energy=rows[:, slots.ROW_POCKET_ENERGY] * energy,
+        land_energy=rows[:, slots.ROW_LAND_ENERGY] * energy,
+        work={name: work[:, i].copy() for i, name in enumerate(slots.SOURCES)},
+        pocket_angle=angles,
+        half_play=play,
         outcome=RunOutcome(int(evidence[slots.OUTCOME])),
         energy_growth=float(evidence[slots.GROWTH]),
     )

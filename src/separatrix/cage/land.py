@@ -1,4 +1,4 @@
-"""The land that guides a cage: a one-sided spring and damper with dry friction, as an impulse over a step."""
+"""The land that guides a cage: a one-sided spring and damper with dry friction, as power series."""
 
 from __future__ import annotations
 
@@ -8,6 +8,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
+from separatrix.cage.series import product
+from separatrix.cage.slots import (
+    COS,
+    DEPTH,
+    DISTANCE,
+    FX,
+    FY,
+    LOBE_COS,
+    LOBE_SIN,
+    NORMAL,
+    NX,
+    NY,
+    PUSHED,
+    SIN,
+    TANGENT,
+    TILT,
+    TORQUE,
+    TURN_COS,
+    TURN_SIN,
+    W,
+)
 from separatrix.compiled import kernel
 
 if TYPE_CHECKING:
@@ -45,41 +66,81 @@ def rebound_damping(restitution: Ratio) -> Ratio:
 
 
 @kernel
-def land_impulse(p, x, y, vx, vy, spin, dt):  # type: ignore[no-untyped-def]
-    r"""Impulse of the land on the cage over one step, from the state at its middle.
+def land_geometry(p, w, gx, gy, n):  # type: ignore[no-untyped-def]
+    """Coefficient n of the centre's distance, its direction and the depth in the land."""
+    if n == 0:
+        w[0, DISTANCE] = np.sqrt(w[0, gx] * w[0, gx] + w[0, gy] * w[0, gy])
+        w[0, NX], w[0, NY] = w[0, gx] / w[0, DISTANCE], w[0, gy] / w[0, DISTANCE]
+    else:
+        square = product(w, gx, gx, n) + product(w, gy, gy, n)
+        for i in range(1, n):
+            square -= w[i, DISTANCE] * w[n - i, DISTANCE]
+        w[n, DISTANCE] = square / (2.0 * w[0, DISTANCE])
+        along, across = w[n, gx], w[n, gy]
+        for i in range(1, n + 1):
+            along -= w[i, DISTANCE] * w[n - i, NX]
+            across -= w[i, DISTANCE] * w[n - i, NY]
+        w[n, NX], w[n, NY] = along / w[0, DISTANCE], across / w[0, DISTANCE]
+    w[n, DEPTH] = w[n, DISTANCE]
+    if n == 0:
+        w[0, DEPTH] -= p.land_gap
+    if p.roundness != 0.0:
+        lobes(p, w, n)
+        w[n, DEPTH] += p.roundness * w[n, LOBE_COS]
 
-    Normal: :math:`F = \max(0, K\delta + c\dot\delta)`, implicit in the damper, with the part of the step in
-    touch. Friction: opposite to the sliding of the cage's surface on the ring's, at most mu times the normal
-    impulse and no more than what stops the sliding (exact stick).
 
-    Returns
-    -------
-    tuple of float
-        Impulse x and y [N s], its moment about the cage centre [N m s] and the normal impulse [N s].
-    """
-    r = np.sqrt(x * x + y * y)
-    depth = r - p.land_gap
-    if r == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    nx, ny = x / r, y / r
-    closing = nx * vx + ny * vy
-    reach = 0.5 * closing * dt
-    first, last = depth - reach, depth + reach
-    if first <= 0.0 and last <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    share, mean = 1.0, depth
-    if first < 0.0 or last < 0.0:
-        deepest = max(first, last)
-        share = deepest / abs(last - first)
-        mean = 0.5 * deepest * share
-    damping = p.land_damping * share * dt
-    normal = (p.land_stiffness * mean * dt + damping * closing) / (1.0 + 0.5 * damping * p.lightness)
-    if normal <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    # Outer land: the cage touches on the side of its offset; inner land: on the opposite side.
-    side = p.land_side
-    sliding = -ny * vx + nx * vy + side * (spin * p.radius - p.ring_slide)
-    yielding = p.lightness + p.radius * p.radius * p.swiftness
-    limit = p.land_friction * normal
-    tangent = -min(max(sliding / yielding, -limit), limit)
-    return -normal * nx - tangent * ny, -normal * ny + tangent * nx, side * tangent * p.radius, normal
+@kernel
+def lobes(p, w, n):  # type: ignore[no-untyped-def]
+    """Coefficient n of cosine and sine of the lobes' angle, and of that sine over the distance."""
+    w[n, TURN_COS] = product(w, NX, COS, n) + product(w, NY, SIN, n)
+    w[n, TURN_SIN] = product(w, NY, COS, n) - product(w, NX, SIN, n)
+    last = p.lobe_rows + 2 * (p.lobes - 1)
+    w[n, p.lobe_rows], w[n, p.lobe_rows + 1] = w[n, TURN_COS], w[n, TURN_SIN]
+    for row in range(p.lobe_rows + 2, last + 2, 2):
+        w[n, row] = product(w, row - 2, TURN_COS, n) - product(w, row - 1, TURN_SIN, n)
+        w[n, row + 1] = product(w, row - 1, TURN_COS, n) + product(w, row - 2, TURN_SIN, n)
+    w[n, LOBE_COS], w[n, LOBE_SIN] = w[n, last], w[n, last + 1]
+    tilt = w[n, LOBE_SIN]
+    for i in range(1, n + 1):
+        tilt -= w[i, DISTANCE] * w[n - i, TILT]
+    w[n, TILT] = tilt / w[0, DISTANCE]
+
+
+@kernel
+def push_land(p, w, n):  # type: ignore[no-untyped-def]
+    """Add coefficient n of the land's normal force to that of the forces and of the torque over M R."""
+    w[n, NORMAL] = p.land_stiffness * w[n, DEPTH] + p.land_damping * (n + 1) * w[n + 1, DEPTH]
+    w[n, FX] -= product(w, NORMAL, NX, n)
+    w[n, FY] -= product(w, NORMAL, NY, n)
+    if p.roundness != 0.0:
+        lean(p, w, n)
+
+
+@kernel
+def lean(p, w, n):  # type: ignore[no-untyped-def]
+    """Turn the normal force by the slope of the lobes: it is along the gradient of the depth."""
+    a = p.roundness * p.lobes
+    w[n, PUSHED] = product(w, NORMAL, TILT, n)
+    w[n, FX] -= a * product(w, PUSHED, NY, n)
+    w[n, FY] += a * product(w, PUSHED, NX, n)
+    w[n, TORQUE] -= a * product(w, NORMAL, LOBE_SIN, n) / p.radius
+
+
+@kernel
+def rub_land(p, w, n):  # type: ignore[no-untyped-def]
+    """Add coefficient n of the land's friction to that of the forces and of the torque over M R."""
+    w[n, FX] -= product(w, TANGENT, NY, n)
+    w[n, FY] += product(w, TANGENT, NX, n)
+    w[n, TORQUE] += p.land_side * w[n, TANGENT]
+
+
+@kernel
+def slide_speed(p, w, gx, gy, now, n):  # type: ignore[no-untyped-def]
+    """Coefficient n of the speed of the cage's surface on the ring's, from places up to n + 1."""
+    speed = p.land_side * w[n, W]
+    if n < 2:
+        speed -= p.land_side * p.ring_slide * now[n]
+    for i in range(n + 1):
+        m = n - i + 1
+        speed += m * (w[i, NX] * w[m, gy] - w[i, NY] * w[m, gx])
+    return speed

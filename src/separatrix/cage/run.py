@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.random import Generator, Philox
 
-from separatrix.cage.motion import advance, kinetic_energy, record
+from separatrix.cage.evidence import pocket_energy
+from separatrix.cage.motion import advance, kinetic
 from separatrix.cage.planar import RunOutcome
+from separatrix.cage.series import POWERS
 from separatrix.cage.slots import (
     DIRECTION,
     DRIFT_RATE,
@@ -17,25 +19,36 @@ from separatrix.cage.slots import (
     FORCE_MAX,
     GROSS,
     GROWTH,
+    GROWTH_RATE,
     IMBALANCE,
     KINETIC,
+    LAND_ENERGY,
+    LAND_FORCE,
+    LAND_HITS,
+    LAND_IMPACTS,
+    LAND_MAX,
+    LARGEST_OFFSET,
     LEDGER,
+    MEAN_OFFSET,
+    MEAN_X,
+    MEAN_Y,
     OFFSET,
     OFFSET_MAX,
-    OFFSET_X,
-    OFFSET_Y,
+    OFFSET_SPREAD,
+    OFFSET_SQUARED,
+    ORBIT_SPEED,
     OUTCOME,
+    POCKET_ENERGY,
     ROWS,
-    SOURCES,
     SPEED_SQUARED,
     STATE,
-    STEP,
-    STORED,
+    SWEPT,
     TALLY,
     TURNING,
     VX,
     VY,
     WHIRL,
+    WORKS,
     X,
 )
 from separatrix.compiled import kernel
@@ -46,11 +59,16 @@ if TYPE_CHECKING:
 FIFTHS = 5
 LOOKS = 10  # looks at the energy in each fifth
 UNKNOWN = -1
-DIES, GROWS, DRIFT = int(RunOutcome.DIES), int(RunOutcome.GROWS), int(RunOutcome.DRIFT)
+DIES, GROWS, DRIFT, STALLED = (
+    int(RunOutcome.DIES),
+    int(RunOutcome.GROWS),
+    int(RunOutcome.DRIFT),
+    int(RunOutcome.STALLED),
+)
 
 
 class Limits(NamedTuple):
-    """Where a run is drift, or its end known before its time: an offset [m], and energies [J]."""
+    """Where a run is drift, or its end known before its time: an offset [m], and energies over the mass."""
 
     drift: float
     grows_above: float
@@ -59,106 +77,171 @@ class Limits(NamedTuple):
     mean_dies_below: float
 
 
-def random_start(seed: int, run: int, ball_count: int) -> Array:
-    """Direction of the kick [rad] and lead of each ball (share of the scatter, -1 to 1), shape (1 + ball,).
-
-    They depend on the seed and the number of the run only: the same for any cage, kick and number of workers.
-    """
-    numbers = Generator(Philox(key=np.array([seed, run], dtype=np.uint64))).random(1 + ball_count)
-    start = 2.0 * numbers - 1.0
-    start[0] = 2.0 * math.pi * numbers[0]
-    return start
+@kernel
+def held_energy(p, q, active, count):  # type: ignore[no-untyped-def]
+    """Energy in the pockets' springs, over the mass."""
+    held = 0.0
+    for i in range(count):
+        held += pocket_energy(p, q[active[i]])
+    return held
 
 
 @kernel
-def watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows):  # type: ignore[no-untyped-def]
+def watch(  # type: ignore[no-untyped-def]
+    p, cos, sin, half, s, lead, q, w, side, active, mode, ledger, tally, hits, fifth, limits, rows, books
+):
     """Run until the outcome is known or the time is over.
 
     Returns
     -------
     tuple
-        Outcome or `UNKNOWN`, the last window looked at, its length [s], and the rows of history filled.
+        Outcome or `UNKNOWN`, the last window looked at, and its length.
     """
-    place, slack, load = np.zeros(3), -lead, np.zeros(cos.size)
-    filled = record(p, cos, sin, s, ledger, place, slack, load, 0.0, rows, 0)
-    step = (fifth + LOOKS - 1) // LOOKS
+    look = fifth / LOOKS
     for window in range(FIFTHS):
-        done = 0
-        while done < fifth:
-            units = min(fifth - done, step)
-            filled = advance(
+        for part in range(LOOKS):
+            going = advance(
                 p,
                 cos,
                 sin,
-                counts,
+                half,
                 s,
-                place,
-                slack,
-                load,
+                lead,
+                q,
+                w,
+                side,
+                active,
+                mode,
                 ledger,
                 tally[window],
-                units,
+                hits,
+                look,
                 limits.grows_above,
                 rows,
-                filled,
+                books,
             )
-            done = s[STEP] - window * fifth
-            energy = kinetic_energy(p, s) + ledger[STORED]
+            if not going:
+                return STALLED, window, (part + 1) * look
+            energy = kinetic(p, s) + held_energy(p, q, active, mode[0])
             if energy > limits.grows_above:
-                return GROWS, window, done * p.unit, filled
+                return GROWS, window, (part + 1) * look
             if energy < limits.dies_below:
-                return DIES, window, done * p.unit, filled
-        mean = tally[window, KINETIC] / (fifth * p.unit)
+                return DIES, window, (part + 1) * look
+        mean = tally[window, KINETIC] / fifth
         if window > 0 and mean > limits.mean_grows_above:
-            return GROWS, window, fifth * p.unit, filled
+            return GROWS, window, fifth
         if window > 0 and mean < limits.mean_dies_below:
-            return DIES, window, fifth * p.unit, filled
-    return UNKNOWN, FIFTHS - 1, fifth * p.unit, filled
+            return DIES, window, fifth
+    return UNKNOWN, FIFTHS - 1, fifth
 
 
 @kernel
 def drift_rate(tally, length):  # type: ignore[no-untyped-def]
-    """Growth rate of the mean offset between the last two fifths [1/s]; 0 where there is no offset."""
-    last = np.hypot(tally[FIFTHS - 1, OFFSET_X], tally[FIFTHS - 1, OFFSET_Y])
-    before = np.hypot(tally[FIFTHS - 2, OFFSET_X], tally[FIFTHS - 2, OFFSET_Y])
+    """Growth rate of the mean offset between the last two fifths; 0 where there is no offset."""
+    last = np.hypot(tally[FIFTHS - 1, MEAN_X], tally[FIFTHS - 1, MEAN_Y])
+    before = np.hypot(tally[FIFTHS - 2, MEAN_X], tally[FIFTHS - 2, MEAN_Y])
     return np.log(last / before) / length if last > 0.0 and before > 0.0 else 0.0
 
 
 @kernel
 def imbalance(p, s, ledger, start):  # type: ignore[no-untyped-def]
     """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
-    unexplained = kinetic_energy(p, s) + ledger[STORED] - start - np.sum(ledger[:SOURCES])
+    held = ledger[POCKET_ENERGY] + ledger[LAND_ENERGY]
+    unexplained = kinetic(p, s) + held - start - np.sum(ledger[:WORKS])
     return abs(unexplained) / (ledger[GROSS] + start)
 
 
 @kernel
-def run_one(p, cos, sin, counts, direction, kick, lead, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
-    """Run from one kick; write outcome and evidence into `out`, shape (evidence,).
+def run_one(p, cos, sin, half, direction, kick, start_lead, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+    """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
-    `limits` are `Limits`.
+    `kick` and `fifth` are in units of the engine.
     """
+    balls = cos.size
     s, ledger, tally = np.zeros(STATE), np.zeros(LEDGER), np.zeros((FIFTHS, TALLY))
+    lead, q = start_lead.copy(), np.zeros(balls)
+    side, active, mode = np.zeros(balls, np.int64), np.zeros(balls, np.int64), np.zeros(3, np.int64)
+    if p.gripped:
+        side[:] = 2
+        q[:] = -lead
+        active[:] = np.arange(balls)
+        mode[0] = balls
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
-    start = kinetic_energy(p, s)
-    outcome, window, length, filled = watch(p, cos, sin, counts, s, lead, ledger, tally, fifth, limits, rows)
+    start = kinetic(p, s)
+    ledger[POCKET_ENERGY] = held_energy(p, q, active, mode[0])
+    outcome, window, length = watch(
+        p, cos, sin, half, s, lead, q, w, side, active, mode, ledger, tally, hits, fifth, limits, rows, books
+    )
     end = tally[window]
-    out[OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
-    out[GROWTH] = end[KINETIC] / length / start
+    out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
+    mean = end[KINETIC] / length
+    out[GROWTH] = mean / start
+    middle = (window * fifth + 0.5 * length) * p.unit
+    out[GROWTH_RATE] = 0.5 * np.log(mean / start) / middle
     if outcome == UNKNOWN:
-        out[DRIFT_RATE] = drift_rate(tally, length)
-        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[OFFSET] > limits.drift else DIES)
-    whirl = end[TURNING] / end[SPEED_SQUARED] if end[SPEED_SQUARED] > 0.0 else 0.0
+        out[DRIFT_RATE] = drift_rate(tally, length * p.unit)
+        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[LARGEST_OFFSET] > limits.drift else DIES)
+    whirl = end[TURNING] / end[SPEED_SQUARED] / p.unit if end[SPEED_SQUARED] > 0.0 else 0.0
     out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
     out[DIRECTION] = np.sign(whirl) * sense
-    out[FORCE] = np.max(tally[:, FORCE_MAX])
-    out[IMBALANCE] = imbalance(p, s, ledger, start)
-    out[ROWS] = filled
+    force = 1.0 / p.unit**2
+    out[FORCE] = np.max(tally[:, FORCE_MAX]) * force
+    out[LAND_FORCE] = np.max(tally[:, LAND_MAX]) * force
+    out[IMBALANCE] = imbalance(p, s, ledger, start) if books else 0.0
+    out[MEAN_OFFSET] = end[OFFSET] / length
+    out[OFFSET_SPREAD] = np.sqrt(max(0.0, end[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
+    orbit = end[SWEPT] / end[OFFSET_SQUARED] if end[OFFSET_SQUARED] > 0.0 else 0.0
+    out[ORBIT_SPEED] = (orbit + p.turning) / p.unit
+    out[LAND_IMPACTS] = np.sum(tally[:, LAND_HITS])
+    out[ROWS] = mode[2]
 
 
 @kernel
-def run_chunk(p, cos, sin, counts, starts, kick, fifth, limits, sense, rows, out):  # type: ignore[no-untyped-def]
-    """Run from every row of `starts`, shape (run, 1 + ball); evidence into `out`, shape (run, evidence)."""
+def run_chunk(p, starts, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+    """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
+
+    A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
+    [m], its half play [m] and its angle [rad].
+    """
+    balls = hits.shape[1]
     for i in range(starts.shape[0]):
-        lead = starts[i, 1:]
-        run_one(p, cos, sin, counts, starts[i, 0], kick, lead, fifth, limits, sense, rows, out[i])
+        start = starts[i]
+        angle = start[1 + 2 * balls :]
+        cos, sin = np.cos(angle), np.sin(angle)
+        lead, half = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
+        run_one(
+            p, cos, sin, half, start[0], kick, lead, w, fifth, limits, sense, rows, books, out[i], hits[i]
+        )
+
+
+def random_start(seed: int, run: int, ball_count: int) -> Array:
+    """Numbers drawn for a run, shape (4, ball).
+
+    First the direction of the kick [rad] (repeated) and the lead of each ball (share of the scatter, -1 to
+    1), then normal deviations of ball diameters and of pocket positions, cut at 3, then displacements of
+    pockets with their balls (-1 to 1). They depend on the seed and the number of the run only: the same for
+    any cage, kick and number of workers.
+    """
+    stream = Generator(Philox(key=np.array([seed, run], dtype=np.uint64)))
+    numbers = stream.random(1 + ball_count)
+    rows = np.empty((5, ball_count))
+    rows[0] = 2.0 * math.pi * numbers[0]
+    rows[1] = 2.0 * numbers[1:] - 1.0
+    for row in (2, 3):
+        rows[row] = _cut_normal(stream, ball_count)
+    rows[4] = 2.0 * stream.random(ball_count) - 1.0
+    return rows
+
+
+def _cut_normal(stream: Generator, count: int) -> Array:
+    """Normal deviations, those beyond 3 drawn again."""
+    drawn = stream.standard_normal(count)
+    while (far := np.abs(drawn) > 3.0).any():
+        drawn[far] = stream.standard_normal(int(far.sum()))
+    return drawn
+
+
+def series_of(columns: int) -> Array:
+    """Room for the series of a step."""
+    return np.zeros((POWERS, columns))

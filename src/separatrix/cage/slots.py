@@ -1,28 +1,63 @@
-"""Names of the slots of the arrays that the kernels fill."""
+"""Names of the rows and slots of the arrays that the kernels fill."""
 
 from __future__ import annotations
 
-# State: centre of mass and its velocity in the turning frame, rotation against the ball set and its rate,
-# time in units of the unit step.
-X, Y, VX, VY, THETA, SPIN, STEP = range(7)
+# Columns of the series of a step (first index: power of time). Centre of mass and its velocity in the
+# turning frame, rotation slip S = R theta and its rate; what a yielding ball feels of the motion (the
+# speeds filtered by its yielding) and the share that is left of a penetration; geometric centre.
+X, Y, VX, VY, S, W, EX, EY, ES, KEPT, GX, GY = range(12)
+BODY = 12
+# Forces over the mass and torque over M R; what frame and gravity add; cosine and sine of theta.
+FX, FY, TORQUE, FRAME_X, FRAME_Y, FRAME_S, COS, SIN = range(12, 20)
+# Land: distance of the centre, its direction, depth, normal and tangential force over the mass, sliding,
+# cosine and sine of the lobes, that sine over the distance, and three in between.
+DISTANCE, NX, NY, DEPTH, NORMAL, TANGENT, SLIDING = range(20, 27)
+LOBE_COS, LOBE_SIN, TILT, TURN_COS, TURN_SIN, PUSHED = range(27, 33)
+# Cosine and sine of the turning of the frame and of its multiples; what balls in touch and free balls have
+# gone by a free speed of that form.
+HARMONICS = 4
+FRAME, FELT, GONE = 33, 33 + 2 * HARMONICS, 33 + 4 * HARMONICS
+# Then for each ball, with Hertz springs, penetration and force over the mass; then the powers of the lobes.
+BALLS = 33 + 6 * HARMONICS
+
+# State of a run: the first six above, then the clock.
+CLOCK = 6
 STATE = 7
 
-# Ledger: work done on the cage since the start by each source (a sink is negative), the sum of the magnitudes
-# of all of them, and the energy that the pockets' springs hold [J].
-POCKET_FRICTION, RACE_DAMPERS, LAND, GRAVITY, MOVING_FRAME, UNBALANCE, GROSS, STORED = range(8)
-SOURCES = 6
-LEDGER = 8
+# Ledger: work done on the cage by each source (a sink is negative), the sum of the magnitudes, and the
+# energies that pockets and land hold.
+SOURCES = (
+    "pocket_friction",
+    "race_dampers",
+    "ball_drive",
+    "land_friction",
+    "land_damping",
+    "gravity",
+    "moving_frame",
+    "unbalance",
+)
+POCKET_FRICTION, RACE_DAMPERS, BALL_DRIVE, LAND_FRICTION = range(4)
+LAND_DAMPING, GRAVITY, MOVING_FRAME, UNBALANCE = range(4, 8)
+WORKS = 8
+GROSS, POCKET_ENERGY, LAND_ENERGY = 8, 9, 10
+LEDGER = 11
 
-# Tally of a window: time integrals of kinetic energy, offset, |v|^2 times the turning of the velocity, and
-# |v|^2; largest squared offset, force of a pocket and force of the land.
-KINETIC, OFFSET_X, OFFSET_Y, TURNING, SPEED_SQUARED, OFFSET_MAX, FORCE_MAX, LAND_MAX = range(8)
-TALLY = 8
+# Modes of the land.
+CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
+
+# Tally of a window: integrals over time of the kinetic energy, the offset and its square, of r x v, of
+# |v|^2 times the turning of the velocity and of |v|^2, of x and y; largest squared offset and forces; steps
+# taken and touches of the land.
+KINETIC, OFFSET, OFFSET_SQUARED, SWEPT, TURNING, SPEED_SQUARED, MEAN_X, MEAN_Y = range(8)
+OFFSET_MAX, FORCE_MAX, LAND_MAX, STEPS, LAND_HITS = range(8, 13)
+TALLY = 13
 
 # Evidence of a run.
-OUTCOME, GROWTH, OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE, IMBALANCE, ROWS = range(9)
-EVIDENCE = 9
+OUTCOME, GROWTH, GROWTH_RATE, LARGEST_OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE = range(8)
+LAND_FORCE, IMBALANCE, MEAN_OFFSET, OFFSET_SPREAD, ORBIT_SPEED, LAND_IMPACTS, ROWS = range(8, 15)
+EVIDENCE = 15
 
-# A row of a history: state (with time in place of the step), ledger, force of the land, then lead and load of
-# every ball.
-LAND_FORCE = STATE + LEDGER
-BALLS = LAND_FORCE + 1
+# A row of a history: geometric centre, velocity, rotation slip and its rate, time, work, energies of
+# pockets and land, force of the land, then lead and force of every ball.
+ROW_WORK = 7
+ROW_POCKET_ENERGY, ROW_LAND_ENERGY, ROW_LAND_FORCE, ROW_BALLS = 15, 16, 17, 18
