@@ -11,6 +11,10 @@ from separatrix.stability.response import LADDER, Crossing, Response
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.units import Ratio
 
+CROSSINGS = 3000
+"""Length of a run of hard impacts, in times that the kick takes to cross a pocket's play: no other time is in
+them."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearLimit:
@@ -52,7 +56,8 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
         return None
     if restitution_factor >= 1.0:
         return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
-    still, even = hard_cage(cage), replace(settings, ball_scatter=0.0)
+    lasting = CROSSINGS * cage.pocket_clearance / settings.middle_kick
+    still, even = hard_cage(cage), replace(settings, ball_scatter=0.0, duration=lasting)
 
     def look(friction: Ratio, first_run: int, runs: int) -> Count:
         rubbing = cage_at(still, restitution_factor, friction)
