@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.figures import bearing, ranking, restitution, simulation, stability, traction
+from separatrix.figures import map as maps
 from separatrix.figures.style import journal, save, settled
 
 __all__ = ["compared", "figures", "save"]
@@ -19,6 +20,7 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "traction": {"traction-curves": traction.curves, "traction-shear": traction.shear},
     "restitution": {"restitution-film": restitution.lubrication},
     "stability": {"stability-curve": stability.stability},
+    "map": {"stability-map": maps.map},
     "simulate": {"simulation": simulation.run, "simulation-forces": simulation.forces},
     "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
 }

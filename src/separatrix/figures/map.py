@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
+from matplotlib.ticker import LogLocator
 
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
 from separatrix.figures.style import BLACK, GREY, PAGE, VERMILION, canvas, legend_below
@@ -33,7 +33,8 @@ def map(data: xr.Dataset) -> Figure:
     figure, axes = canvas(PAGE, 4.9)
     edges = [cell_edges(axis_values(data, name)) for name in "xy"]
     mesh = _cells(axes, data, edges)
-    _undecided(axes, data, edges)
+    undecided = table(data, "decision").astype(str) == "UNDECIDED"
+    _hatched(axes, edges, undecided, facecolors="none", edgecolors=BLACK, hatch="////", label="undecided")
     for name in "xy":
         _axis(axes, data, name)
     axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
@@ -104,8 +105,9 @@ def _axis(axes: Axes, data: xr.Dataset, name: str) -> None:
     if is_proportional(axis_values(data, name)):
         axes.set(**{f"{name}scale": "log"})
         which: Any = getattr(axes, f"{name}axis")
+        which.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         which.set_major_formatter("{x:g}")
-        which.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.7)))
+        which.set_minor_formatter("")
 
 
 def table(data: xr.Dataset, name: str) -> Any:
@@ -143,30 +145,27 @@ def _cells(axes: Axes, data: xr.Dataset, edges: list[Array]) -> Any:
     look: Any = {"rasterized": True, "shading": "flat"}
     share = np.ma.masked_invalid(filled(data))
     mesh = axes.pcolormesh(*edges, share, cmap=COLOURS, vmin=0.0, vmax=1.0, **look)
-    grey = refused(data)
-    if grey.any():
-        cells = np.ma.masked_where(~grey, np.ones(grey.shape))
-        axes.pcolormesh(*edges, cells, cmap=ListedColormap([REFUSED]), **look)
-        axes.fill_between([], [], color=REFUSED, label="refused")
+    _hatched(
+        axes, edges, refused(data), facecolors=REFUSED, edgecolors="white", hatch="xxxx", label="refused"
+    )
     if (not_run(data) & ~agreed(data)).any():
         axes.fill_between([], [], facecolor="white", edgecolor=GREY, lw=0.5, label="not run")
     if agreed(data).any():
         place = np.argwhere(~not_run(data))
         values = [axis_values(data, name)[place[:, i]] for name, i in (("x", 1), ("y", 0))]
-        axes.plot(*values, ".", color=GREY, ms=1.2, label="was run; the points around agree elsewhere")
+        axes.plot(*values, ".", color=GREY, ms=1.2, label="was run; elsewhere the points around agree")
     return mesh
 
 
-def _undecided(axes: Axes, data: xr.Dataset, edges: list[Array]) -> None:
-    """Hatch what the runs do not decide."""
+def _hatched(axes: Axes, edges: list[Array], where: Any, **look: Any) -> None:
+    """Hatch cells."""
     x, y = edges
     cells = [
         [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]
-        for j, i in np.argwhere(table(data, "decision").astype(str) == "UNDECIDED")
+        for j, i in np.argwhere(where)
     ]
     if cells:
-        look: Any = {"facecolors": "none", "edgecolors": BLACK, "hatch": "/////", "linewidths": 0.0}
-        axes.add_collection(PolyCollection(cells, label="undecided", **look), autolim=False)
+        axes.add_collection(PolyCollection(cells, linewidths=0.0, **look), autolim=False)
 
 
 def _half(axes: Axes, data: xr.Dataset) -> None:
@@ -175,7 +174,8 @@ def _half(axes: Axes, data: xr.Dataset) -> None:
     if min(share.shape) < 2 or not share.count() or not share.min() < 0.5 < share.max():
         return
     values = [axis_values(data, name) for name in "xy"]
-    axes.contour(*values, share, levels=[0.5], colors=[VERMILION], linewidths=[1.6])
+    for colour, width in (("white", 3.2), (VERMILION, 1.6)):
+        axes.contour(*values, share, levels=[0.5], colors=[colour], linewidths=[width])
     axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs grow")
 
 

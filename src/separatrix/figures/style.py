@@ -49,6 +49,7 @@ STYLE: Any = {
     "axes.spines.right": False,
     "axes.prop_cycle": cycler(color=CYCLE),
     "axes.titlelocation": "left",
+    "hatch.linewidth": 0.5,
     "lines.linewidth": 1.3,
     "lines.markersize": 4.0,
     "legend.frameon": False,
