@@ -104,7 +104,7 @@ def test_units_are_found_behind_prefixes():
     assert unit_of("chain_race_damping") == "N s/m"
     assert unit_of("contact_max_pressure") == "Pa"
     assert unit_of("cage_pocket_clearance") == "m"
-    assert unit_of("work_land") == "J"
+    assert unit_of("work_land_friction") == "J"
     assert unit_of("material_name") is None
 
 

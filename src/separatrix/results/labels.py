@@ -24,7 +24,10 @@ class Group:
     label: str = ""
 
 
-SOURCES = ("pocket_friction", "race_dampers", "land", "gravity", "moving_frame", "unbalance")
+SOURCES = (
+    *("pocket_friction", "race_dampers", "ball_drive", "land_friction", "land_damping"),
+    *("gravity", "moving_frame", "unbalance"),
+)
 """What does work on the cage."""
 
 GROUPS = {
@@ -71,9 +74,12 @@ LISTS: dict[str, tuple[str, ...]] = {
     "velocity": ("time", "axis"),
     "ball_lead": ("time", "ball"),
     "contact_force": ("time", "ball"),
+    "pocket_angle": ("ball",),
+    "half_play": ("ball",),
+    "pocket_impact_shares": ("ball",),
 } | dict.fromkeys(
     (
-        *("rotation", "rotation_rate", "land_force", "kinetic_energy", "spring_energy"),
+        *("rotation", "rotation_rate", "land_force", "kinetic_energy", "spring_energy", "land_energy"),
         *SOURCES,
     ),
     ("time",),
@@ -137,6 +143,9 @@ OTHER_UNITS = {
     "land_force": "N",
     "kinetic_energy": "J",
     "spring_energy": "J",
+    "land_energy": "J",
+    "pocket_angle": "rad",
+    "pocket_impact_shares": "-",
     "kick": "m/s",
     "kicks": "m/s",
     "drift_rate": "1/s",

@@ -278,8 +278,6 @@ def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble
 
 def growth_rate(ensemble: Ensemble) -> float:
     """Median growth rate of the runs [1/s]."""
-    if not hasattr(ensemble, "growth_rate"):
-        return float(np.median(np.log(ensemble.energy_growth))) / (2.0 * ensemble.duration)
     return float(np.median(ensemble.growth_rate))
 
 
