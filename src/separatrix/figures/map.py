@@ -13,7 +13,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
+from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, linear_limit
 from separatrix.figures.style import BLACK, GREY, PAGE, VERMILION, canvas, legend_below
 from separatrix.units import Array, format_quantity, parse
 
@@ -177,12 +177,6 @@ def _half(axes: Axes, data: xr.Dataset) -> None:
     for colour, width in (("white", 3.2), (VERMILION, 1.6)):
         axes.contour(*values, share, levels=[0.5], colors=[colour], linewidths=[width])
     axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs grow")
-
-
-def linear_limit(restitution_factor: Array, ball_count: int) -> Array:
-    """Return the critical friction of the linear law, 2 zeta sqrt(2/Z), at factors above 0 [-]."""
-    decay = -np.log(restitution_factor)
-    return np.asarray(2 * decay / np.hypot(np.pi, decay) * np.sqrt(2 / ball_count))
 
 
 def _limit(axes: Axes, data: xr.Dataset) -> None:

@@ -17,6 +17,7 @@ from separatrix.figures.style import (
     GREY,
     MARKERS,
     PAGE,
+    SKY,
     canvas,
     legend_below,
 )
@@ -41,6 +42,7 @@ def stability(data: xr.Dataset) -> Figure:
         figure, axes = canvas(PAGE, 4.1)
     frame(axes, data, highest(data, candidates=candidates))
     chain_lines(axes, data)
+    _here(axes, data)
     _ends(axes, data)
     axes.set_title(f"{'a  ' if candidates else ''}Critical friction and its band")
     if candidates:
@@ -66,6 +68,7 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
     scatter = data["scatter_low"].values, data["scatter_high"].values
     axes.fill_between(eta, *scatter, color=BLUE, alpha=0.35, lw=0, label="its 95 % interval")
     _band(axes, eta, data, top)
+    _other_kicks(axes, data)
     _limits(axes, data)
 
 
@@ -80,39 +83,81 @@ def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
     return np.where(unknown, np.nan, ends[0]), np.where(unknown, np.nan, ends[1])
 
 
+BAND = {"band_few": 0.1, "band_most": 0.9}
+"""Shares of growing runs at the ends of the band, in a dataset that does not say them."""
+
+
 def _band(axes: Axes, eta: Array, data: xr.Dataset, top: float) -> None:
     """Shade what lies between the band's ends, where the kick decides, and name it."""
     low, high = band_ends(data, top)
     kicks = data["kicks"].values
     span = f"{kicks.min():g} to {kicks.max():g} m/s" if kicks.size > 1 else f"{kicks[0]:g} m/s"
-    label = f"sub-critical band: the kick decides ({span})" if kicks.size > 1 else f"10 to 90 % grow, {span}"
+    label = (
+        f"sub-critical band: the kick decides ({span})"
+        if kicks.size > 1
+        else f"scatter of the runs, kick {span}"
+    )
     axes.fill_between(eta, low, high, color=BLUE, alpha=0.15, lw=0, label=label)
-    every, some = ("every kick", "some kick") if kicks.size > 1 else ("that kick", "that kick")
+    few, most = (float(data[name]) if name in data else other for name, other in BAND.items())
+    every = "every kick" if kicks.size > 1 else "that kick"
     for end, style, text in (
-        (high, "-.", rf"$f_{{high}}$: above it at least 90 % grow at {every}"),
-        (low, ":", rf"$f_{{low}}$: from it on 10 % grow at {some}"),
+        (high, "-.", rf"$f_{{high}}$: above it {100 * most:.0f} % or more grow from {every}"),
+        (low, ":", rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more die from {every}"),
     ):
         axes.plot(eta, np.where(end > top, np.nan, end), color=BLUE, lw=0.8, ls=style, label=text)
 
 
-LIMITS = (
-    ("linear_limit_critical_friction", GREY, (0, (5, 2)), "linear limit: no clearance, balls at rest"),
-    ("hard_limit_critical_friction", GREEN, (0, (6, 1.5, 1, 1.5)), "hard-impact limit"),
-)
+DENSE = np.linspace(1e-3, 1.0, 400)
+
+
+def linear_limit(restitution_factor: Array, ball_count: int) -> Array:
+    """Return the critical friction of the linear law, 2 zeta sqrt(2/Z), at factors above 0 [-]."""
+    decay = -np.log(restitution_factor)
+    return np.asarray(2 * decay / np.hypot(np.pi, decay) * np.sqrt(2 / ball_count))
 
 
 def _limits(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the limits that the dataset has."""
-    for name, colour, style, label in LIMITS:
-        if name in data and np.isfinite(data[name].values.astype(float)).any():
-            axes.plot(
-                data["restitution_factor"].values,
-                data[name].values,
-                color=colour,
-                lw=1.0,
-                ls=style,
-                label=label,
-            )
+    """Draw the limits that the dataset has; the linear law, in closed form, as smooth as it is."""
+    eta, known = data["restitution_factor"].values, data["linear_limit_critical_friction"].values
+    linear = (
+        (DENSE, linear_limit(DENSE, int(data["cage_ball_count"])))
+        if "cage_ball_count" in data
+        else (eta, known)
+    )
+    label = "linear limit: no clearance, balls at rest"
+    axes.plot(*linear, color=GREY, lw=1.0, ls=(0, (5, 2)), label=label)
+    name = "hard_limit_critical_friction"
+    if name in data and np.isfinite(data[name].values.astype(float)).any():
+        label = "hard-impact limit: walls, no land, balls at rest"
+        axes.plot(eta, data[name].values, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
+
+
+def _other_kicks(axes: Axes, data: xr.Dataset) -> None:
+    """Draw where half the runs grow from the smallest and from the largest kick, if the dataset has it."""
+    if "kick_critical_friction" not in data or data.sizes["kick"] < 2:
+        return
+    kicks, found = (
+        data["kicks"].values,
+        data["kick_critical_friction"].transpose("restitution_factor", "kick"),
+    )
+    for place, marker in ((int(kicks.argmin()), "v"), (int(kicks.argmax()), "^")):
+        if kicks[place] != float(data["middle_kick"]):
+            label = f"half grow, kick {kicks[place]:g} m/s"
+            look: Any = {"color": SKY, "marker": marker, "ms": 2.5, "lw": 0.7, "label": label}
+            axes.plot(data["restitution_factor"].values, found.values[:, place], **look)
+
+
+def _here(axes: Axes, data: xr.Dataset) -> None:
+    """Mark the critical friction at the bearing's own restitution factor, with its interval."""
+    names = [
+        f"here_{name}" for name in ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
+    ]
+    values = [float(data[name]) if name in data else np.nan for name in names]
+    if np.isfinite(values).all():
+        eta, middle, low, high = values
+        label = rf"this bearing's critical friction, {middle:.2g} ({low:.2g} to {high:.2g})"
+        axes.vlines(eta, low, high, color=BLACK, lw=2.5, zorder=3)
+        axes.plot(eta, middle, "D", mfc="white", mec=BLACK, ms=4.5, ls="", zorder=4, label=label)
 
 
 CHAIN_LINES = {
