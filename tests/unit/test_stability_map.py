@@ -25,6 +25,7 @@ from separatrix.stability.map_records import MapAxis, MapQuestion
 from separatrix.stability.map_rule import (
     AGREEING,
     changes,
+    first_look,
     margins,
     other_decision_probability,
     wrong_side_probability,
@@ -92,7 +93,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
 
 
 def test_first_runs_that_agree_end_a_point(study):
-    """Eight runs where the first eight agree; all of them otherwise, and as if at once."""
+    """Six runs where the first six agree; all of them otherwise, and as if at once."""
     cage = cage_state(study, friction=0.0).cage
     settings = replace(study.stability, duration=0.05)
     sizes = set()
@@ -119,14 +120,22 @@ def test_the_error_of_the_rule_is_that_of_all_orders(runs, agreeing):
     assert wrong_side_probability(runs, agreeing) == pytest.approx(worst, rel=1e-15)
 
 
-def test_eight_of_sixteen_that_agree_cannot_be_outvoted():
-    """The rule of the map has no wrong side at 16 runs, and 0.18 % of the draws at 64 (33 against 31)."""
-    assert wrong_side_probability(16) == 0.0
-    assert wrong_side_probability(64) == pytest.approx(0.0018, abs=5e-5)  # the digits of the sentence
-    assert other_decision_probability(16) == pytest.approx(
-        (8 * 7) / (16 * 15), rel=1e-15
-    )  # 2 against 14: both in the last 8
-    assert other_decision_probability(8) == 0.0
+def test_six_of_sixteen_that_agree_are_rarely_outvoted():
+    """Of 16 runs, 9 against 7: 7 of the 8008 draws of the first 6 are all of the 7; of the first 8 none."""
+    assert wrong_side_probability(16, 6) == pytest.approx(7 / 8008, rel=1e-15)
+    assert wrong_side_probability(16, 8) == 0.0
+    assert other_decision_probability(16, 6) == pytest.approx(
+        (10 * 9) / (16 * 15), rel=1e-15
+    )  # 2 against 14: both in the last 10
+    assert wrong_side_probability(6, 6) == other_decision_probability(6, 6) == 0.0
+
+
+@pytest.mark.parametrize("runs", [1, 3, 6, 12, 16, 32, 64, 500])
+def test_the_first_look_is_as_early_as_its_error_allows(runs):
+    """At most one in a thousand on the wrong side; one run fewer would be more, or too few to decide."""
+    first = first_look(runs)
+    assert wrong_side_probability(runs, first) <= 1e-3
+    assert first in (runs, AGREEING) or wrong_side_probability(runs, first - 1) > 1e-3
 
 
 def test_every_point_is_in_one_round():

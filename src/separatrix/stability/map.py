@@ -326,11 +326,12 @@ def _kind(point: MapPoint) -> str:
 
 def stopping(runs: int) -> Stopping:
     """Rule by which points of so many runs are ended early."""
+    agreeing = first_look(runs)
     return Stopping(
         most_runs=runs,
-        agreeing_runs=first_look(runs),
-        wrong_side_probability=wrong_side_probability(runs),
-        other_decision_probability=other_decision_probability(runs),
+        agreeing_runs=agreeing,
+        wrong_side_probability=wrong_side_probability(runs, agreeing),
+        other_decision_probability=other_decision_probability(runs, agreeing),
     )
 
 

@@ -10,18 +10,22 @@ from separatrix.cage import wilson_interval
 from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.units import Ratio
 
-AGREEING = 8
-"""A point is decided once so many runs agree, from the first on; otherwise all its runs are made."""
+AGREEING = 6
+"""A point is decided once at least so many runs agree, from the first on; otherwise all its runs are made."""
+
+MOST_WRONG: Ratio = 1e-3
+"""Largest probability that all the runs of such a point would have the other majority."""
 
 DIES, GROWS, EITHER = -1, 1, 0
 
 
 def first_look(runs: int) -> int:
-    """Runs after which a point is looked at."""
-    return min(AGREEING, runs)
+    """Runs after which a point is looked at: the fewest that keep to `MOST_WRONG`, and to `AGREEING`."""
+    enough = next(n for n in range(1, runs + 1) if wrong_side_probability(runs, n) <= MOST_WRONG)
+    return min(max(enough, AGREEING), runs)
 
 
-def wrong_side_probability(runs: int, agreeing: int = AGREEING) -> Ratio:
+def wrong_side_probability(runs: int, agreeing: int) -> Ratio:
     r"""Largest probability that a point which is ended early would lie on the other side with all its runs.
 
     Runs are exchangeable. If :math:`K` of :math:`R` are of one kind, the first :math:`n` are all of the
@@ -38,7 +42,7 @@ def wrong_side_probability(runs: int, agreeing: int = AGREEING) -> Ratio:
     return _all_of_the_others(runs, runs // 2 + 1, agreeing)
 
 
-def other_decision_probability(runs: int, agreeing: int = AGREEING) -> Ratio:
+def other_decision_probability(runs: int, agreeing: int) -> Ratio:
     """Largest probability that a point which is ended early would be decided otherwise with all its runs.
 
     Most of these are points that all the runs would leave undecided.
