@@ -138,7 +138,9 @@ def _write_gif(film: Iterator[Image.Image], part: Path) -> None:
     """Write the frames as a GIF that repeats, all in the same colours."""
     look: Any = {"palette": palette(), "dither": Image.Dither.NONE}
     images = (image.quantize(**look) for image in film)
-    next(images).save(part, "GIF", save_all=True, append_images=images, duration=1000 // A_SECOND, loop=0)
+    how: Any = {"save_all": True, "duration": 1000 // A_SECOND, "loop": 0}
+    with part.open("wb") as file:
+        next(images).save(file, "GIF", append_images=images, **how)
 
 
 def palette() -> Image.Image:

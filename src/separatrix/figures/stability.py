@@ -185,7 +185,7 @@ def _ends(axes: Axes, data: xr.Dataset) -> None:
 
 def _candidates(axes: Axes, data: xr.Dataset) -> None:
     """Draw each candidate's friction in every environment, with the band at its own restitution factor."""
-    data = data.isel(material=np.argsort(np.nanmean(_frictions(data), axis=0), kind="stable"))
+    data = data.isel(material=np.argsort(_measured_mean(_frictions(data)), kind="stable"))
     count = data.sizes["material"]
     axes.set(xlim=(-0.6, count - 0.4), title=r"b  Candidates at their $\eta$")
     axes.set_xticks(range(count), data["material"].values.astype(str), rotation=90, fontsize=6.5)
@@ -196,11 +196,23 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
         if np.isfinite(friction[:, place]).any():
             ends = np.nanmin(friction[:, place]), np.nanmax(friction[:, place])
             axes.vlines(place, *ends, color=GREY, lw=0.8)
+        else:
+            axes.text(place, 0.02 * axes.get_ylim()[1], "not measured", **UNMEASURED)
     shift = 0.5 / max(1, friction.shape[0])
     for i, name in enumerate(data["environment"].values.astype(str)):
         places = np.arange(count) + shift * (i - 0.5 * (friction.shape[0] - 1))
         look: Any = {"marker": MARKERS[i % len(MARKERS)], "color": CYCLE[i % len(CYCLE)], "ms": 3.4, "ls": ""}
         axes.errorbar(places, friction[i], yerr=error[i], elinewidth=0.9, label=name, **look)
+
+
+UNMEASURED: Any = {"rotation": 90, "ha": "center", "va": "bottom", "fontsize": 6.5, "color": GREY}
+
+
+def _measured_mean(table: Array) -> Array:
+    """Return the mean of each column over what is known; infinite for a column of nothing."""
+    known = np.isfinite(table)
+    total = np.where(known, table, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    return np.where(known.any(axis=0), total, np.inf)
 
 
 def _frictions(data: xr.Dataset) -> Array:
@@ -223,7 +235,7 @@ def _own_bands(axes: Axes, data: xr.Dataset) -> None:
     middle = data["critical_friction"].values
     own = data["material_restitution_factor"].transpose("environment", "material").values.astype(float)
     for place in range(data.sizes["material"]):
-        at = float(np.nanmean(own[:, place])) if np.isfinite(own[:, place]).any() else np.nan
+        at = float(_measured_mean(own)[place])
         if eta.size and eta[0] <= at <= eta[-1]:
             ends = np.interp(at, eta, low), np.interp(at, eta, high)
             axes.fill_between([place - 0.4, place + 0.4], *ends, color=BLUE, alpha=0.15, lw=0)

@@ -1,0 +1,97 @@
+"""Datasets as `results.load` returns them, made by hand, for the tests of the figures."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+
+MADE = 12
+"""Samples of a run."""
+
+
+def run(*, count=5, samples=MADE, outcome="GROWS", guidance="outer", touching=True, play=0.6e-3, **changes):
+    """One run of a cage of `count` pockets whose centre goes around."""
+    time = np.linspace(0.0, 0.01, samples)
+    around = 900.0 * time
+    position = 4e-4 * np.stack([np.cos(around), np.sin(around)], axis=1)
+    force = np.where(np.arange(samples)[:, None] % 3 == np.arange(count) % 3, 20.0, 0.0) * touching
+    variables = {
+        "position": (("time", "axis"), position),
+        "velocity": (("time", "axis"), 900.0 * position[:, ::-1] * [-1.0, 1.0]),
+        "rotation": ("time", 1e-3 * time),
+        "ball_lead": (("time", "ball"), np.zeros((samples, count))),
+        "contact_force": (("time", "ball"), force * np.where(np.arange(count) % 2, -1.0, 1.0)),
+        "land_force": ("time", np.where(np.arange(samples) % 4 == 1, 7.0, 0.0) * touching),
+        "kinetic_energy": ("time", 1e-3 + time),
+        "spring_energy": ("time", np.zeros(samples)),
+        "work_pocket_friction": ("time", 3.0 * time * touching),
+        "work_race_dampers": ("time", -2.0 * time * touching),
+        "outcome": outcome,
+        "kick": 0.5,
+        "cage_pitch_radius": 0.0325,
+        "cage_cage_speed": 600.0,
+        "cage_pocket_clearance": play,
+        "cage_guidance": guidance,
+        "cage_land_clearance": np.nan if guidance == "ball" else 1e-3,
+    }
+    study = {"bearing": {"ball_diameter": {"value": 0.0111}}}
+    made = xr.Dataset(variables | changes, coords={"time": time}, attrs={"study": json.dumps(study)})
+    return made.transpose("time", ...)
+
+
+def curve(points=4, **changes):
+    """A stability curve of a cage with 13 balls."""
+    eta = np.linspace(0.1, 0.9, points)
+    middle = 0.3 * (1.0 - eta)
+    on = "restitution_factor"
+    variables = {
+        "critical_friction": (on, middle),
+        "critical_friction_low": (on, 0.8 * middle),
+        "critical_friction_high": (on, 1.5 * middle),
+        "scatter_low": (on, 0.95 * middle),
+        "scatter_high": (on, 1.05 * middle),
+        "linear_limit_critical_friction": (on, 2.0 * middle),
+        "kicks": ("kick", [0.1, 0.5, 2.0]),
+        "middle_kick": 0.5,
+        "runs": 64,
+        "chain_restitution_factor": 0.27,
+        "chain_restitution_factor_free_spin": 0.07,
+        "cage_ball_count": 13,
+    }
+    return xr.Dataset(variables | changes, coords={on: eta})
+
+
+def candidates(friction):
+    """Columns of a ranking, for frictions of shape (environment, material)."""
+    shape = np.shape(friction)
+    at = ("environment", "material")
+    return {
+        "material_friction": (at, np.array(friction, dtype=float)),
+        "material_restitution_factor": (at, np.full(shape, 0.27)),
+        "environment": [f"environment {i}" for i in range(shape[0])],
+        "material": [f"material {i}" for i in range(shape[1])],
+    }
+
+
+def plane(share, *, x=None, y=None, **changes):
+    """A stability map with these shares of growing runs, shape (y, x); NaN is a refusal."""
+    share = np.array(share, dtype=float)
+    rows, columns = share.shape
+    decision = np.where(np.isnan(share), "", np.where(share > 0.8, "UNSTABLE", "STABLE"))
+    variables = {
+        "probability_grow": (("y", "x"), share),
+        "decision": (("y", "x"), np.where((share > 0.2) & (share < 0.8), "UNDECIDED", decision)),
+        "reason": (("y", "x"), np.where(np.isnan(share), "The cage cannot fit.", "As they do.")),
+        "x_parameter": "restitution_factor",
+        "y_parameter": "ball_cage_friction",
+        "x_here": 0.27,
+        "y_here": 0.22,
+        "kick": 0.5,
+        "cage_ball_count": 13,
+    }
+    x = np.linspace(0.0, 1.0, columns) if x is None else x
+    y = np.linspace(0.0, 0.5, rows) if y is None else y
+    coords = {"x": ("x", x, {"units": "-"}), "y": ("y", y, {"units": "-"})}
+    return xr.Dataset(variables, coords=coords).assign(changes)

@@ -1,0 +1,165 @@
+"""What the figures of the stability curve and of the map rely on."""
+
+from __future__ import annotations
+
+import drawn
+import numpy as np
+import pytest
+
+from separatrix.cage import PlanarCage, linear_critical_friction
+from separatrix.figures import map as maps
+from separatrix.figures import stability
+from separatrix.figures.style import journal, settled
+from separatrix.restitution import restitution_factor
+
+ON = "restitution_factor"
+NAN = np.nan
+CURVES = {
+    "ordinary": drawn.curve(),
+    "with every limit": drawn.curve(
+        hard_limit_critical_friction=(ON, [0.2, 0.1, NAN, 0.0]),
+        kick_critical_friction=((ON, "kick"), [[0.1] * 3] * 4),
+    ),
+    "no threshold": drawn.curve(
+        **{f"critical_friction{end}": (ON, [NAN] * 4) for end in ("", "_low", "_high")}
+    ),
+    "one point": drawn.curve(points=1),
+    "one kick": drawn.curve(kicks=("kick", [0.5])),
+    "candidates": drawn.curve(**drawn.candidates([[0.1, 0.2, NAN], [0.15, NAN, NAN]])),
+    "no measured candidate": drawn.curve(**drawn.candidates([[NAN, NAN]])),
+    "its own point": drawn.curve(
+        here_restitution_factor=0.27, here_critical_friction=0.2, here_scatter_low=0.1, here_scatter_high=0.3
+    ),
+    "its own point unknown": drawn.curve(here_restitution_factor=0.27, here_critical_friction=NAN),
+}
+AGREE = np.array([["not run: the points around agree", "As they do."], ["not run: interrupted", ""]])
+MAPS = {
+    "ordinary": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
+    "all refused": drawn.plane([[NAN, NAN], [NAN, NAN]]),
+    "all grow": drawn.plane([[1.0, 1.0], [1.0, 1.0]]),
+    "one column": drawn.plane([[0.0], [0.6], [1.0]]),
+    "one point": drawn.plane([[0.6]]),
+    "partly run": drawn.plane([[NAN, 0.0], [NAN, 1.0]]).assign(reason=(("y", "x"), AGREE)),
+    "other parameters": drawn.plane(
+        [[0.0, 0.4]] * 3, y=np.array([1e-4, 1e-3, 1e-2]), y_parameter="cage.mass"
+    ),
+    "no point of its own": drawn.plane([[0.0, 1.0], [0.6, 1.0]], x_here=NAN),
+    "at zero": drawn.plane([[0.0, 1.0]], y=np.zeros(1)),
+}
+
+
+@pytest.mark.parametrize("data", CURVES.values(), ids=CURVES.keys())
+def test_every_curve_is_drawn_without_a_warning(data):
+    """Warnings are errors here."""
+    with journal():
+        settled(stability.stability(data))
+
+
+@pytest.mark.parametrize("data", MAPS.values(), ids=MAPS.keys())
+def test_every_map_is_drawn_without_a_warning(data):
+    """Warnings are errors here."""
+    with journal():
+        settled(maps.map(data))
+
+
+@pytest.mark.parametrize("zeta", [0.02, 0.3, 0.9])
+def test_the_linear_limit_is_that_of_the_cage(zeta):
+    """Drawn from restitution factor and number of balls alone: 2 zeta sqrt(2/Z) of the engine."""
+    cage = PlanarCage(
+        mass=0.05,
+        moment_of_inertia=5e-5,
+        ball_count=11,
+        pitch_radius=0.03,
+        cage_speed=0.0,
+        inner_speed=1.0,
+        outer_speed=0.0,
+        pocket_clearance=6e-4,
+        ball_cage_stiffness=3e6,
+        race_damping=np.sqrt(3e6 * 0.05) / (2 * zeta),
+        ball_cage_friction=0.0,
+    )
+    drawn_limit = stability.linear_limit(np.array([restitution_factor(zeta)]), 11)
+    assert drawn_limit[0] == pytest.approx(linear_critical_friction(cage), rel=1e-9)  # eta to zeta and back
+
+
+def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
+    """Growth without friction: from 0; death up to the most: beyond the top; nothing known: nothing drawn."""
+    low, middle, high = [NAN, 0.1, NAN], [0.2, 0.2, NAN], [0.3, NAN, NAN]
+    ends = {"critical_friction_low": (ON, low), "critical_friction_high": (ON, high)}
+    found = stability.band_ends(drawn.curve(points=3, critical_friction=(ON, middle), **ends), 0.5)
+    assert found[0].tolist() == pytest.approx([0.0, 0.1, NAN], nan_ok=True)
+    assert found[1].tolist() == pytest.approx([0.3, 1.0, NAN], nan_ok=True)
+
+
+def test_the_picture_is_high_enough_for_the_candidates():
+    """Up to a limit; without any number the limit itself."""
+    low = drawn.curve(**drawn.candidates([[0.38, 0.2]])).isel({ON: [3]})
+    assert stability.highest(low, candidates=True) == pytest.approx(1.25 * 0.38)
+    assert stability.highest(low) == pytest.approx(1.25 * 0.045)
+    assert stability.highest(drawn.curve(**drawn.candidates([[0.9]])), candidates=True) == stability.HIGHEST
+    assert stability.highest(CURVES["no threshold"].drop_vars("scatter_high")) == stability.HIGHEST
+
+
+def test_each_candidate_is_drawn_at_its_friction_in_each_environment():
+    """Beside the curve, in rising order of the mean."""
+    figure = stability.stability(drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]])))
+    beside = figure.axes[1]
+    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0"]
+    points = [line.get_ydata().tolist() for line in beside.lines if line.get_marker() in ("o", "s")]
+    assert points == [[0.1, 0.3], [0.12, 0.2]]
+
+
+def test_cells_are_halfway_between_values():
+    """In steps and, where values are in proportion, in factors; a single value has a cell of its own."""
+    assert maps.cell_edges(np.array([0.0, 1.0, 3.0])).tolist() == [-0.5, 0.5, 2.0, 4.0]
+    assert maps.cell_edges(np.array([1.0, 100.0, 1e4])) == pytest.approx([0.1, 10.0, 1e3, 1e5], rel=1e-12)
+    assert maps.cell_edges(np.array([4.0])).tolist() == [2.0, 6.0]
+    assert maps.cell_edges(np.array([0.0])).tolist() == [-0.5, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("values", "answer"),
+    [
+        (np.geomspace(0.02, 0.3, 40), True),
+        (np.linspace(0.0, 1.0, 9), False),
+        (np.linspace(1.0, 1.2, 9), False),
+        (np.array([1.0, 2.0]), False),
+    ],
+)
+def test_only_values_in_proportion_make_an_axis_logarithmic(values, answer):
+    """Two values are no evidence."""
+    assert maps.is_proportional(values) is answer
+
+
+def test_a_length_is_shown_as_an_engineer_writes_it():
+    """Clearances in mm, however the file has them."""
+    data = drawn.plane(
+        [[0.0, 1.0]], x=np.array([1e-4, 1e-3]), x_parameter="cage.pocket_clearance", x_here=5e-4
+    )
+    data["x"].attrs["units"] = "m"
+    assert maps.shown_unit(data, "x") == (1e-3, "mm")
+    assert maps.axis_values(data, "x").tolist() == pytest.approx([0.1, 1.0])
+    axes = maps.map(data).axes[0]
+    assert axes.get_xlabel() == "cage: pocket clearance [mm]"
+    own = next(line for line in axes.lines if line.get_label() == "the study itself")
+    assert own.get_xdata().tolist() == pytest.approx([0.5])
+
+
+def test_refused_not_run_and_agreed_points_are_told_apart():
+    """A refusal has a reason of its own; an interrupt leaves nothing; agreeing points lend their value."""
+    data = drawn.plane([[NAN, 0.25], [NAN, NAN]]).assign(
+        reason=(
+            ("y", "x"),
+            np.array([["not run: the points around agree", ""], ["not run: interrupted", "No land."]]),
+        )
+    )
+    assert maps.refused(data).tolist() == [[False, False], [False, True]]
+    assert maps.not_run(data).tolist() == [[True, False], [True, False]]
+    assert maps.agreed(data).tolist() == [[True, False], [False, False]]
+    assert maps.filled(data) == pytest.approx(np.array([[0.25, 0.25], [NAN, NAN]]), nan_ok=True)
+
+
+def test_the_kick_of_a_map_is_named_unless_it_is_an_axis():
+    """In the title."""
+    assert maps.kick_text(drawn.plane([[0.0]])) == "0.5 m/s"
+    assert maps.kick_text(drawn.plane([[0.0]], x_parameter="kick")) == "as on the axis"
