@@ -8,6 +8,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 import pytest
 
+from separatrix.report.stability import curve
 from separatrix.stability import (
     Count,
     CriticalFriction,
@@ -321,3 +322,29 @@ def test_places_that_follow_are_computed_once():
     )
     assert sorted(computed) == sorted(found) == [1, 2, 3]
     assert told[-1] == (3, 3)
+
+
+def test_the_report_says_between_which_frictions_the_kick_decides():
+    """The band at the bearing's own restitution factor in words; what is missing has its reason."""
+    here = {
+        "restitution_factor": 0.27, "critical_friction_low": None, "critical_friction_high": 0.258,
+        "kick_critical_friction": [0.19, None], "reason": "so it is",
+    }  # fmt: skip
+    point = {
+        "restitution_factor": 0.5, "critical_friction": None, "scatter_low": None, "scatter_high": None,
+        "critical_friction_low": 0.1, "critical_friction_high": 0.2,
+    }  # fmt: skip
+    limit = {"restitution_factor": 0.5, "critical_friction": 0.07}
+    document = {
+        "curve": [point],
+        "linear_limit": [limit],
+        "hard_limit": [limit],
+        "here": here,
+        "kicks": [0.1, 2],
+    }
+    text = "\n".join(curve(document))
+    assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())
+    assert "Every kick dies below   none" in text
+    assert "Every kick grows above  a friction of 0.258" in text
+    assert "0.190 from 0.1 m/s, - from 2 m/s" in text
+    assert "so it is" in text

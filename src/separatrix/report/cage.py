@@ -7,36 +7,17 @@ from math import hypot
 from statistics import fmean, pstdev
 from typing import Any
 
-from separatrix.report.tables import facts, number, paragraph, quantity, section, significant, table
+from separatrix.report.stability import curve
+from separatrix.report.tables import facts, number, paragraph, quantity, section, significant
 
 Document = Mapping[str, Any]
 
 
 def stability(document: Document) -> list[str]:
-    """Critical friction with its band and the linear limit, and the ensemble they hold for."""
-    limits = {row["restitution_factor"]: row["critical_friction"] for row in document["linear_limit"]}
-    rows = [
-        [
-            number(row["restitution_factor"], 2),
-            *(number(row[key]) for key in CURVE_KEYS),
-            number(limits.get(row["restitution_factor"])),
-        ]
-        for row in document["curve"]
-    ]
+    """Critical friction with its band and limits, and the ensemble they hold for."""
     reasons = dict.fromkeys(row["reason"] for row in document["curve"] if row["reason"])
-    blocks = [
-        section("Stability curve", table(CURVE_HEADERS, rows), CURVE_LEGEND),
-        section("What it holds for", facts(_holds_for(document))),
-    ]
+    blocks = [*curve(document), section("What it holds for", facts(_holds_for(document)))]
     return blocks + [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
-
-
-CURVE_KEYS = ("critical_friction", "critical_friction_low", "critical_friction_high")
-CURVE_LEGEND = "\n" + paragraph(
-    "critical friction: half the runs grow from the middle kick; stable below, unstable above. band: from "
-    "one run in ten, at whatever kick, to nine in ten at every. linear limit: no clearance, balls at rest."
-)
-CURVE_HEADERS = ("restitution\nfactor", "critical\nfriction", "band\nlow", "band\nhigh", "linear\nlimit")
 
 
 def _holds_for(document: Document) -> list[tuple[str, str]]:
