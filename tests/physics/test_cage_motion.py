@@ -52,8 +52,8 @@ def test_one_blow_returns_the_restitution_factor(eta):
     run = follow(
         lone(eta), kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=duration, samples=9
     )
-    # exact but for rounding; a run that comes to rest is ended at 1e-4 of its energy
-    assert -run.velocity[-1, 1] / 0.5 == pytest.approx(eta, abs=1e-12 if eta > 0 else 0.0101)
+    # the inertia of 1e6 kg m2 leaves 5e-11 of turning; a run that rests is ended at 1e-4 of its energy
+    assert -run.velocity[-1, 1] / 0.5 == pytest.approx(eta, abs=1e-9 if eta > 0 else 0.0101)
 
 
 def test_a_blow_keeps_the_impulse_law():
