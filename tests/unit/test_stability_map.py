@@ -274,5 +274,5 @@ def test_an_interrupt_leaves_points_that_say_so(study):
 
     found = stability_map(question(study, runs=1), progress=interrupt)
     assert not found.complete
-    assert found.counts["not_run"] == 16  # of 20: the first round, the corners, is one batch
+    assert found.counts["not_run"] == 16  # of 20: the corners, the first round, were under way
     assert {p.reason for p in found.points if not p.runs} == {"not run: interrupted"}

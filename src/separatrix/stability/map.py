@@ -50,9 +50,6 @@ from separatrix.stability.pool import Progress
 from separatrix.study import StabilitySettings, Study
 from separatrix.units import MetrePerSecond, Ratio
 
-BATCH = 8
-"""Points that a thread computes before it hands them over: some tenths of a second of work."""
-
 MOST_LINKS = 1024
 """Links of the chain that are remembered."""
 
@@ -147,15 +144,15 @@ def _fill(
         return place, finder(grid[place])
 
     def take(batch: list[tuple[Place, MapPoint]]) -> None:
-        say(batch, len(found) + len(batch))
         found.update(batch)
+        say(batch, len(found))
 
     for coarser, places in rounds(len(question.x.values), len(question.y.values)):
         wanted = [p for p in places if p not in found]
         if question.adaptive and coarser is not None:
             decisions = {p: point.decision for p, point in found.items()}
             wanted = [p for p in wanted if near_a_change(p, coarser, decisions)]
-        if not work_in_batches(compute, wanted, take, size=BATCH, jobs=jobs):
+        if not work_in_batches(compute, wanted, take, jobs=jobs):
             return False
     return True
 

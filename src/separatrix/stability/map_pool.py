@@ -1,22 +1,26 @@
-"""Work in batches with a few threads, for which every finished batch is handed over at once."""
+"""Work on many items with a few threads, for which what is finished is handed over a few times a second."""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from threading import Event
 from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+AT_LEAST_EVERY = 0.25
+"""Time after which a thread hands over what it has finished, and goes on [s]."""
+
 
 def work_in_batches(
     compute: Callable[[Item], Result],
-    items: Sequence[Item],
+    items: Iterable[Item],
     take: Callable[[list[Result]], None],
     *,
-    size: int,
     jobs: int = 1,
 ) -> bool:
     """Hand over the results of `compute` in batches, as they are finished; False after an interrupt.
@@ -24,32 +28,33 @@ def work_in_batches(
     Parameters
     ----------
     compute : callable
-        Called once with each item; must not depend on the others.
-    items : sequence
+        Called once with each item; must not depend on the others, so that `jobs` changes nothing.
+    items : iterable
         What to compute.
     take : callable
         Called in this thread with the results of some items; after an interrupt with those that are left.
-    size : int
-        Items of a batch.
     jobs : int
         Threads.
     """
-    stopped = threading.Event()
+    waiting, stopped = deque(items), Event()
 
-    def work(batch: Sequence[Item]) -> list[Result]:
-        return [compute(item) for item in batch if not stopped.is_set()]
+    def work() -> list[Result]:
+        return _batch(compute, waiting, stopped)
 
     pool = ThreadPoolExecutor(max_workers=jobs)
-    left: set[Future[list[Result]]] = set()
+    running: set[Future[list[Result]]] = set()
     try:
-        left.update(pool.submit(work, items[i : i + size]) for i in range(0, len(items), size))
-        for future in as_completed(tuple(left)):
-            take(future.result())
-            left.discard(future)
+        running |= {pool.submit(work) for _ in range(jobs)}
+        while running:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                take(future.result())
+                running.discard(future)
+                if waiting:
+                    running.add(pool.submit(work))
     except KeyboardInterrupt:
         stopped.set()
         pool.shutdown(wait=True, cancel_futures=True)
-        _take_finished(left, take)
+        _take_finished(running, take)
         return False
     finally:
         stopped.set()
@@ -57,8 +62,21 @@ def work_in_batches(
     return True
 
 
-def _take_finished(left: set[Future[list[Result]]], take: Callable[[list[Result]], None]) -> None:
+def _batch(compute: Callable[[Item], Result], waiting: deque[Item], stopped: Event) -> list[Result]:
+    """Results of the next items, for as long as a batch may take; at least one."""
+    results: list[Result] = []
+    end = time.monotonic() + AT_LEAST_EVERY
+    while not stopped.is_set() and (not results or time.monotonic() < end):
+        try:
+            item = waiting.popleft()
+        except IndexError:  # another thread took the last one
+            break
+        results.append(compute(item))
+    return results
+
+
+def _take_finished(running: set[Future[list[Result]]], take: Callable[[list[Result]], None]) -> None:
     """Hand over what was finished while the interrupt came."""
-    for future in left:
+    for future in running:
         if not future.cancelled() and future.exception() is None and (results := future.result()):
             take(results)
