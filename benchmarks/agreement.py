@@ -2,7 +2,7 @@
 
     python benchmarks/agreement.py [RESTITUTION_FACTOR ...]
 
-Frictions go in 18 equal ratios from 0.7 times the band's lower end to 1.4 times its upper; two seeds, every
+Frictions go in ten equal ratios from 0.7 times the band's lower end to 1.4 times its upper; two seeds, every
 kick and run of the study.
 """
 
@@ -19,7 +19,7 @@ from separatrix.study_file import read_study
 
 SEEDS = (1, 2)
 FACTORS = (0.1, 0.3, 0.5, 0.7, 0.9)
-STEPS = 18
+STEPS = 10
 
 study = read_study("cryogenic-turbopump")
 cage = cage_state(study).cage
