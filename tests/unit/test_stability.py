@@ -294,19 +294,21 @@ def test_a_fault_in_the_work_is_not_swallowed():
 
 def test_a_long_computation_is_stopped_by_an_interrupt():
     """The thread inside a point looks at the flag and gives up; what was finished before is kept."""
-    stop = threading.Event()
+    stop, inside, stopped = threading.Event(), threading.Event(), []
 
     def compute(place):
         if place == 0:
+            inside.wait(timeout=5.0)
             return "done"
-        if not stop.wait(timeout=20.0):
-            return "too late"
+        inside.set()
+        stopped.append(stop.wait(timeout=5.0))
         raise Stopped
 
     def interrupt(done, total):
         raise KeyboardInterrupt
 
     assert work_out(compute, [0, 1], jobs=2, stop=stop, progress=interrupt) == {0: "done"}
+    assert stopped == [True]
 
 
 def test_places_that_follow_are_computed_once():
