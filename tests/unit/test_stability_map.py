@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
+from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble, wilson_interval
 from separatrix.cage.verdict import drifts
 from separatrix.chain import cage_state
 from separatrix.errors import InputError
@@ -17,17 +17,23 @@ from separatrix.stability.map import (
     PointFinder,
     changes_traction,
     decided_ensemble,
+    inference,
     stability_map,
 )
+from separatrix.stability.map_fill import CHECK_EVERY, Filled, fill
 from separatrix.stability.map_grid import near_a_change, rounds
 from separatrix.stability.map_parameters import parameters, varied
-from separatrix.stability.map_records import MapAxis, MapQuestion
+from separatrix.stability.map_records import MapAxis, MapPoint, MapQuestion
 from separatrix.stability.map_rule import (
     AGREEING,
+    Tally,
     changes,
     first_look,
+    further,
     margins,
     other_decision_probability,
+    settled,
+    side,
     wrong_side_probability,
 )
 from separatrix.study import Guidance, PocketShape
@@ -64,7 +70,8 @@ def test_a_point_is_the_ensemble_of_its_cage(study):
         alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, growth_only=True)
         assert point.grown == int(alone.count(RunOutcome.GROWS)[0])
         assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
-        assert point.runs == 12 or point.grown in (0, point.runs)
+        whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12, growth_only=True)
+        assert point.runs == 6 or point.decision is judge(there, whole).verdict
 
 
 def test_threads_and_earlier_points_change_nothing(study):
@@ -93,7 +100,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
 
 
 def test_first_runs_that_agree_end_a_point(study):
-    """Six runs where the first six agree; all of them otherwise, and as if at once."""
+    """Six runs where the first six agree, more otherwise; they are the first of all the runs."""
     cage = cage_state(study, friction=0.0).cage
     settings = replace(study.stability, duration=0.05)
     sizes = set()
@@ -103,10 +110,59 @@ def test_first_runs_that_agree_end_a_point(study):
         whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, growth_only=True)
         runs = found.outcome.shape[1]
         first = whole.outcome[0, :AGREEING]
-        assert runs == (AGREEING if (first == first[0]).all() else 12)
+        assert (runs == AGREEING) == bool((first == first[0]).all())
         assert (found.outcome == whole.outcome[:, :runs]).all()
+        assert runs == AGREEING or judge(there, found).verdict is judge(there, whole).verdict
         sizes.add(runs)
-    assert sizes == {AGREEING, 12}
+    assert AGREEING in sizes
+    assert max(sizes) > AGREEING
+
+
+@pytest.mark.parametrize("most", [6, 9, 16, 25])
+def test_a_settled_point_keeps_its_answer_however_the_rest_ends(most):
+    """Every state of the runs, every end of the others: the same answer, also by the runs that were made."""
+    ended = 0
+    for grown, by_drive, dead in itertools.product(range(most + 1), (0, 1, 3), range(most + 1)):
+        made = grown + dead
+        if not by_drive <= grown or not 1 <= made <= most:
+            continue
+        now = Tally(runs=made, grown=grown, gained=grown - by_drive, dead=dead)
+        if made == most or not settled(now, most):
+            continue
+        ended += 1
+        left = most - made
+        ends = {
+            answer(grown + g, grown - by_drive + g - d, dead + left - g, most)
+            for g in range(left + 1)
+            for d in range(g + 1)
+        }
+        assert ends == {answer(grown, grown - by_drive, dead, made)}
+    assert ended > 0
+
+
+def answer(grown: int, gained: int, dead: int, runs: int) -> tuple[int, str]:
+    """Side and decision by the letter of the rule."""
+    at_least = {name: wilson_interval(count, runs)[0] for name, count in (("gained", gained), ("dead", dead))}
+    stable = at_least["dead"] > 0.5 and dead >= 0.9 * runs
+    decision = "UNSTABLE" if at_least["gained"] > 0.5 else "STABLE" if stable else "UNDECIDED"
+    return side(*wilson_interval(grown, runs)), decision
+
+
+def test_a_point_is_settled_as_soon_as_its_answer_is():
+    """Of 16 runs: five of each kind are neither; twelve that grow are UNSTABLE; STABLE takes all runs."""
+
+    def at(grown: int, dead: int) -> bool:
+        return settled(Tally(runs=grown + dead, grown=grown, gained=grown, dead=dead), 16)
+
+    assert [at(5, 5), at(4, 5), at(5, 4)] == [True, False, False]
+    assert [at(12, 1), at(11, 1)] == [True, False]
+    assert [at(2, 12), at(2, 13), at(1, 14), at(1, 15)] == [True, True, False, True]
+
+
+def test_runs_are_looked_at_again_after_two_or_an_eighth():
+    """A small ensemble by twos to its end, a large one in few steps."""
+    assert [further(made, 16) for made in (6, 8, 15)] == [2, 2, 1]
+    assert further(800, 1000) == 100
 
 
 @pytest.mark.parametrize(("runs", "agreeing"), [(7, 2), (8, 3), (9, 4), (6, 3)])
@@ -154,21 +210,63 @@ def test_points_near_a_change_are_found():
     assert wanted == [*range(1, 12)]
 
 
-def test_an_adaptive_map_runs_what_the_full_map_decides_there(study):
-    """Points that are run are those of the full map; the others are marked, and no band is lost."""
-    axes = {
-        "x": MapAxis(parameter="restitution_factor", unit="-", values=tuple(i / 20 for i in range(21))),
-        "y": MapAxis(parameter="ball_cage_friction", unit="-", values=tuple(i / 40 for i in range(21))),
-        "runs": 3,
-    }
-    full = stability_map(question(study, **axes), jobs=2)
-    some = stability_map(question(study, **axes, adaptive=True), jobs=2)
+PLANE = {
+    "x": MapAxis(parameter="restitution_factor", unit="-", values=tuple(i / 20 for i in range(21))),
+    "y": MapAxis(parameter="ball_cage_friction", unit="-", values=tuple(i / 40 for i in range(21))),
+    "runs": 3,
+}
+
+
+def test_an_adaptive_map_says_what_it_ran_and_how_often_it_would_be_wrong(study):
+    """Points that are run are those of the full map; the others say what is around; some are checked."""
+    full = stability_map(question(study, **PLANE), jobs=2)
+    assert full.inference is None
+    some = stability_map(question(study, **PLANE, adaptive=True), jobs=2)
     run = [p for p in some.points if p.runs]
-    assert len(run) < len(full.points)
-    assert {p.reason for p in some.points if not p.runs} == {AGREED}
-    assert some.counts["not_run"] == len(full.points) - len(run)
     at = {(p.x, p.y): p for p in full.points}
     assert all(replace(p, margin=None) == replace(at[p.x, p.y], margin=None) for p in run)
+    left = [p for p in some.points if not p.runs]
+    assert len(left) == len(full.points) - len(run) == some.counts["inferred"] == some.inference.points > 0
+    assert {p.reason for p in left} == {AGREED}
+    assert {p.decision for p in left} == {None}
+    assert {p.inferred_decision for p in left} <= {p.decision for p in run}
+    assert some.inference.checked == round((len(left) + some.inference.checked) / CHECK_EVERY)
+
+
+def test_what_is_known_does_not_change_an_adaptive_map(study):
+    """The same points and checks, whether nothing, every third point, or the full map was found before."""
+    asked = question(study, **PLANE, adaptive=True)
+    known = {
+        (p.x, p.y): replace(p, margin=None) for p in stability_map(question(study, **PLANE), jobs=2).points
+    }
+    found = stability_map(asked, jobs=2)
+    assert stability_map(asked, known=known) == found
+    some = {at: known[at] for at in sorted(known)[::3]}
+    assert stability_map(asked, known=some, jobs=2) == found
+
+
+def test_a_check_that_differs_is_counted(study):
+    """A calm plane but for one island between the coarse points, which a check happens to meet."""
+    values = tuple(i / 32 for i in range(33))
+    axes = {
+        name: MapAxis(parameter=parameter, unit="-", values=values)
+        for name, parameter in (("x", "restitution_factor"), ("y", "ball_cage_friction"))
+    }
+    asked = question(study, **axes, adaptive=True)
+    i, j = next(iter(filled(asked).checked))
+    found = inference(filled(asked, island=(values[i], values[j])))
+    assert (found.checked, found.decided_otherwise) == (len(filled(asked).checked), 1)
+    assert (found.error_low, found.error_high) == wilson_interval(1, found.checked)
+    assert inference(filled(asked)).decided_otherwise == 0
+
+
+def filled(asked: MapQuestion, island: tuple[float, float] | None = None) -> Filled:
+    """Fill a plane that is STABLE but at the island."""
+
+    def find(at: tuple[float, float]) -> MapPoint:
+        return MapPoint(x=at[0], y=at[1], decision=Verdict.UNSTABLE if at == island else Verdict.STABLE)
+
+    return fill(asked, find, jobs=1, progress=None, known={}, keep=None)
 
 
 def test_bands_and_margins_of_a_column():

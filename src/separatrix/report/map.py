@@ -18,6 +18,7 @@ KINDS = {
     "UNSTABLE": "unstable",
     "UNDECIDED": "undecided",
     "refused": "refused",
+    "inferred": "inferred",
     "not_run": "not run",
 }
 
@@ -114,6 +115,7 @@ def _ensemble(document: Document) -> list[tuple[str, str]]:
     return [
         ("Kick", kick),
         ("Runs", _runs(document["stopping"])),
+        *_inference(document["inference"]),
         ("Run", f"{quantity(document['duration'], 's')}, ball scatter {document['ball_scatter']:g}"),
     ]
 
@@ -124,8 +126,26 @@ def _runs(rule: Document) -> str:
     wrong, other = (100 * rule[f"{name}_probability"] for name in ("wrong_side", "other_decision"))
     return (
         f"{rule['most_runs']}, or the first {rule['agreeing_runs']} if those agree: all runs would have the "
-        f"other majority in at most {wrong:.2g} % of the draws, another decision in at most {other:.2g} %"
+        f"other majority in at most {wrong:.2g} % of the draws, another decision in at most {other:.2g} %; "
+        f"fewer, too, where the others could change nothing"
     )
+
+
+def _inference(found: Document | None) -> list[tuple[str, str]]:
+    """Return how many points were not run, and how often those around them were wrong where they were."""
+    if found is None or not found["points"] + found["checked"]:
+        return []
+    inferred = f"{found['points']} points were not run, for those around them agree"
+    if not found["checked"]:
+        return [("Inferred", f"{inferred}; none was checked")]
+    low, high = (100 * found[f"error_{end}"] for end in ("low", "high"))
+    return [
+        (
+            "Inferred",
+            f"{inferred}; {found['checked']} more of that kind were run as a check, of which "
+            f"{found['decided_otherwise']} are decided otherwise (95 %: {low:.2g} to {high:.2g} %)",
+        )
+    ]
 
 
 def _is_axis(document: Document, parameter: str) -> bool:

@@ -38,6 +38,7 @@ GROUPS = {
     "chain": Group(prefix="chain_"),
     "stopping": Group(prefix="stopping_"),
     "counts": Group(prefix="points_"),
+    "inference": Group(prefix="inference_"),
     "stability": Group(),
     "curve": Group("restitution_factor", label="restitution_factor"),
     "linear_limit": Group("restitution_factor", "linear_limit_", label="restitution_factor"),
@@ -99,7 +100,7 @@ RECORD_CLASSES = {
     "chain": "RaceContact",
     "cage": "PlanarCage Judgement History",
     "stability": "CriticalFriction StabilityCurve",
-    "stability.map_records": "MapPoint Stopping",
+    "stability.map_records": "MapPoint Stopping Inference",
     "ranking": "RankedMaterial Ranking",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""

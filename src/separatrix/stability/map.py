@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import functools
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, wilson_interval
+from separatrix.cage.orbit import driven
 from separatrix.chain import (
     CageState,
     TractionState,
@@ -21,7 +22,8 @@ from separatrix.chain import (
 )
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.stability.growth import cage_at
-from separatrix.stability.map_grid import Place, near_a_change, rounds
+from separatrix.stability.map_fill import Filled, Keep, Known, fill
+from separatrix.stability.map_grid import Place
 from separatrix.stability.map_parameters import (
     FRICTION,
     KICK,
@@ -30,9 +32,9 @@ from separatrix.stability.map_parameters import (
     value_in,
     varied,
 )
-from separatrix.stability.map_pool import work_in_batches
 from separatrix.stability.map_records import (
     NOT_RUN,
+    Inference,
     MapChange,
     MapPoint,
     MapQuestion,
@@ -40,10 +42,13 @@ from separatrix.stability.map_records import (
     Stopping,
 )
 from separatrix.stability.map_rule import (
+    Tally,
     changes,
     first_look,
+    further,
     margins,
     other_decision_probability,
+    settled,
     wrong_side_probability,
 )
 from separatrix.stability.pool import Progress
@@ -59,10 +64,7 @@ OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)
 INTERRUPTED = f"{NOT_RUN}: interrupted"
 AGREED = f"{NOT_RUN}: the points around it agree"
 
-
 Values = tuple[tuple[str, float], ...]
-Known = Mapping[tuple[float, float], MapPoint]
-Keep = Callable[[list[MapPoint]], None]
 
 
 def stability_map(
@@ -99,62 +101,17 @@ def stability_map(
         Interrupted before the first point was finished; later the finished points are returned.
     """
     require_friction(question)
-    grid = {(i, j): (x, y) for i, x in enumerate(question.x.values) for j, y in enumerate(question.y.values)}
-    found = {place: known[at] for place, at in grid.items() if known and at in known}
-    finder = PointFinder(question)
-    complete = _fill(question, finder, grid, found, _Say(len(grid), progress, keep), jobs)
-    if not found:
+    filled = fill(question, PointFinder(question), jobs=jobs, progress=progress, known=known or {}, keep=keep)
+    if not filled.found:
         raise KeyboardInterrupt
-    _refuse_if_nothing_ran(question, found)
-    return _assembled(question, found, complete=complete)
+    _refuse_if_nothing_ran(question, filled.found)
+    return _assembled(question, filled)
 
 
 def require_friction(question: MapQuestion) -> None:
     """Refuse a map whose cage has no pocket friction."""
     if FRICTION not in (question.x.parameter, question.y.parameter):
         pocket_friction(question.study)
-
-
-@dataclass(frozen=True, slots=True)
-class _Say:
-    """Whom to tell of finished points."""
-
-    total: int
-    progress: Progress | None
-    keep: Keep | None
-
-    def __call__(self, batch: list[tuple[Place, MapPoint]], done: int) -> None:
-        if self.keep is not None:
-            self.keep([point for _, point in batch])
-        if self.progress is not None:
-            self.progress(done, self.total)
-
-
-def _fill(
-    question: MapQuestion,
-    finder: Callable[[tuple[float, float]], MapPoint],
-    grid: Mapping[Place, tuple[float, float]],
-    found: dict[Place, MapPoint],
-    say: _Say,
-    jobs: int,
-) -> bool:
-    """Compute the points that are wanted and not found yet, round by round; False after an interrupt."""
-
-    def compute(place: Place) -> tuple[Place, MapPoint]:
-        return place, finder(grid[place])
-
-    def take(batch: list[tuple[Place, MapPoint]]) -> None:
-        found.update(batch)
-        say(batch, len(found))
-
-    for coarser, places in rounds(len(question.x.values), len(question.y.values)):
-        wanted = [p for p in places if p not in found]
-        if question.adaptive and coarser is not None:
-            decisions = {p: point.decision for p, point in found.items()}
-            wanted = [p for p in wanted if near_a_change(p, coarser, decisions)]
-        if not work_in_batches(compute, wanted, take, jobs=jobs):
-            return False
-    return True
 
 
 def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint]) -> None:
@@ -234,14 +191,29 @@ def _cage_of(state: CageState, values: Mapping[str, float]) -> tuple[PlanarCage,
 def decided_ensemble(
     cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int
 ) -> Ensemble:
-    """Runs from one kick: the first few, and the others unless those agree."""
-    first = first_look(runs)
-    ensemble = run_ensemble(cage, settings, kicks=(kick,), runs=first, growth_only=True)
-    outcomes = ensemble.outcome
-    if first == runs or (outcomes == outcomes[0, 0]).all():
+    """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
+
+    def run(first: int, count: int) -> Ensemble:
+        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first, growth_only=True)
+
+    ensemble = run(0, first_look(runs))
+    if _agree(cage, ensemble):
         return ensemble
-    others = run_ensemble(cage, settings, kicks=(kick,), runs=runs - first, first_run=first, growth_only=True)
-    return joined(ensemble, others)
+    while not settled(now := _tally(cage, ensemble), runs) and now.runs < runs:
+        ensemble = joined(ensemble, run(now.runs, further(now.runs, runs)))
+    return ensemble
+
+
+def _agree(cage: PlanarCage, ensemble: Ensemble) -> bool:
+    """Whether all runs end alike, and for growing ones whether their drive explains all of them or none."""
+    by_drive = driven(cage, ensemble)
+    return bool((ensemble.outcome == ensemble.outcome[0, 0]).all() and (by_drive == by_drive[0, 0]).all())
+
+
+def _tally(cage: PlanarCage, ensemble: Ensemble) -> Tally:
+    grown, by_drive = int(ensemble.count(RunOutcome.GROWS)[0]), int(driven(cage, ensemble).sum())
+    dead = int(ensemble.count(RunOutcome.DIES)[0])
+    return Tally(runs=ensemble.outcome.shape[1], grown=grown, gained=grown - by_drive, dead=dead)
 
 
 def joined(first: Ensemble, others: Ensemble) -> Ensemble:
@@ -278,14 +250,13 @@ def growth_rate(ensemble: Ensemble) -> float:
     return float(np.median(ensemble.growth_rate))
 
 
-def _assembled(question: MapQuestion, found: Mapping[Place, MapPoint], *, complete: bool) -> StabilityMap:
+def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
     """Map of the points found, with their margins; the others say why they were not run."""
-    why = AGREED if complete else INTERRUPTED
     points: list[MapPoint] = []
     bands: list[MapChange] = []
     heights = question.y.values
     for i, x in enumerate(question.x.values):
-        column = [found.get((i, j)) or MapPoint(x=x, y=y, reason=why) for j, y in enumerate(heights)]
+        column = [filled.found.get((i, j)) or _not_run(filled, (i, j), x, y) for j, y in enumerate(heights)]
         sides = [point.side for point in column]
         along = zip(column, margins(heights, sides), strict=True)
         points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
@@ -302,22 +273,45 @@ def _assembled(question: MapQuestion, found: Mapping[Place, MapPoint], *, comple
         counts=counts(points),
         kick=question.kick,
         stopping=stopping(question.runs),
+        inference=inference(filled) if question.adaptive else None,
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
         adaptive=question.adaptive,
-        complete=complete,
+        complete=filled.complete,
+    )
+
+
+def _not_run(filled: Filled, place: Place, x: float, y: float) -> MapPoint:
+    if place in filled.inferred:
+        return MapPoint(x=x, y=y, inferred_decision=filled.inferred[place], reason=AGREED)
+    return MapPoint(x=x, y=y, reason=INTERRUPTED)
+
+
+def inference(filled: Filled) -> Inference:
+    """How often the points around another one were wrong about it, where it was run as a check."""
+    otherwise = sum(filled.found[place].decision is not said for place, said in filled.checked.items())
+    total = len(filled.checked)
+    low, high = wilson_interval(otherwise, total) if total else (None, None)
+    return Inference(
+        points=len(filled.inferred),
+        checked=total,
+        decided_otherwise=otherwise,
+        error_low=low,
+        error_high=high,
     )
 
 
 def counts(points: Iterable[MapPoint]) -> dict[str, int]:
-    """Points of each decision, of those refused, and of those not run."""
+    """Points of each decision, of those refused, of those inferred, and of those not run."""
     names = Counter(_kind(point) for point in points)
-    return {kind: names[kind] for kind in (*(v.name for v in Verdict), "refused", "not_run")}
+    return {kind: names[kind] for kind in (*(v.name for v in Verdict), "refused", "inferred", "not_run")}
 
 
 def _kind(point: MapPoint) -> str:
     if point.decision is not None:
         return point.decision.name
+    if point.reason == AGREED:
+        return "inferred"
     return "not_run" if point.reason.startswith(NOT_RUN) else "refused"
 
 

@@ -33,13 +33,15 @@ def rounds(columns: int, rows: int) -> Iterator[tuple[Lattice | None, list[Place
         coarser = finer
 
 
-def near_a_change(place: Place, coarser: Lattice, answers: Mapping[Place, object]) -> bool:
-    """Whether the known answers of the coarser grid around a place differ.
-
-    Around: the corners of the coarse cell that the place lies in, and of the cells next to it.
-    """
+def around(place: Place, coarser: Lattice) -> list[Place]:
+    """Corners of the coarse cell that a place lies in, and of the cells next to it."""
     near = [_around(at, marks) for at, marks in zip(place, coarser, strict=True)]
-    found = [answers[i, j] for i in near[0] for j in near[1] if (i, j) in answers]
+    return [(i, j) for i in near[0] for j in near[1]]
+
+
+def near_a_change(place: Place, coarser: Lattice, answers: Mapping[Place, object]) -> bool:
+    """Whether the answers of the coarser grid around a place differ."""
+    found = [answers[corner] for corner in around(place, coarser)]
     return any(answer != found[0] for answer in found)
 
 

@@ -46,6 +46,8 @@ class MapPoint:
         Distance along y to the nearest band in which the column changes from motion that dies to motion
         that grows, in the unit of y: positive where it dies, negative where it grows, 0 in the band; None in
         a column that does not change.
+    inferred_decision : Verdict or None
+        Decision of the points around it, where an adaptive map did not run it.
     reason : str
         Of the decision, or why there is none.
     """
@@ -61,6 +63,7 @@ class MapPoint:
     growth_rate: float | None = None
     restitution_factor: Ratio | None = None
     margin: float | None = None
+    inferred_decision: Verdict | None = None
     reason: str = NOT_RUN
 
     @property
@@ -86,7 +89,8 @@ class Stopping:
     Attributes
     ----------
     most_runs, agreeing_runs : int
-        A point has `most_runs`, fewer if the first `agreeing_runs` all agree.
+        A point has `most_runs`, fewer if the first `agreeing_runs` all agree, or once nothing that the
+        others do could change its answer.
     wrong_side_probability : float
         Largest probability, over all points, that all the runs would have the other majority [-].
     other_decision_probability : float
@@ -98,6 +102,27 @@ class Stopping:
     agreeing_runs: int
     wrong_side_probability: Ratio
     other_decision_probability: Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inference:
+    """How often an adaptive map is wrong about a point that it did not run, counted in this map.
+
+    Attributes
+    ----------
+    points : int
+        Points that were not run, because those around them agree.
+    checked, decided_otherwise : int
+        Points evenly taken from those and run nevertheless, and how many of them have another decision.
+    error_low, error_high : float or None
+        95 % Wilson interval of the share that is decided otherwise; None if none was checked [-].
+    """
+
+    points: int
+    checked: int
+    decided_otherwise: int
+    error_low: Ratio | None
+    error_high: Ratio | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,7 +140,7 @@ class MapQuestion:
     runs : int
         Most runs of a point.
     adaptive : bool
-        Run only the points near a change of the answer, from a coarse grid on.
+        Run only the points near a change of the answer, from a coarse grid on, and a sample of the others.
     """
 
     study: Study
@@ -138,8 +163,8 @@ class MapQuestion:
 class StabilityMap:
     """A map: its points, column after column of x, and the bands in which the answer changes.
 
-    `counts` has the number of points of each decision, of those refused, and of those not run;
-    `complete` is False if an interrupt left points out.
+    `counts` has the number of points of each decision, of those refused, inferred, and not run;
+    `inference` is None where every point is run; `complete` is False if an interrupt left points out.
     """
 
     x: MapAxis
@@ -149,6 +174,7 @@ class StabilityMap:
     counts: Mapping[str, int]
     kick: MetrePerSecond
     stopping: Stopping
+    inference: Inference | None
     duration: Second
     ball_scatter: Ratio
     adaptive: bool

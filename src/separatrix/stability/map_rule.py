@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import comb
 
@@ -11,7 +12,10 @@ from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.units import Ratio
 
 AGREEING = 6
-"""A point is decided once at least so many runs agree, from the first on; otherwise all its runs are made."""
+"""A point is decided once at least so many runs agree, from the first on; otherwise when it is settled."""
+
+LOOK_AFTER = 2
+"""Runs after which a point is looked at again, whose first runs did not agree; more for a very long one."""
 
 MOST_WRONG: Ratio = 1e-3
 """Largest probability that all the runs of such a point would have the other majority."""
@@ -49,8 +53,8 @@ def other_decision_probability(runs: int, agreeing: int) -> Ratio:
     """
     if agreeing >= runs:
         return 0.0
-    calm = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_calm(k, runs))
-    wild = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_wild(k, runs))
+    calm = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_calm(runs - k, runs))
+    wild = max(_all_of_the_others(runs, k, agreeing) for k in range(runs + 1) if not _is_wild(runs - k, runs))
     return max(calm, wild)
 
 
@@ -59,13 +63,46 @@ def _all_of_the_others(runs: int, kind: int, agreeing: int) -> Ratio:
     return comb(runs - kind, agreeing) / comb(runs, agreeing) if agreeing < runs else 0.0
 
 
-def _is_calm(grown: int, runs: int) -> bool:
-    dies = runs - grown
-    return dies / runs >= CLEAR and wilson_interval(dies, runs)[0] > FEW
+def _is_calm(dead: int, runs: int) -> bool:
+    return dead / runs >= CLEAR and wilson_interval(dead, runs)[0] > FEW
 
 
-def _is_wild(dead: int, runs: int) -> bool:
-    return wilson_interval(runs - dead, runs)[0] > FEW
+def _is_wild(gained: int, runs: int) -> bool:
+    return wilson_interval(gained, runs)[0] > FEW
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tally:
+    """What the runs of a point did: how many were made, grew, grew beyond their drive, and died."""
+
+    runs: int
+    grown: int
+    gained: int
+    dead: int
+
+
+def settled(now: Tally, most: int) -> bool:
+    """Whether decision and side of a point are the same however the rest of its `most` runs end.
+
+    This is exact: shares only rise with the runs that do so. A point that may still become STABLE is not
+    settled, for that asks for more than counts.
+    """
+    left = most - now.runs
+    calmest = Tally(runs=most, grown=now.grown, gained=now.gained, dead=now.dead + left)
+    wildest = Tally(runs=most, grown=now.grown + left, gained=now.gained + left, dead=now.dead)
+    if _is_calm(calmest.dead, most):
+        return left == 0
+    return _answer(now) == _answer(calmest) == _answer(wildest)
+
+
+def _answer(tally: Tally) -> tuple[int, bool]:
+    """Side of one half, and whether the point is unstable."""
+    return side(*wilson_interval(tally.grown, tally.runs)), _is_wild(tally.gained, tally.runs)
+
+
+def further(made: int, most: int) -> int:
+    """Runs to make before a point is looked at again."""
+    return min(max(LOOK_AFTER, made // 8), most - made)
 
 
 def side(low: Ratio | None, high: Ratio | None) -> int:
