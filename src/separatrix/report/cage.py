@@ -123,17 +123,22 @@ def simulate(document: Document) -> list[str]:
 
 
 def _ended(document: Document) -> list[tuple[str, str]]:
-    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
     end = f"{document['outcome']} after {quantity(document['time'][-1], 's')}."
     return [
         ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
-        ("Pocket friction", number(document["cage"]["ball_cage_friction"]) + origin),
+        ("Pocket friction", friction_text(document)),
         ("Ended", f"{end} {document['outcome_sentence']}"),
         (
             "Energy growth",
             f"{significant(document['energy_growth'])}, mean energy at its end over the kick's",
         ),
     ]
+
+
+def friction_text(document: Document) -> str:
+    """Return the pocket friction, and where it comes from if not from the study's cage."""
+    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
+    return number(document["cage"]["ball_cage_friction"]) + origin
 
 
 def orbit_facts(document: Document) -> list[tuple[str, str]]:

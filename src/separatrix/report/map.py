@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.report.cage import chain_facts, study_facts
+from separatrix.report.cage import chain_facts, friction_text, study_facts
 from separatrix.report.tables import facts, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]
 
+FRICTION = "ball_cage_friction"
 COLUMNS = 9
 """Columns of the map whose bands are printed."""
 
@@ -34,6 +35,9 @@ def stability_map(document: Document) -> list[str]:
     return [*blocks, paragraph(refused, first="  - : ", indent="      ")] if refused else blocks
 
 
+ROUNDING = 1e-9
+"""A distance to a band below this share of the value is the rounding of its unit."""
+
 LEGEND = "\n" + paragraph(
     "between the last point of a column at which, beyond the scatter, less than half the runs grow and the "
     "first at which more than half do; margin: distance of the study's own value to that band, positive "
@@ -42,12 +46,14 @@ LEGEND = "\n" + paragraph(
 
 
 def _axes(document: Document) -> list[tuple[str, str]]:
-    return [(name, _axis(document[name])) for name in ("x", "y")]
+    given = document["study"]["cage"]["ball_cage_friction"]["value"] is not None
+    return [(name, _axis(document[name], given)) for name in ("x", "y")]
 
 
-def _axis(axis: Document) -> str:
+def _axis(axis: Document, friction_given: bool) -> str:
     low, high = (quantity(axis["values"][i], axis["unit"]) for i in (0, -1))
-    here = "" if axis["here"] is None else f", the study has {quantity(axis['here'], axis['unit'])}"
+    whose = "the study" if friction_given or axis["parameter"] != FRICTION else "its first candidate"
+    here = "" if axis["here"] is None else f", {whose} has {quantity(axis['here'], axis['unit'])}"
     return f"{axis['parameter']}, {low} to {high}, {len(axis['values'])} values{here}"
 
 
@@ -95,19 +101,31 @@ def _margin(change: Document, here: float | None, unit: str) -> str:
     low, high = change["y_low"], change["y_high"]
     below, above = low - here, here - high
     distance = max(below, above, 0.0)
+    distance *= distance > ROUNDING * abs(here)
     grows = (here > high) == change["grows_above"] and distance > 0.0
     return quantity(-distance if grows else distance, unit)
 
 
 def _of_one_kind(points: Sequence[Document], x: float) -> str:
-    shares = [p["probability_grow"] for p in points if p["x"] == x and p["probability_grow"] is not None]
-    if not shares:
+    """Return what the points of a column are that does not change, beyond the scatter."""
+    run = [p for p in points if p["x"] == x and p["runs"]]
+    if not run:
         return "not run"
-    return "nowhere" if max(shares) < 0.5 else "everywhere" if min(shares) >= 0.5 else "undecided"
+    grows = any(p["probability_low"] > 0.5 for p in run)
+    dies = any(p["probability_high"] < 0.5 for p in run)
+    unclear = any(p["probability_low"] <= 0.5 <= p["probability_high"] for p in run)
+    word = "everywhere" if grows else "nowhere" if dies else "undecided"
+    return f"{word}, or undecided" if unclear and word != "undecided" else word
 
 
 def _holds_for(document: Document) -> list[tuple[str, str]]:
-    return [*study_facts(document["study"]), *chain_facts(document["chain"]), *_ensemble(document)]
+    facts_of_all = [*study_facts(document["study"]), *chain_facts(document["chain"])]
+    return [*facts_of_all, *_friction(document), *_ensemble(document)]
+
+
+def _friction(document: Document) -> list[tuple[str, str]]:
+    """Return the pocket friction of every point, unless it is an axis."""
+    return [] if _is_axis(document, FRICTION) else [("Pocket friction", friction_text(document))]
 
 
 def _ensemble(document: Document) -> list[tuple[str, str]]:

@@ -1,0 +1,39 @@
+"""Speed of the stability map of the shipped study, up to 16 runs a point, on two threads.
+
+The aim: 100 by 100 points in under 60 s on two cores that have nothing else to do. Printed beside it: runs
+a point, and points that were not run but inferred.
+"""
+
+import pytest
+
+from separatrix.stability.map import stability_map
+from separatrix.stability.map_records import MapAxis, MapQuestion
+from separatrix.study_file import read_study
+
+JOBS = 2
+
+
+def question(points: int, *, adaptive: bool = False) -> MapQuestion:
+    """The default map of the verb, with so many points along each axis."""
+    steps = range(points)
+    return MapQuestion(
+        study=read_study("cryogenic-turbopump"),
+        x=MapAxis(parameter="restitution_factor", unit="-", values=tuple(i / (points - 1) for i in steps)),
+        y=MapAxis(
+            parameter="ball_cage_friction", unit="-", values=tuple(i / (points - 1) / 2 for i in steps)
+        ),
+        kick=0.5,
+        adaptive=adaptive,
+    )
+
+
+@pytest.mark.parametrize("adaptive", [False, True], ids=["every point", "adaptive"])
+@pytest.mark.parametrize("points", [24, 100])
+def test_map(benchmark, points, adaptive):
+    """The whole map; every kernel compiled before."""
+    stability_map(question(2))
+    asked = question(points, adaptive=adaptive)
+    found = benchmark.pedantic(stability_map, args=(asked,), kwargs={"jobs": JOBS}, rounds=1, warmup_rounds=0)
+    benchmark.extra_info["runs_a_point"] = sum(p.runs for p in found.points) / len(found.points)
+    benchmark.extra_info["inferred"] = found.counts["inferred"]
+    assert found.complete
