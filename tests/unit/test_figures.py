@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+
+import drawn
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from separatrix.errors import InputError
+from separatrix.figures.heading import heading
 from separatrix.figures.ranking import _ranks, file_name
-from separatrix.figures.simulation import whirl_spectrum
+from separatrix.figures.spectrum import spectrum_against_time, whirl_spectrum
 from separatrix.figures.style import canvas, journal, label_lines, save, settled, spread
 
 
@@ -48,10 +53,22 @@ def test_whirl_spectrum_tells_forward_from_backward(turns):
     assert share.max() == 1.0
 
 
+def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
+    """A velocity that turns at 100 t Hz is strongest near 100 t Hz in each piece of the run."""
+    time = np.linspace(0, 1, 4001)
+    phase = np.pi * 100.0 * time**2
+    found = spectrum_against_time(time, np.column_stack([np.cos(phase), np.sin(phase)]))
+    middles, frequency, share = found
+    strongest = frequency[share.argmax(axis=1)]
+    assert strongest == pytest.approx(100.0 * middles, abs=frequency[1] - frequency[0])  # one bin
+    assert middles[0] < 0.1
+    assert middles[-1] > 0.9
+
+
 def test_a_run_at_rest_has_a_spectrum_without_nan():
     """No motion at all: zeros."""
-    _, share = whirl_spectrum(np.linspace(0, 1, 20), np.zeros((20, 2)))
-    assert not share.any()
+    for spectrum in (whirl_spectrum, spectrum_against_time):
+        assert not spectrum(np.linspace(0, 1, 20), np.zeros((20, 2)))[-1].any()
 
 
 @pytest.mark.parametrize(
@@ -67,7 +84,7 @@ def test_file_names_of_environments_are_safe(text, name):
     assert file_name(text) == name
 
 
-@pytest.mark.parametrize("suffix", [".svg", ".png"])
+@pytest.mark.parametrize("suffix", [".svg", ".png", ".pdf"])
 def test_the_same_figure_is_the_same_bytes(suffix, tmp_path):
     """No date, no random identifier, no version in a file."""
     for name in ("a", "b"):
@@ -77,3 +94,54 @@ def test_the_same_figure_is_the_same_bytes(suffix, tmp_path):
             settled(figure)
         save(figure, tmp_path / f"{name}{suffix}")
     assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["curve", "curve.avi"])
+def test_a_picture_of_another_kind_is_refused_in_one_line(name, tmp_path):
+    """No ending, or one that is not drawn; nothing is written."""
+    with pytest.raises(InputError, match=r"must end in \.png, \.svg, \.pdf; got") as raised:
+        save(Figure(), tmp_path / name)
+    assert "\n" not in str(raised.value)
+    assert not list(tmp_path.iterdir())
+
+
+STUDY = {
+    "operation": {"fluid": {"value": "liquid nitrogen"}, "temperature": {"value": 77.0}},
+    "film": {"material": {"name": "PTFE"}, "thickness": {"value": 5e-7}, "is_bare": False},
+    "cage": {"ball_cage_friction": {"value": None}, "material": {"value": None}},
+    "ranking": {"candidates": [{"name": "Armalon", "friction": {"air": None, "vacuum": {"mean": 0.09}}}]},
+}
+
+
+def described(data, verb, **changes):
+    """A dataset with the attributes of a saved answer."""
+    attrs = {"title": "A $5 bearing", "study": json.dumps(STUDY | changes), "seed": 7, "verb": verb}
+    return data.assign_attrs(attrs)
+
+
+def test_a_run_is_headed_by_study_medium_friction_kick_run_and_seed():
+    """Three lines: what it is, what it runs in and on, which run; a dollar is no formula."""
+    one = described(drawn.run(cage_ball_cage_friction=0.09, run=3), "simulate")
+    assert heading(one) == [
+        r"A \$5 bearing",
+        "liquid nitrogen, 77 K; PTFE, 500 nm",
+        "pocket friction 0.09 (Armalon in vacuum), kick 0.5 m/s, run 3, seed 7: GROWS after 10 ms",
+    ]
+    own = {"ball_cage_friction": {"value": 0.2}, "material": {"name": "bronze"}}
+    assert "(bronze)" in heading(described(one, "simulate", cage=own))[2]
+    assert "friction 0.09, kick" in heading(described(one, "simulate", ranking={}))[2]
+
+
+def test_an_ensemble_is_headed_by_its_seed_and_the_chain_is_not():
+    """Loads and traction do not depend on it; data without a study have no heading."""
+    assert heading(described(drawn.curve(), "stability"))[1].endswith("; seed 7")
+    assert "seed" not in heading(described(drawn.curve(), "traction"))[1]
+    assert heading(described(drawn.curve(), "stability", film={"is_bare": True}))[1].count("bare races") == 1
+    assert heading(drawn.curve()) == []
+
+
+def test_a_long_title_is_cut_on_its_second_line():
+    """Whatever is written into a study."""
+    lines = heading(described(drawn.curve(), "bearing").assign_attrs(title="word " * 200), 40)
+    assert [len(line) <= 40 for line in lines] == [True] * len(lines)
+    assert lines[1].endswith("...")

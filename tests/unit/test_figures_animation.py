@@ -12,8 +12,8 @@ from PIL import Image
 from scipy.integrate import quad
 
 from separatrix.errors import InputError
-from separatrix.figures import animation, scene
-from separatrix.figures.animation import MOST_FRAMES, animate, frame_moments
+from separatrix.figures import animation, frames, scene
+from separatrix.figures.animation import A_TURN, MOST_FRAMES, animate, frame_moments
 
 SMALL = drawn.run(samples=4)
 
@@ -42,12 +42,12 @@ def test_a_gif_is_written_for_any_run(data, tmp_path):
     count = data.sizes["time"]
     assert told == [(i + 1, count) for i in range(count)]
     with Image.open(tmp_path / "a.gif") as film:
-        assert (film.n_frames, film.size) == (count, (760, 440))
+        assert (film.n_frames, film.size) == (count, (760, 480))
 
 
 def test_what_stands_still_is_white_and_colours_are_kept():
     """In a GIF; Pillow looks a colour up in cells of 8 of 256 steps."""
-    drawn_colours = [tuple(round(255 * c) for c in animation.to_rgb(colour)) for colour in animation.DRAWN]
+    drawn_colours = [tuple(round(255 * c) for c in animation.to_rgb(colour)) for colour in frames.DRAWN]
     image = Image.new("RGB", (len(drawn_colours) + 1, 1), "white")
     for place, colour in enumerate(drawn_colours):
         image.putpixel((place, 0), colour)
@@ -104,7 +104,7 @@ def test_an_mp4_gets_every_frame(tmp_path, monkeypatch):
     """Three bytes for each point of each frame."""
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", encoder())
     animate(SMALL, tmp_path / "a.mp4", kind="mp4")
-    assert (tmp_path / "a.mp4").stat().st_size == 4 * 3 * 760 * 440
+    assert (tmp_path / "a.mp4").stat().st_size == 4 * 3 * 760 * 480
 
 
 def test_an_encoder_that_fails_leaves_one_line_and_no_file(tmp_path, monkeypatch):
@@ -114,6 +114,54 @@ def test_an_encoder_that_fails_leaves_one_line_and_no_file(tmp_path, monkeypatch
         animate(SMALL, tmp_path / "a.mp4", kind="mp4")
     assert "\n" not in str(raised.value)
     assert not list(tmp_path.iterdir())
+
+
+def test_the_ending_of_the_file_is_the_kind(tmp_path):
+    """Unless a kind is given; no ending and another one are refused before anything is written."""
+    for name in ("film", "film.avi"):
+        with pytest.raises(InputError, match="must be gif or mp4") as raised:
+            animate(SMALL, tmp_path / name)
+        assert "\n" not in str(raised.value)
+    assert not list(tmp_path.iterdir())
+    animate(SMALL.isel(time=[0]), tmp_path / "film.GIF")
+    assert (tmp_path / "film.GIF").read_bytes().startswith(b"GIF89a")
+
+
+def whirling(samples, whirl):
+    """A run of 10 ms whose centre turns at a frequency."""
+    made = drawn.run(samples=samples)
+    around = 2 * np.pi * whirl * made["time"].values
+    return made.assign(velocity=(("time", "axis"), np.stack([np.cos(around), np.sin(around)], axis=1)))
+
+
+def test_a_fast_whirl_is_never_strobed():
+    """At least `A_TURN` frames a turn at the beginning and at the end; the picture says what is left out."""
+    data = whirling(20_000, 50e3)
+    moments = frame_moments(data)
+    assert (moments[0], moments[-1]) == (0, 19_999)
+    assert moments.size <= MOST_FRAMES
+    steps = np.diff(data["time"].values[moments])
+    assert (steps > 1 / (A_TURN * 50e3)).sum() == 1  # the cut
+    (first, cut), (on, last) = frames.shown_parts(data, moments)
+    assert (first, last) == pytest.approx((0.0, 10.0))
+    assert cut < 1.0 < 9.0 < on
+    assert "Shown: 0 to" in frames._notes(data, scene.scene(data, moments), moments)
+
+
+def test_a_slow_whirl_is_shown_whole():
+    """No cut where `MOST_FRAMES` show every turn."""
+    data = whirling(20_000, 2e3)
+    moments = frame_moments(data)
+    assert len(frames.shown_parts(data, moments)) == 1
+    assert np.diff(data["time"].values[moments]).max() < 1 / (A_TURN * 2e3)
+
+
+def test_a_picture_says_how_many_times_too_large_movements_are():
+    """Number for number, and how time runs."""
+    at_all, moments = at(), np.arange(SMALL.sizes["time"])
+    assert f"{at_all.enlarged:g} times too large" in frames._notes(SMALL, at_all, moments)
+    dying = drawn.run(samples=40, outcome="DIES")
+    assert "ever faster" in frames._notes(dying, scene.scene(dying, np.arange(40)), np.arange(40))
 
 
 @pytest.mark.parametrize("outcome", ["GROWS", "DIES"])

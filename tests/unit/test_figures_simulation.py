@@ -6,10 +6,19 @@ import drawn
 import numpy as np
 import pytest
 
-from separatrix.figures import simulation
-from separatrix.figures.comparison import comparison, heading
-from separatrix.figures.orbit import AROUND, half_plays, land_boundary, pocket_angles, pocket_boundary
-from separatrix.figures.style import journal, settled
+from separatrix.figures import forces, simulation
+from separatrix.figures.comparison import comparison, headline
+from separatrix.figures.orbit import (
+    AROUND,
+    half_plays,
+    land_boundary,
+    last_turns,
+    pocket_angles,
+    pocket_boundary,
+    ring,
+    smooth_path,
+)
+from separatrix.figures.style import journal
 
 ODD = {
     "nothing touches": drawn.run(touching=False),
@@ -31,37 +40,76 @@ def odd(request):
     return request.param
 
 
-@pytest.mark.parametrize("draw", [simulation.run, simulation.forces])
+@pytest.mark.parametrize("draw", [simulation.run, forces.forces])
 def test_every_run_is_drawn_without_a_warning(draw, odd):
     """Warnings are errors here."""
     with journal():
-        settled(draw(odd))
+        draw(odd).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", ["nothing touches", "no land", "one sample", "no play", "at rest"])
 def test_any_two_runs_are_compared_without_a_warning(kind):
     """One of them is ordinary."""
     with journal():
-        settled(comparison(ODD[kind], drawn.run(), ("one", "the other")))
+        comparison(ODD[kind], drawn.run(), ("one", "the other")).draw_without_rendering()
 
 
 def test_compared_runs_have_common_scales():
-    """Both ends of every axis agree, for a run that dies early and one that grows twice as far."""
+    """Both orbits, of a run that dies early and one that grows twice as far; all else on shared axes."""
     grows = drawn.run()
     far = grows.assign(position=2 * grows["position"], contact_force=3 * grows["contact_force"])
     with journal():
-        figure = settled(comparison(drawn.run(outcome="DIES", samples=40), far, ("a", "b")))
-    for left, right in zip(figure.axes[0::2], figure.axes[1::2], strict=True):
-        assert left.get_xlim() == right.get_xlim()
-        assert left.get_ylim() == right.get_ylim()
+        figure = comparison(drawn.run(outcome="DIES", samples=40), far, ("a", "b"))
+    left, right, *shared = figure.axes
+    assert left.get_xlim() == right.get_xlim() == left.get_ylim() == right.get_ylim()
+    assert [len(axes.get_legend().get_texts()) for axes in shared] == [2, 2, 2]
 
 
 def test_a_long_name_is_cut_above_its_column():
     """Two lines of it, then how the run ended."""
-    lines = heading("a very long name " * 20, drawn.run()).splitlines()
+    lines = headline("a very long name " * 20, drawn.run()).splitlines()
     assert len(lines) == 3
     assert lines[1].endswith("...")
-    assert lines[2] == "kick 0.5 m/s; GROWS after 10 ms"
+    assert lines[2] == "kick 0.5 m/s: GROWS after 10 ms"
+
+
+def test_a_circle_of_few_samples_is_drawn_as_a_circle():
+    """Eight samples a turn: within 1e-3 of the radius, where straight lines are off by 1 - cos 22.5 deg."""
+    time = np.linspace(0.0, 3.0, 25)
+    circle = ring(1.0, 2 * np.pi * time)
+    velocity = 2 * np.pi * circle[:, ::-1] * [-1.0, 1.0]
+    path = smooth_path(time, circle, velocity)
+    assert np.hypot(*path.T) == pytest.approx(1.0, abs=1e-3)  # a cubic's error, (pi/4)^4 / 384 = 1e-3
+    assert path[::6] == pytest.approx(circle)
+
+
+def test_the_last_turns_of_a_long_path_are_told_from_the_rest():
+    """Five of twenty turns; of a path of six turns all."""
+    for turns, first in ((20, 15), (6, 0)):
+        path = ring(1.0, np.linspace(0.0, 2 * np.pi * turns, 100 * turns + 1))
+        assert last_turns(path) == pytest.approx(100 * first, abs=2)  # chords are shorter than arcs
+
+
+def test_the_close_view_shows_some_turns_around_the_largest_force():
+    """A whirl of 143 Hz: six turns are 42 ms, longer than the run; one of 5 kHz: 1.2 ms around it."""
+    slow = drawn.run(samples=400)
+    assert forces.close_view(slow).sizes["time"] == 400
+    around = 2 * np.pi * 5e3 * slow["time"].values
+    force = slow["contact_force"].copy()
+    force[200, 3] = 1e3
+    fast = forces.close_view(slow.assign(velocity=(("time", "axis"), ring(1.0, around)), contact_force=force))
+    width = float(fast["time"][-1] - fast["time"][0])
+    assert width == pytest.approx(forces.TURNS / 5e3, abs=3 * 0.01 / 400)  # the samples at its ends
+    assert forces.largest_force(fast).max() == 1e3
+
+
+@pytest.mark.parametrize(
+    ("largest", "unit"),
+    [(2e3, (1e3, "kJ")), (5.0, (1.0, "J")), (3e-3, (1e-3, "mJ")), (0.0, (1e-6, "\u00b5J"))],
+)
+def test_energy_is_shown_in_a_unit_of_which_it_is_at_least_one(largest, unit):
+    """No power of ten beside an axis."""
+    assert simulation.energy_unit(largest) == unit
 
 
 def test_on_the_pocket_boundary_one_pocket_touches_and_none_is_pressed():
@@ -112,7 +160,7 @@ def test_without_a_land_there_is_no_boundary():
 def test_a_touch_is_counted_once_and_on_its_side():
     """One that begins before the first sample counts; one that changes side counts on both."""
     force = np.array([[5.0, 0.0, 0.0], [4.0, -1.0, 2.0], [0.0, 0.0, -2.0], [3.0, -1.0, -2.0]])
-    assert simulation.touches(force).tolist() == [[2, 0, 1], [0, 2, 1]]
+    assert forces.touches(force).tolist() == [[2, 0, 1], [0, 2, 1]]
 
 
 @pytest.mark.parametrize("columns", [3, 10, 40])
@@ -120,7 +168,7 @@ def test_pooling_loses_no_blow(columns):
     """The largest force of each pocket stays, with fewer columns than samples and with more."""
     rng = np.random.default_rng(1)
     time, force = np.linspace(0.0, 1.0, 11), rng.normal(size=(11, 4))
-    shown = simulation.pooled(time, force, np.linspace(0.0, 1.0 + 1e-9, columns + 1))
+    shown = forces.pooled(time, force, np.linspace(0.0, 1.0 + 1e-9, columns + 1))
     assert shown.shape == (columns, 4)
     assert shown.max(axis=0).tolist() == np.abs(force).max(axis=0).tolist()
 

@@ -47,6 +47,10 @@ class SimulateOptions:
             raise InputError("--animate", f"must be {' or '.join(KINDS)}", value=f'"{self.animate}"')
         if not writes:
             raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
+        if self.animate == "mp4":
+            from separatrix.figures.animation import video_encoder
+
+            video_encoder()
 
     def compute(self, study: Study, work: answers.Work) -> answers.SimulationAnswer:
         """Follow the run."""

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.figures import bearing, ranking, restitution, simulation, stability, traction
+from separatrix.figures import bearing, forces, ranking, restitution, simulation, stability, traction
 from separatrix.figures import map as maps
+from separatrix.figures.heading import headed
 from separatrix.figures.style import journal, save, settled
 
 __all__ = ["compared", "figures", "save"]
@@ -21,7 +22,7 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "restitution": {"restitution-film": restitution.lubrication},
     "stability": {"stability-curve": stability.stability},
     "map": {"stability-map": maps.map},
-    "simulate": {"simulation": simulation.run, "simulation-forces": simulation.forces},
+    "simulate": {"simulation": simulation.run, "simulation-forces": forces.forces},
     "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
 }
 """Verb -> name of the file -> what draws it."""
@@ -61,6 +62,7 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         return
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
-            yield name, settled(draw(data))
+            yield name, settled(headed(draw(data), data))
         if verb == "rank":
-            yield from ((name, settled(figure)) for name, figure in ranking.environments(data))
+            for name, figure in ranking.environments(data):
+                yield name, settled(headed(figure, data))

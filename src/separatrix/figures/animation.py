@@ -10,52 +10,38 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from PIL import Image
 
 from separatrix.errors import InputError
 from separatrix.figures import simulation
-from separatrix.figures.scene import (
-    ROUND,
-    Scene,
-    ball_places,
-    bars,
-    land_arrow,
-    land_radius,
-    pocket_arrows,
-    rails,
-    ring,
-    scene,
-)
-from separatrix.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILION, journal
+from separatrix.figures.frames import DRAWN, pictures
+from separatrix.figures.scene import scene
+from separatrix.figures.spectrum import fastest_whirl
+from separatrix.figures.style import journal
 from separatrix.units import Array
 
 KINDS = ("gif", "mp4")
-MOST_FRAMES = 240
+MOST_FRAMES = 360
 A_SECOND = 24
 """Frames a second."""
 
-SIZE = (7.6, 4.4)
-DOTS = 100
-"""Inches, and dots an inch: both sides even, as a video needs them."""
+A_TURN = 6
+"""Frames in a turn of the fastest strong whirl, at least: fewer would show it turning any way."""
 
-BAR, BALL = "#9fc7e3", "#e4e4e4"
-DRAWN = (BLACK, GREY, BLUE, BAR, BALL, ORANGE, VERMILION)
 SHADES = 16
 """Steps from each of these colours to white in a GIF."""
-
-ARROW = 3.2
-"""Length of the longest arrow, in radii of a ball."""
 
 Progress = Callable[[int, int], None]
 
 
 def animate(
-    data: xr.Dataset, path: Path, *, kind: str, fixed: bool = False, progress: Progress | None = None
+    data: xr.Dataset,
+    path: Path,
+    *,
+    kind: str | None = None,
+    fixed: bool = False,
+    progress: Progress | None = None,
 ) -> None:
     """Write a run as an animation; an interrupt leaves no file, and an older one as it was.
 
@@ -65,8 +51,8 @@ def animate(
         Of a simulation.
     path : Path
         File to write.
-    kind : str
-        "gif", or "mp4", which needs the extra `animation`.
+    kind : str or None
+        "gif", or "mp4", which needs the extra `animation`; by default the ending of the file.
     fixed : bool
         Whether the picture stands still in space; else it turns with the ball set.
     progress : callable, optional
@@ -77,12 +63,13 @@ def animate(
     InputError
         The kind is unknown, or what writes it is not installed.
     """
+    kind = path.suffix[1:].lower() if kind is None else kind
     if kind not in KINDS:
         raise InputError("The kind of an animation", f"must be {' or '.join(KINDS)}", value=f'"{kind}"')
     encoder = video_encoder() if kind == "mp4" else None
     moments = frame_moments(data)
     with journal(), _beside(path) as part:
-        film = _told(_frames(data, scene(data, moments, fixed=fixed), moments), moments.size, progress)
+        film = _told(pictures(data, scene(data, moments, fixed=fixed), moments), moments.size, progress)
         if encoder is None:
             _write_gif(film, part)
         else:
@@ -118,12 +105,28 @@ def _beside(path: Path) -> Iterator[Path]:
 
 
 def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
-    """Return the samples that become frames, evenly along the axis of time as it is drawn."""
+    """Return the samples that become frames, rising, with the first and the last.
+
+    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
+    of the whirl; if the whole run would take too many, its beginning and its end are shown.
+    """
     time = simulation.milliseconds(data)
     first, last = simulation.time_limits(data)
     space = np.geomspace if simulation.is_logarithmic(data) else np.linspace
     wanted = np.searchsorted(time, space(first, last, most)).clip(0, time.size - 1)
-    return np.unique(np.concatenate([[0], wanted]))[-most:]
+    even = np.unique(np.concatenate([[0], wanted]))[-most:]
+    step = whirl_step(data)
+    if simulation.is_logarithmic(data) or int(np.diff(even).max(initial=1)) <= step:
+        return even
+    half = np.arange(most // 2) * step
+    return np.unique(np.concatenate([half, time.size - 1 - half]))
+
+
+def whirl_step(data: xr.Dataset) -> int:
+    """Return how many samples may lie between frames that show every turn of the whirl."""
+    whirl, last = fastest_whirl(data), float(data["time"].values[-1])
+    turns = whirl * last
+    return max(1, int(data.sizes["time"] / (A_TURN * turns))) if turns > 0.0 else data.sizes["time"]
 
 
 def _told(film: Iterator[Image.Image], total: int, progress: Progress | None) -> Iterator[Image.Image]:
@@ -167,99 +170,3 @@ def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> 
             pipe.close()
     except (OSError, RuntimeError) as error:
         raise InputError("The MP4", "could not be encoded", cure="Take a GIF.") from error
-
-
-def _frames(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Image]:
-    """Yield the picture of each moment; what stands still is drawn once."""
-    figure = Figure(figsize=SIZE, dpi=DOTS)
-    canvas: Any = FigureCanvasAgg(figure)
-    cage = _Cage(figure.add_axes((0.01, 0.02, 0.56, 0.96)), at)
-    cursor = _energy(figure.add_axes((0.67, 0.14, 0.31, 0.44)), data)
-    clock = figure.text(0.63, 0.94, "", fontsize=10, va="top", animated=True)
-    figure.text(0.63, 0.86, _explained(at), fontsize=7, color=GREY, va="top", linespacing=1.5)
-    canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
-    time, energy = simulation.milliseconds(data), 1e3 * simulation.total_energy(data)
-    for frame, moment in enumerate(moments):
-        cage.move(frame)
-        clock.set_text(f"{time[moment]:.3f} ms")
-        cursor.set_data([max(time[moment], cursor.axes.get_xlim()[0])], [energy[moment]])
-        canvas.restore_region(still)
-        for artist in (*cage.moving, cursor, clock):
-            figure.draw_artist(artist)
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-
-
-def _explained(at: Scene) -> str:
-    """Return what the picture shows."""
-    pocket, land = float(np.abs(at.force).max()), float(at.land_force.max())
-    lines = [f"offset, lead and play drawn {at.enlarged:g} times too large"]
-    lines.append("standing still in space" if at.frame.any() else "turning with the ball set")
-    lines.append(f"orange: pockets' forces on the cage, longest {pocket:.3g} N")
-    if land > 0.0:
-        lines.append(f"red: land's force on the cage, longest {land:.3g} N")
-    return "\n".join([*lines, "arrows as long as the root of the force"])
-
-
-def _energy(axes: Axes, data: xr.Dataset) -> Any:
-    """Draw the energy against time, and return the dot that moves on it."""
-    energy = 1e3 * simulation.total_energy(data)
-    axes.plot(simulation.milliseconds(data), energy, color=BLUE, lw=0.9)
-    if energy.min() > 0.0 and energy.max() > 30 * energy.min():
-        axes.set_yscale("log")
-    axes.set_title("energy of the cage [mJ]")
-    simulation.time_axis(axes, data)
-    return axes.plot([], [], "o", color=BLACK, ms=4, clip_on=False, animated=True)[0]
-
-
-class _Cage:
-    """What moves in the plan of the bearing."""
-
-    def __init__(self, axes: Axes, at: Scene) -> None:
-        axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
-        axes.set_axis_off()
-        self.at = at
-        count = at.angles.size
-        if np.isfinite(at.gap):
-            axes.plot(*ring(land_radius(at), ROUND).T, color=VERMILION, lw=1.0)
-        axes.plot(*ring(at.radius, ROUND).T, color=GREY, lw=0.4, ls=":")
-        axes.plot([0], [0], "+", color=GREY, ms=6)
-        self.centre = axes.plot([0], [0], "o", color=BLUE, ms=3)[0]
-        self.rails: Any = axes.add_collection(LineCollection([], colors=BLUE, linewidths=0.9))
-        self.bars: Any = axes.add_collection(
-            PolyCollection([], facecolors=BAR, edgecolors=BLUE, linewidths=0.7)
-        )
-        size = np.full(count, 2 * at.ball)
-        look: Any = {"units": "xy", "facecolors": BALL, "edgecolors": BLACK, "linewidths": 0.8}
-        places: Any = {"offsets": np.zeros((count, 2)), "offset_transform": axes.transData}
-        self.balls = axes.add_collection(EllipseCollection(size, size, np.zeros(count), **look, **places))
-        self.first = axes.plot([0], [0], "o", color=BLACK, ms=2.5)[0]
-        self.pockets, self.land = (_arrows(axes, at, n, c) for n, c in ((count, ORANGE), (1, VERMILION)))
-        cage = (self.bars, self.rails, self.balls, self.first, self.centre)
-        self.moving = (*cage, self.pockets, self.land)
-        for artist in self.moving:
-            artist.set_animated(True)
-
-    def move(self, moment: int) -> None:
-        """Put everything where it is at a moment."""
-        balls = ball_places(self.at, moment)
-        self.bars.set_verts(bars(self.at, moment))
-        self.rails.set_segments(rails(self.at, moment))
-        self.balls.set_offsets(balls)
-        self.first.set_data(balls[:1, 0], balls[:1, 1])
-        middle = np.mean(rails(self.at, moment)[0][:-1], axis=0)
-        self.centre.set_data(middle[:1], middle[1:])
-        for arrows, (foot, along) in (
-            (self.pockets, pocket_arrows(self.at, moment)),
-            (self.land, land_arrow(self.at, moment)),
-        ):
-            along = np.ma.masked_invalid(along.reshape(-1, 2))
-            arrows.set_offsets(foot.reshape(-1, 2))
-            arrows.set_UVC(along[:, 0], along[:, 1])
-
-
-def _arrows(axes: Axes, at: Scene, count: int, colour: str) -> Any:
-    """Return arrows, yet without length."""
-    nothing = np.zeros((4, count))
-    scale: Any = {"angles": "xy", "scale_units": "xy", "scale": 1 / (ARROW * at.ball), "width": 0.008}
-    return axes.quiver(*nothing, color=colour, zorder=4, minlength=0.1, **scale)

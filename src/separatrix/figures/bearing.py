@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -56,12 +58,13 @@ def _draw_contact(data: xr.Dataset, colour: str, axes: tuple, *, place: int) -> 
     angle = np.linspace(0.0, 2 * np.pi, 181)
     centre = place * 2.2 * b
     plan.fill(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), color=colour, alpha=0.25, lw=0)
-    plan.plot(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), color=colour, lw=1)
+    look: Any = {"color": colour, "ls": "-" if place > 0 else (0, (5, 1.2))}
+    plan.plot(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), lw=1, **look)
     plan.annotate(race, (0, 1e3 * centre), ha="center", va="center", color=colour)
     y = np.linspace(-a, a, 201)
-    pressure.plot(1e3 * y, 1e-6 * p0 * np.sqrt(np.maximum(0.0, 1 - (y / a) ** 2)), color=colour)
+    pressure.plot(1e3 * y, 1e-6 * p0 * np.sqrt(np.maximum(0.0, 1 - (y / a) ** 2)), **look)
     xi = float(data["contact_creep_spin"]) * y + float(data["contact_creep_curvature"]) * y**2
-    creep.plot(1e3 * y, 100 * xi, color=colour)
+    creep.plot(1e3 * y, 100 * xi, **look)
 
 
 def _limits_from_zero(axes) -> None:  # type: ignore[no-untyped-def]

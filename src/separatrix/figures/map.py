@@ -30,18 +30,19 @@ NAMES = {"restitution_factor": ETA_LABEL, "ball_cage_friction": FRICTION_LABEL}
 
 def map(data: xr.Dataset) -> Figure:
     """Probability that motion grows, with its contour at one half, what is undecided and what was refused."""
-    figure, axes = canvas(PAGE, 4.9)
+    figure, axes = canvas(PAGE, 4.7)
     edges = [cell_edges(axis_values(data, name)) for name in "xy"]
     mesh = _cells(axes, data, edges)
     undecided = table(data, "decision").astype(str) == "UNDECIDED"
     _hatched(axes, edges, undecided, facecolors="none", edgecolors=BLACK, hatch="////", label="undecided")
     for name in "xy":
         _axis(axes, data, name)
-    axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+    axes.set(xlim=ends(axis_values(data, "x"), edges[0]), ylim=ends(axis_values(data, "y"), edges[1]))
     _half(axes, data)
     _limit(axes, data)
     _here(axes, data)
-    axes.set_title(f"Share of the runs that grow, kick {kick_text(data)}")
+    runs = f", at most {int(data['stopping_most_runs'])} runs a point" if "stopping_most_runs" in data else ""
+    axes.set_title(f"Share of the runs that grow, kick {kick_text(data)}{runs}")
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
     bar.set_label("share of the runs that grow [-]")
     bar.outline.set_visible(False)
@@ -94,6 +95,12 @@ def cell_edges(values: Array) -> Array:
         return np.array([values[0] - reach, values[0] + reach])
     middle = 0.5 * (values[1:] + values[:-1])
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
+
+
+def ends(values: Array, edges: Array) -> tuple[float, float]:
+    """Return both ends of an axis: its first and last value, so that nothing is drawn beyond what was run."""
+    chosen = values if values.size > 1 else edges
+    return float(chosen[0]), float(chosen[-1])
 
 
 def _axis(axes: Axes, data: xr.Dataset, name: str) -> None:
@@ -153,7 +160,8 @@ def _cells(axes: Axes, data: xr.Dataset, edges: list[Array]) -> Any:
     if agreed(data).any():
         place = np.argwhere(~not_run(data))
         values = [axis_values(data, name)[place[:, i]] for name, i in (("x", 1), ("y", 0))]
-        axes.plot(*values, ".", color=GREY, ms=1.2, label="was run; elsewhere the points around agree")
+        dots: Any = {"color": BLACK, "ms": 2.2, "mec": "white", "mew": 0.4, "clip_on": False, "ls": ""}
+        axes.plot(*values, "o", **dots, label="was run; elsewhere the points around agree")
     return mesh
 
 

@@ -7,12 +7,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.style import BLACK, BLUE, GREY, LEADER, VERMILION
+from separatrix.figures.style import BLACK, BLUE, SKY, VERMILION
 from separatrix.units import Array
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 """Directions in which boundaries are drawn: a quarter of a degree apart."""
+
+FINE, LAST = 6, 5
+"""Points drawn for a sample of the path, and turns at its end that are drawn darker."""
 
 NEVER = 1e3
 """A pocket boundary so many times the play away, along the radius of a single ball, is none."""
@@ -73,20 +77,59 @@ def land_boundary(data: xr.Dataset, around: Array = AROUND, turned: float = 0.0)
     return 0.5 * clearance - wave * sign * np.cos(lobes * (around - turned))
 
 
-def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
+def smooth_path(time: Array, position: Array, velocity: Array, fine: int = FINE) -> Array:
+    """Return the path through samples as the cubics that have their positions and velocities.
+
+    Straight lines between the samples of a fast whirl would be drawn as a polygon.
+
+    Parameters
+    ----------
+    time, position, velocity : ndarray
+        Shapes (sample,) [s], (sample, 2) [m] and (sample, 2) [m/s].
+    fine : int
+        Points for each sample but the last.
+    """
+    s = np.linspace(0.0, 1.0, fine, endpoint=False)[:, np.newaxis]
+    step = np.diff(time)[:, np.newaxis, np.newaxis]
+    start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
+    slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
+    there = start + (end - start) * s**2 * (3 - 2 * s)
+    path = there + slope * s * (1 - s) ** 2 - next_slope * s**2 * (1 - s)
+    return np.concatenate([path.reshape(-1, 2), position[-1:]])
+
+
+def path_of(data: xr.Dataset) -> Array:
+    """Return the smooth path of the centre in a simulation, shape (point, 2) [m]."""
+    time, position, velocity = (data[name].values.astype(float) for name in ("time", "position", "velocity"))
+    return smooth_path(time, position, velocity)
+
+
+def last_turns(path: Array, turns: float = LAST) -> int:
+    """Return the first point of so many last turns, by their length; 0 if the path is not much longer."""
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    around = 2 * np.pi * float(np.hypot(*path[-1]))
+    first = int(np.searchsorted(length, length[-1] - turns * around))
+    return first if length[-1] > 2 * turns * around and around > 0.0 else 0
+
+
+def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset, legend: bool = True) -> None:
     """Draw the centre's path between its boundaries, on a scale that has room for the other runs."""
-    x, y = 1e3 * data["position"].values.T
+    path = 1e3 * path_of(data)
     most = 1e3 * max(map(orbit_reach, (data, *others)))
-    axes.plot(x, y, color=BLUE, lw=0.4, alpha=0.9)
-    axes.plot(x[:1], y[:1], "o", color=BLACK, ms=3)
     axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="x [mm]", ylabel="y [mm]")
     axes.set_aspect("equal", adjustable="box", anchor="NW")
-    axes.locator_params(nbins=6)
-    pockets = pocket_boundary(pocket_angles(data), half_plays(data))
-    _boundary(axes, pockets, GREY, "first pocket\ntouches", -40.0, "-")
-    land = land_boundary(data)
-    if land is not None:
-        _boundary(axes, land, VERMILION, "land", 35.0, (0, (4, 1.5)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+    first = last_turns(path)
+    if first:
+        axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
+    label = "path" if not first else f"its last {LAST} turns"
+    axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label)
+    _boundaries(axes, data)
+    axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
+    axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end")
+    if legend:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.5, handlelength=2.0)
 
 
 def orbit_reach(data: xr.Dataset) -> float:
@@ -100,22 +143,17 @@ def orbit_reach(data: xr.Dataset) -> float:
     return 1.08 * max(*found, 1e-9)
 
 
-def _boundary(axes: Axes, radius: Array, colour: str, name: str, degrees: float, style: Any) -> None:
-    """Draw a boundary, named at the right of the picture."""
-    if not radius.max() > 0.0:
-        return
-    outline = np.where(np.isfinite(radius), 1e3 * radius, np.nan)
-    axes.plot(outline * np.cos(AROUND), outline * np.sin(AROUND), color=colour, lw=0.9, ls=style)
-    near = int(np.argmin(np.abs(np.angle(np.exp(1j * (AROUND - np.radians(degrees)))))))
-    place = outline[near] * np.array([np.cos(AROUND[near]), np.sin(AROUND[near])])
-    axes.annotate(
-        name,
-        (place[0], place[1]),
-        xytext=(1.03, 0.5 + 0.5 * np.sin(np.radians(degrees))),
-        textcoords="axes fraction",
-        color=colour,
-        fontsize=7,
-        va="center",
-        annotation_clip=False,
-        arrowprops={**LEADER, "color": colour},
-    )
+def _boundaries(axes: Axes, data: xr.Dataset) -> None:
+    """Draw where the first pocket and where the land touches, if there are such places."""
+    pockets, land = pocket_boundary(pocket_angles(data), half_plays(data)), land_boundary(data)
+    known: list[tuple[Array, str, Any, str]] = [(pockets, BLACK, "-", "a pocket touches")]
+    known += [] if land is None else [(land, VERMILION, (0, (4, 1.5)), "the land touches")]
+    for radius, colour, style, label in known:
+        if radius.max() > 0.0:
+            outline = ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND)
+            axes.plot(*outline.T, color=colour, lw=0.9, ls=style, label=label)
+
+
+def ring(radius: Array | float, angle: Array) -> Array:
+    """Return points at angles on a circle, or at a radius for each, shape (angle, 2)."""
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)

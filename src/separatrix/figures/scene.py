@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from separatrix.figures.orbit import half_plays, pocket_angles
+from separatrix.figures.orbit import half_plays, pocket_angles, ring
 from separatrix.units import Array
 
 BAR_SHARE = 0.4
@@ -148,11 +148,6 @@ def turned(points: Array, angle: float) -> Array:
     """Return points, shape (..., 2), turned by an angle about the origin."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(points @ np.array([[c, s], [-s, c]]), dtype=float)
-
-
-def ring(radius: Array | float, angle: Array) -> Array:
-    """Return points at angles on a circle, or at a radius for each, shape (angle, 2)."""
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
 
 
 def bars(at: Scene, moment: int) -> list[Array]:

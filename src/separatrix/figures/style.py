@@ -14,6 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.transforms import offset_copy
 
+from separatrix.errors import InputError
+
 COLUMN, PAGE = 3.5, 7.0
 """Widths of one and of two columns of a journal [inch]."""
 
@@ -87,11 +89,26 @@ def settled(figure: Figure) -> Figure:
     return figure
 
 
+NOTHING: dict[str, dict[str, Any]] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": None},
+    ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+}
+"""Endings of pictures, and what is left out of each so that the same data give the same bytes."""
+
+
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format of the suffix; the same data give the same bytes."""
-    metadata = {"Date": None, "Creator": None} if path.suffix == ".svg" else {"Software": None}
+    """Write the figure in the format of the ending; the same data give the same bytes.
+
+    Raises
+    ------
+    InputError
+        The ending is none of `NOTHING`.
+    """
+    if path.suffix not in NOTHING:
+        raise InputError(str(path), f"must end in {', '.join(NOTHING)}", value=f'"{path.suffix}"')
     with journal():
-        figure.savefig(path, metadata=metadata)
+        figure.savefig(path, metadata=NOTHING[path.suffix])
 
 
 def legend_below(figure: Figure, panels: Iterable[Axes] | None = None, *, columns: int = 2) -> None:
