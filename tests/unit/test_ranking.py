@@ -1,15 +1,18 @@
 """Ranks, ties, means, reasons and gaps of a ranking, on a cage whose ensemble takes no time."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from enum import Enum
 
 import numpy as np
 import pytest
 
-from separatrix.cage import CageMotion, Judgement, Verdict
+from separatrix.cage import CageMotion, Judgement, Verdict, judge, run_ensemble
+from separatrix.chain import cage_state
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import measured, overall
 from separatrix.ranking.reason import disagreement, reason
+from separatrix.ranking.records import RankedMaterial
 from separatrix.stability import RestitutionThreshold
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
@@ -114,6 +117,24 @@ def test_a_missing_measurement_is_shown_as_missing():
     assert b.friction is b.restitution_threshold is b.margin is b.probability_stable is b.verdict is None
     assert b.reason == "not measured in air"
     assert [(row.name, row.friction) for row in found.overall] == [("B", 0.3), ("A", 0.5)]
+
+
+def test_a_row_carries_all_the_evidence_of_its_verdict():
+    """Every field of the judgement, as it is; of one that was not measured there none."""
+    blank = Candidate(name="B", friction={"air": None, "vacuum": Friction(mean=0.1)})
+    measured_in_both = Candidate(name="A", friction=dict.fromkeys(("air", "vacuum"), Friction(mean=0.1)))
+    both = RankingQuestion(environments=("air", "vacuum"), candidates=(measured_in_both, blank))
+    study = quick_study(ranking=both)
+    a, b = rank(study).environments[0].materials
+    cage = cage_state(study, friction=0.1).cage
+    found = judge(cage, run_ensemble(cage, QUICK))
+    names = {f.name for f in fields(Judgement)}
+    assert names <= {f.name for f in fields(RankedMaterial)}
+    for name in names - {"reason"}:
+        value = getattr(found, name)
+        value = value.name if isinstance(value, Enum) else value
+        assert np.array_equal(getattr(a, name), value), name
+        assert getattr(b, name) is None
 
 
 def test_equal_frictions_tie_with_equal_numbers():

@@ -19,12 +19,26 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
         "probability_high": 1.0,
         "verdict": "STABLE",
         "restitution_factor": 0.3,
+        "cage_motion": "CIRCLING",
+        "growth_rate": -20.41,
+        "growth_rate_low": -21.0,
+        "growth_rate_high": -19.96,
+        "growth_kick": 0.5,
         "energy_growth": 1e-5,
         "largest_offset": 5e-4,
+        "mean_offset": 4.9e-4,
+        "orbit_evenness": 0.02,
         "drift_rate": 0.01,
+        "drift_rate_law": 0.0,
         "largest_contact_force": 275.0,
+        "largest_land_force": 31.0,
+        "pocket_impact_shares": [0.5, 0.5],
+        "land_impact_share": 0.1,
         "whirl_frequency": 1445.2,
         "whirl_direction": 1,
+        "whirl_ratio": 12.99,
+        "drive_energy": 1e-3,
+        "duration": 0.3,
         "runs": 64,
     }
     values = known if friction is not None else dict.fromkeys(known)
@@ -32,8 +46,9 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
 
 
 def document(*rows: dict) -> dict:
-    """Return what the evidence is made of: one environment and the same rows overall."""
-    return {"environments": [{"name": "air", "materials": rows}], "overall": rows}
+    """Return what the verdicts are made of: one environment and the same rows overall."""
+    asked = {"runs": 64, "duration": 0.3, "kicks": [0.1, 2.0]}
+    return {"environments": [{"name": "air", "materials": rows}], "overall": rows, **asked}
 
 
 def test_tied_ranks_are_marked():
@@ -49,16 +64,44 @@ def test_a_missing_measurement_has_dashes_not_numbers():
 
 
 def test_the_evidence_stands_beside_each_candidate():
-    """Environments measured, offset in mm, drift, force, whirl with its direction, energy growth, runs."""
-    lines = ranking._evidence(document(row("A", 1), row("B", None, None))).splitlines()[-2:]
-    assert lines[0].split() == ["A", "1", "of", "1", "0.500", "0.01", "275", "1445", "forward", "1e-05", "64"]
-    assert lines[1].split() == ["B", "0", "of", "1", *"------"]
+    """Motion, growth rate with its interval, offset in mm, drift, both forces, whirl, whirl ratio."""
+    lines = ranking._evidence([row("A", 1), row("B", None, None)]).splitlines()[-2:]
+    assert " ".join(lines[0].split()) == "A CIRCLING -20.4 (-21 to -20) 0.500 0.01 275 31 1445 forward 12.99"
+    assert lines[1].split() == ["B", *"--------"]
+
+
+def test_one_run_has_a_growth_rate_without_an_interval():
+    """No interval, no brackets."""
+    one = row("A", 1, growth_rate_low=None, growth_rate_high=None)
+    assert ranking._evidence([one]).splitlines()[-1].split()[2:4] == ["-20.4", "0.500"]
+
+
+def test_no_verdict_is_shown_without_its_evidence():
+    """In each environment: a table of verdicts, then runs, their length, kicks, and the evidence."""
+    asked = document(row("A", 1))
+    there = ranking._environment(asked, asked["environments"][0])
+    assert "  Evidence: 64 runs of 300 ms from each kick, 0.1, 2 m/s" in there
+    assert there.index("verdict") < there.index("Evidence") < there.index("CIRCLING")
+
+
+def test_the_first_is_shown_in_detail_if_it_has_a_verdict():
+    """All the facts of the one at the top; none of one that was not measured."""
+    (text,) = ranking._first([row("A", 1), row("B", 2)])
+    assert text.startswith("A, overall, in detail")
+    assert "64 from each kick, of 300 ms" in text
+    assert ranking._first([row("A", None, None)]) == []
+
+
+def test_gaps_in_the_measurements_are_said():
+    """Who was measured in fewer than all environments; nothing where all were in all."""
+    assert ranking._gaps(document(row("A", 1), row("B", None, None)))[1].endswith("1 environments: B in 0.")
+    assert ranking._gaps(document(row("A", 1))) == []
 
 
 def test_the_bearings_restitution_factor_is_shown_where_candidates_differ_in_it():
     """One column more, as soon as the pockets differ."""
-    alike = ranking._evidence(document(row("A", 1), row("B", 2)))
-    differ = ranking._evidence(document(row("A", 1), row("B", 2, restitution_factor=0.5)))
+    alike = ranking._evidence([row("A", 1), row("B", 2)])
+    differ = ranking._evidence([row("A", 1), row("B", 2, restitution_factor=0.5)])
     assert "bearing's" not in alike
     assert "bearing's" in differ
     assert "0.50" in differ.splitlines()[-1]

@@ -149,3 +149,12 @@ def test_what_is_no_result_is_refused(tmp_path):
     for name in ("a.nc", "b.nc"):
         with pytest.raises(InputError, match="is not a readable netCDF result"):
             results.load(tmp_path / name)
+
+
+def test_a_list_that_one_row_lacks_is_a_row_of_missing_values():
+    """The dimensions are those of the rows that have it, wherever these stand."""
+    rows = [{"name": "A", "pocket_impact_shares": None}, {"name": "B", "pocket_impact_shares": [0.25, 0.75]}]
+    data = results.dataset({"verb": "rank", "overall": rows})
+    shares = data["overall_pocket_impact_shares"]
+    assert shares.dims == ("material", "ball")
+    assert np.array_equal(shares.values, [[np.nan, np.nan], [0.25, 0.75]], equal_nan=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from threading import Event
 
 from separatrix.cage import Judgement, judge
@@ -36,6 +36,11 @@ Key = tuple[NewtonPerMetre, Ratio]
 
 Piece = tuple[NewtonPerMetre, Ratio | Node]
 """Piece of work: a verdict, or with the pocket stiffness a node of its curve."""
+
+EVIDENCE = {f.name for f in fields(Judgement)} - {
+    *("verdict", "cage_motion", "reason", "pocket_impact_shares")
+}
+"""What a row takes from its judgement as it is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -278,21 +283,12 @@ def _row(
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
-        probability_stable=judgement.probability_stable,
-        probability_low=judgement.probability_low,
-        probability_high=judgement.probability_high,
         verdict=judgement.verdict.name,
+        cage_motion=judgement.cage_motion.name,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
         reason=reason(friction.mean, threshold, eta, judgement),
-        energy_growth=judgement.energy_growth,
-        largest_offset=judgement.largest_offset,
-        drift_rate=judgement.drift_rate,
-        largest_contact_force=judgement.largest_contact_force,
-        whirl_frequency=judgement.whirl_frequency,
-        whirl_direction=judgement.whirl_direction,
-        energy_imbalance=judgement.energy_imbalance,
-        duration=judgement.duration,
-        runs=judgement.runs,
+        pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
+        **{name: getattr(judgement, name) for name in EVIDENCE},
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.stability import StabilityCurve
-from separatrix.units import Hertz, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Second
+from separatrix.units import Hertz, Joule, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,11 @@ class RankedMaterial:
         Whether the threshold reaches the restitution factor that the paper grants solid lubrication.
     reason : str
         A sentence with the numbers.
-    energy_growth, largest_offset, drift_rate, largest_contact_force, whirl_frequency, whirl_direction
+    cage_motion : str or None
+        STABLE, CIRCLING or UNSTABLE, as in `Judgement`.
+    growth_rate, growth_rate_low, growth_rate_high, growth_kick, largest_offset, mean_offset, orbit_evenness
+    drift_rate, drift_rate_law, largest_contact_force, largest_land_force, pocket_impact_shares
+    land_impact_share, whirl_frequency, whirl_direction, whirl_ratio, drive_energy, energy_growth
     energy_imbalance, duration, runs
         Evidence of the verdict's ensemble, as in `Judgement`.
     """
@@ -55,12 +59,25 @@ class RankedMaterial:
     rank: int | None = None
     within_reach: bool | None = None
     reason: str
-    energy_growth: Ratio | None = None
+    cage_motion: str | None = None
+    growth_rate: float | None = None
+    growth_rate_low: float | None = None
+    growth_rate_high: float | None = None
+    growth_kick: MetrePerSecond | None = None
     largest_offset: Metre | None = None
+    mean_offset: Metre | None = None
+    orbit_evenness: Ratio | None = None
     drift_rate: float | None = None
+    drift_rate_law: float | None = None
     largest_contact_force: Newton | None = None
+    largest_land_force: Newton | None = None
+    pocket_impact_shares: tuple[Ratio, ...] | None = None
+    land_impact_share: Ratio | None = None
     whirl_frequency: Hertz | None = None
     whirl_direction: int | None = None
+    whirl_ratio: Ratio | None = None
+    drive_energy: Joule | None = None
+    energy_growth: Ratio | None = None
     energy_imbalance: Ratio | None = None
     duration: Second | None = None
     runs: int | None = None

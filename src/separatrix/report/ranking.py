@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.report.cage import chain_facts, ensemble_facts, study_facts
+from separatrix.report.cage import chain_facts, ensemble_facts, judgement_facts, study_facts
 from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, significant, table
 
 Document = Mapping[str, Any]
@@ -22,30 +22,48 @@ HEADERS = (
 )
 EVIDENCE_HEADERS = (
     "material",
-    "measured in\nenvironments",
+    "motion",
     "bearing's\neta",
+    "growth rate 1/s\n(95 %)",
     "offset\nmm",
-    "drift rate\n1/s",
-    "pocket force\nN",
+    "drift\n1/s",
+    "pocket\nN",
+    "land\nN",
     "whirl\nHz",
-    "energy\ngrowth",
-    "runs\na kick",
+    "whirl\nratio",
 )
 DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
 
 
 def rank(document: Document) -> list[str]:
     """Verdict, margin, rank, evidence and reason of each candidate, overall and in each environment."""
+    overall = document["overall"]
     return [
-        section("Overall: mean friction over the measured environments", _table(document["overall"]), LEGEND),
-        section(_evidence_title(document), _evidence(document), EVIDENCE_LEGEND),
-        section("Reasons, overall", *_reasons(document["overall"])),
-        section("What the verdicts hold for", facts(_holds_for(document))),
-        *(
-            section(_title(one["name"]), _table(one["materials"]), "", *_reasons(one["materials"]))
-            for one in document["environments"]
+        section(
+            "Overall: mean friction over the measured environments", _table(overall), LEGEND, *_gaps(document)
         ),
+        section(f"Evidence, overall: {_ensemble(document)}", _evidence(overall), EVIDENCE_LEGEND),
+        section("Reasons, overall", *_reasons(overall)),
+        *_first(overall),
+        section("What the verdicts hold for", facts(_holds_for(document))),
+        *(_environment(document, one) for one in document["environments"]),
         paragraph(_in_short(document), first="In short: ", indent="          "),
+    ]
+
+
+def _environment(document: Document, one: Document) -> str:
+    """Return verdicts, evidence and reasons of one environment."""
+    rows = one["materials"]
+    evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
+    return section(_title(one["name"]), _table(rows), "", *evidence, *_reasons(rows))
+
+
+def _first(rows: Sequence[Document]) -> list[str]:
+    """Return all the evidence of the candidate at the top; nothing if it has no verdict."""
+    return [
+        section(f"{row['name']}, overall, in detail", facts(judgement_facts(row)))
+        for row in rows[:1]
+        if row["verdict"] is not None
     ]
 
 
@@ -55,9 +73,11 @@ LEGEND = "\n" + paragraph(
     "the runs in which the motion dies, over all kicks."
 )
 EVIDENCE_LEGEND = "\n" + paragraph(
-    "offset of the cage centre, pocket force: largest in any run. drift rate: median growth of the mean "
-    "offset in the runs that do not grow. whirl: median of the runs that grow, of all if none does. energy "
-    "growth: median, over that of the kick. The same for each environment is in rank.json."
+    "motion: what the cage centre does at the end, from the worst kick. growth rate: of the amplitude, mean "
+    "over the runs of the kick where it is largest. offset of the cage centre, force at a pocket and at the "
+    "land: largest in any run. drift: median growth of the mean offset in the runs that do not grow. whirl: "
+    "median of the runs that grow, of all if none does, seen from the balls; ratio: speed at which the "
+    "centre orbits the axis over that of the balls."
 )
 
 
@@ -89,41 +109,60 @@ def _with_interval(row: Document, key: str, ends: str) -> str:
     return f"{number(row[key], 2)} ({low} to {high})"
 
 
-def _evidence_title(document: Document) -> str:
+def _ensemble(document: Document) -> str:
+    """Return the runs behind every verdict, their length and their kicks."""
     kicks = ", ".join(f"{kick:g}" for kick in document["kicks"])
-    return f"Evidence, overall: kicks of {kicks} m/s, runs of {quantity(document['duration'], 's')}"
+    return f"{document['runs']} runs of {quantity(document['duration'], 's')} from each kick, {kicks} m/s"
 
 
-def _evidence(document: Document) -> str:
-    """Return the evidence of the overall verdicts; the bearing's eta only where they differ in it."""
-    rows = [
-        [row["name"], _measured(row["name"], document["environments"]), *_evidence_row(row)]
-        for row in document["overall"]
-    ]
-    alike = len({row[2] for row in rows} - {ABSENT}) <= 1
-    shown = [i for i in range(len(EVIDENCE_HEADERS)) if not (alike and i == 2)]
-    return table([EVIDENCE_HEADERS[i] for i in shown], [[row[i] for i in shown] for row in rows])
+def _gaps(document: Document) -> list[str]:
+    """Return in how many environments a candidate was measured, if not in all."""
+    total = len(document["environments"])
+    found = {row["name"]: _measured(row["name"], document["environments"]) for row in document["overall"]}
+    few = [f"{name} in {count}" for name, count in found.items() if count < total]
+    return ["", paragraph(f"Measured in fewer than {total} environments: {', '.join(few)}.")] if few else []
 
 
-def _measured(name: str, environments: Sequence[Document]) -> str:
+def _measured(name: str, environments: Sequence[Document]) -> int:
     """Return in how many of the environments a candidate was measured."""
     found = [row for one in environments for row in one["materials"] if row["name"] == name]
-    return f"{sum(row['friction'] is not None for row in found)} of {len(environments)}"
+    return sum(row["friction"] is not None for row in found)
+
+
+def _evidence(rows: Sequence[Document]) -> str:
+    """Return the evidence of verdicts; the bearing's eta only where candidates differ in it."""
+    table_rows = [[row["name"], *_evidence_row(row)] for row in rows]
+    alike = len({row[ETA] for row in table_rows} - {ABSENT}) <= 1
+    shown = [i for i in range(len(EVIDENCE_HEADERS)) if not (alike and i == ETA)]
+    cells = [[row[i] for i in shown] for row in table_rows]
+    return table([EVIDENCE_HEADERS[i] for i in shown], cells, left=2)
+
+
+ETA = EVIDENCE_HEADERS.index("bearing's\neta")
 
 
 def _evidence_row(row: Document) -> list[str]:
     whirl = row["whirl_frequency"]
     if whirl is None:
-        return [ABSENT] * (len(EVIDENCE_HEADERS) - 2)
+        return [ABSENT] * (len(EVIDENCE_HEADERS) - 1)
     return [
+        row["cage_motion"],
         number(row["restitution_factor"], 2),
+        _growth(row),
         number(1e3 * row["largest_offset"]),
         significant(row["drift_rate"], 2),
-        number(row["largest_contact_force"], 0),
+        *(number(row[f"largest_{name}_force"], 0) for name in ("contact", "land")),
         f"{number(whirl, 1 if whirl < 10 else 0)} {DIRECTIONS[row['whirl_direction']]}".rstrip(),
-        significant(row["energy_growth"], 2),
-        str(row["runs"]),
+        number(row["whirl_ratio"], 2),
     ]
+
+
+def _growth(row: Document) -> str:
+    rate = significant(row["growth_rate"], 3)
+    if row["growth_rate_low"] is None:
+        return rate
+    low, high = (significant(row[f"growth_rate_{end}"], 3) for end in ("low", "high"))
+    return f"{rate} ({low} to {high})"
 
 
 def _reasons(rows: Sequence[Document]) -> list[str]:

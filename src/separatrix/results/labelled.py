@@ -98,6 +98,15 @@ def _leaves(values: Any) -> Iterator[Any]:
         yield values
 
 
+def _whole(column: tuple[tuple[str, ...], Any], dims: tuple[str, ...], like: Any) -> Any:
+    """Return the values of a column; one that is absent where others are a list is a list of nothing."""
+    return column[1] if column[0] == dims else _blank(like)
+
+
+def _blank(like: Any) -> Any:
+    return [_blank(value) for value in like] if isinstance(like, list) else None
+
+
 def _fill(values: Any, missing: Any) -> Any:
     if isinstance(values, list):
         return [_fill(value, missing) for value in values]
@@ -141,10 +150,11 @@ def _stack(group: Group, records: Sequence[Mapping[str, Any]]) -> Columns:
     bare = [{key: value for key, value in record.items() if key != group.label} for record in ordered]
     rows = [_flatten(record) for record in bare]
     columns: Columns = {}
-    for name, (dims, first) in rows[0].items():
+    for name in rows[0]:
+        dims, whole = max((row[name] for row in rows), key=lambda column: len(column[0]))
         is_label = (name,) == dims
-        stacked = ((group.dimension, *dims), [row[name][1] for row in rows])
-        columns[name] = (dims, first) if is_label else stacked
+        stacked = ((group.dimension, *dims), [_whole(row[name], dims, whole) for row in rows])
+        columns[name] = (dims, whole) if is_label else stacked
     if group.label:
         columns[group.dimension] = ((group.dimension,), [record[group.label] for record in ordered])
     return columns
