@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from separatrix import results
@@ -73,8 +75,8 @@ def test_kick_and_run_are_those_asked_for(folder, capsys):
     ("options", "said"),
     [
         (["--kick", "2"], "needs a unit of speed"),
-        (["--kick", "0 m/s"], "must be > 0"),
-        (["--kick", "-1 m/s"], "must be > 0"),
+        (["--kick", "0 m/s"], "must be >"),
+        (["--kick", "-1 m/s"], "must be >"),
         (["--run", "-1"], "--run must lie between"),
         (["--animate", "avi"], "must be gif or mp4"),
         (["--animate", "gif", "--json"], "--out DIR"),
@@ -85,10 +87,31 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
     assert said in refused(capsys, "simulate", "cryogenic-turbopump", *options)
 
 
-def test_an_animation_is_written_beside_the_figures(folder, capsys):
+def test_an_mp4_without_its_extra_is_refused_before_the_run(capsys, monkeypatch):
+    """One line that says what to install; the run is not made and nothing is written."""
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    monkeypatch.setattr("separatrix.cli.answers.simulate", lambda *_, **__: pytest.fail("it was made"))
+    line = refused(capsys, "simulate", "cryogenic-turbopump", "--animate", "mp4")
+    assert "pip install 'separatrix[animation]'" in line
+
+
+def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
+    """Files of an answer come all or none, its film among them."""
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("separatrix.figures.frames._Cage.move", stop)
+    assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
+    assert "nothing was written" in capsys.readouterr().err
+    assert not list(Path().iterdir())
+
+
+def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch):
     """`--animate gif`: a moving picture of more than one frame, and nothing half-written."""
     from PIL import Image
 
+    monkeypatch.setattr("separatrix.figures.animation.frame_moments", lambda _: np.arange(3))
     options = ["--animate", "gif", "--out", "moving", "--quiet"]
     assert main(["simulate", str(folder / "small.toml"), *options]) == 0
     names = {path.name for path in Path("moving").iterdir()}

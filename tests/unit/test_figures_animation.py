@@ -31,8 +31,10 @@ def at(data=SMALL, **options):
         drawn.run(samples=3, guidance="ball", touching=False),
         drawn.run(samples=2, count=1, guidance="inner"),
         drawn.run(samples=2, play=0.0, cage_land_out_of_round=1e-5),
+        drawn.run(samples=2, count=100, outcome="STALLED"),
+        drawn.run(samples=2, play=1e-2),
     ],
-    ids=["ordinary", "one sample", "nothing touches", "one ball", "no play"],
+    ids=["ordinary", "one sample", "nothing touches", "one ball", "no play", "hundred balls", "a land only"],
 )
 def test_a_gif_is_written_for_any_run(data, tmp_path):
     """Each sample a frame here, told one by one; nothing else stays in the folder."""

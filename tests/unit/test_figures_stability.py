@@ -23,6 +23,7 @@ CURVES = {
     "no threshold": drawn.curve(
         **{f"critical_friction{end}": (ON, [NAN] * 4) for end in ("", "_low", "_high")}
     ),
+    "empty intervals": drawn.curve(scatter_low=(ON, [NAN] * 4), scatter_high=(ON, [NAN, 0.2, NAN, NAN])),
     "one point": drawn.curve(points=1),
     "one kick": drawn.curve(kicks=("kick", [0.5])),
     "candidates": drawn.curve(**drawn.candidates([[0.1, 0.2, NAN], [0.15, NAN, NAN]])),
@@ -36,6 +37,8 @@ AGREE = np.array([["not run: the points around agree", "As they do."], ["not run
 MAPS = {
     "ordinary": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
     "all refused": drawn.plane([[NAN, NAN], [NAN, NAN]]),
+    "all undecided": drawn.plane([[0.5, 0.4], [0.4, 0.5]]),
+    "all undecided at one half": drawn.plane([[0.5, 0.5], [0.5, 0.5]]),
     "all grow": drawn.plane([[1.0, 1.0], [1.0, 1.0]]),
     "one column": drawn.plane([[0.0], [0.6], [1.0]]),
     "one point": drawn.plane([[0.6]]),
