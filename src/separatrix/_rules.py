@@ -69,7 +69,7 @@ def land(cage: CageDesign) -> _check.Problems:
 
 
 def rising(
-    record: object, field: str, low: float, high: float, *, least: int = 1, most: int
+    record: object, field: str, low: float, high: float, *, least: int = 1, most: int, hint: str = ""
 ) -> _check.Problems:
     """Refuse a tuple that is too short or long, or not strictly inside the limits or increasing."""
     values, where = getattr(record, field), f"{type(record).__name__}.{field}"
@@ -79,7 +79,7 @@ def rising(
     outside = [value for value in values if not _check.is_number(value) or not low < value < high]
     if outside:
         rule = f"must each be a finite number > {low:g} and < {high:g}"
-        yield InputError(where, rule, unit.replace("-", ""), str(outside[0]))
+        yield InputError(where, rule, unit.replace("-", ""), str(outside[0]), hint)
     falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
     if falls:
         yield InputError(where, "must increase, none twice", unit.replace("-", ""), falls[0])

@@ -33,6 +33,11 @@ from separatrix.units import (
 
 MOST_BALLS = 200
 FRICTION_LIMIT = 2.0
+LEAST_KICK: MetrePerSecond = 1e-9
+"""Kicks are larger: the energy of a weaker one is lost in rounding."""
+
+MOST_KICK: MetrePerSecond = 1e4
+NO_KICK = "A kick of zero starts nothing that could grow or die."
 _START_HINT = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
 
@@ -115,7 +120,7 @@ class BallBearing:
         _check.settle(
             _check.positive(self, "ball_diameter", 1e-5, 10.0),
             _check.positive(self, "pitch_diameter", 1e-5, 100.0),
-            _check.whole(self, "ball_count", 3, MOST_BALLS),
+            _check.whole(self, "ball_count", 3, MOST_BALLS, hint="Two balls cannot centre a ring."),
             _check.between(self, "contact_angle", 0.0, math.pi / 2, open_high=True),
             _check.between(self, "inner_conformity", 0.5, 0.6, open_low=True, hint=groove),
             _check.between(self, "outer_conformity", 0.5, 0.6, open_low=True, hint=groove),
@@ -252,9 +257,9 @@ class StabilitySettings:
 
     def __post_init__(self) -> None:
         _check.settle(
-            _rules.rising(self, "kicks", 0.0, 1e4, most=20),
+            _rules.rising(self, "kicks", LEAST_KICK, MOST_KICK, most=20, hint=NO_KICK),
             _check.whole(self, "runs", 1, 1_000_000),
-            _check.positive(self, "duration", 1e-9, 1e4),
+            _check.positive(self, "duration", 1e-9, 1e4, hint="Some tenths of a second show the motion."),
             _check.between(self, "ball_scatter", 0.0, 1.0),
             _rules.rising(self, "restitution_factors", 0.0, 1.0, least=0, most=1000),
             _check.whole(self, "seed", 0, 2**63 - 1),

@@ -277,7 +277,7 @@ EDITS = {
         ('["0.1 m/s", "0.5 m/s", "2 m/s"]', '"0.5 m/s"'),
         ["[stability] kicks must be a list"],
     ),
-    "kick of zero": (('"0.1 m/s"', '"0 m/s"'), ["[stability] kicks", "> 0"]),
+    "kick of zero": (('"0.1 m/s"', '"0 m/s"'), ["[stability] kicks", "> 1e-09"]),
     "kick twice": (('"0.1 m/s"', '"0.5 m/s"'), ["[stability] kicks", "twice"]),
     "kick with wrong unit": (('"0.1 m/s"', '"0.1 m"'), ["[stability] kicks, item 1, needs a unit of speed"]),
     "restitution factor of 1": (("to = 0.95", "to = 1.0"), ["[stability] restitution_factors", "< 1"]),

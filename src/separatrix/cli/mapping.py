@@ -109,11 +109,14 @@ def kick_speed(text: str) -> float:
     Raises
     ------
     InputError
-        It is no speed above 0.
+        It is no speed that a study may have.
     """
+    from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK
+
     speed = parse(text, "m/s", "--kick")
-    if not 0.0 < speed <= 1e4:
-        raise InputError("--kick", "must be > 0 and at most 10000", "m/s", f"{speed:g}")
+    if not LEAST_KICK < speed < MOST_KICK:
+        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g}"
+        raise InputError("--kick", rule, "m/s", f"{speed:g}", NO_KICK)
     return speed
 
 

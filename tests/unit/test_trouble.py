@@ -1,0 +1,193 @@
+"""Cages at the edge of what can be: each command answers, or refuses in one line and writes nothing."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from separatrix.cage import PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
+from separatrix.chain import cage_state
+from separatrix.cli import main
+from separatrix.cli.answers import SimulationAnswer
+from separatrix.errors import InputError
+from separatrix.report import report
+from separatrix.restitution import damping_for
+from separatrix.results import document
+from separatrix.stability.growth import race_damping_at
+from separatrix.study import Guidance, StabilitySettings
+from separatrix.study_file import read_study
+
+BASE = """
+extends = "cryogenic-turbopump"
+
+[kinematics]
+model = "outer race control"
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 4
+duration = "4 ms"
+"""
+
+CAGE = PlanarCage(
+    mass=0.025,
+    moment_of_inertia=0.025 * 0.0325**2,
+    ball_count=13,
+    pitch_radius=0.0325,
+    cage_speed=670.0,
+    inner_speed=1570.0,
+    outer_speed=0.0,
+    pocket_clearance=6e-4,
+    ball_cage_stiffness=3e6,
+    race_damping=400.0,
+    ball_cage_friction=0.1,
+    guidance=Guidance.OUTER,
+    land_clearance=1e-3,
+)
+SHORT = StabilitySettings(kicks=(0.5,), runs=4, duration=0.01)
+
+ANSWERED = {
+    "land tighter than the pockets": '[cage]\nland_clearance = "20 um"',
+    "no pocket clearance": '[cage]\npocket_clearance = "0 mm"',
+    "no friction in the pockets": "[cage]\nball_cage_friction = 0",
+    "no friction on the land": "[cage]\nland_friction = 0",
+    "a land that returns nothing": "[cage]\nland_restitution = 0",
+    "a land that returns all": "[cage]\nland_restitution = 1",
+    "no land": '[cage]\nguidance = "ball"',
+    "three balls": "[bearing]\nball_count = 3",
+    "100 balls": '[bearing]\nball_count = 100\nball_diameter = "1.6 mm"\n'
+    '[operation]\naxial_load = "300 N"\n[cage]\npocket_clearance = "0.1 mm"',
+    "a ramp longer than the run": '[operation]\nramp_time = "50 ms"',
+    "a radial load": '[operation]\nradial_load = "500 N"',
+    "races that hardly hold the balls": "[film]\nrace_friction = 0.001",
+    "races that grip the balls": "[film]\nrace_friction = 2",
+}
+
+REFUSED = {
+    "pockets wider than the gap": (
+        '[cage]\npocket_clearance = "5 mm"',
+        "pocket_clearance must be smaller than the gap between balls, 4.443 mm",
+    ),
+    "Hertz contact without play": (
+        '[cage]\npocket_contact = "hertz"\npocket_clearance = "0 mm"',
+        "pocket_clearance must be > 0 with Hertz contact",
+    ),
+    "pockets that overlap": ("[cage]\npocket_spacing_scatter = 0.4", "must be < 0.1251"),
+    "land more out of round than its gap": (
+        '[cage]\nland_out_of_round = "0.6 mm"',
+        "land_out_of_round must be smaller than half the land's clearance over the square of land_lobes",
+    ),
+    "one ball": ("[bearing]\nball_count = 1", "ball_count must be a whole number from 3 to 200; got 1. Two"),
+    "no friction on the races": (
+        "[film]\nrace_friction = 0",
+        "race_friction must be > 0 for traction [-]; got 0. Without friction the races hold no ball.",
+    ),
+}
+
+SETTINGS = {
+    "kick of zero": (
+        'kicks = ["0 m/s"]',
+        "> 1e-09 and < 10000 [m/s]; got 0.0. A kick of zero starts nothing",
+    ),
+    "kick lost in rounding": ('kicks = ["1e-300 m/s"]', "> 1e-09 and < 10000 [m/s]; got 1e-300. A kick"),
+    "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
+    "run of an hour": ('duration = "1 h"', "for this cage [s]; got 3600. Shorten the run"),
+    "run of no time": ('duration = "1e-12 s"', "duration must be >= 0.001 us; got"),
+}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def study(text: str, base: str = BASE) -> str:
+    """Write the small study with some sections more; return its name."""
+    Path("case.toml").write_text(base + text, encoding="utf-8")
+    return "case.toml"
+
+
+def refused(capsys, *arguments: str) -> str:
+    """Return the line with which a command is refused; nothing is written."""
+    assert main(list(arguments)) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n"), len(err) < 600) == ("", 1, True), err
+    assert [path.name for path in Path().iterdir()] == ["case.toml"]
+    return err
+
+
+@pytest.mark.parametrize("case", ANSWERED)
+def test_an_odd_cage_is_answered(case, capsys):
+    """One document, an outcome with its sentence, and nothing said on standard error."""
+    assert main(["simulate", study(ANSWERED[case]), "--json"]) == 0
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert (err, found["outcome"] in RunOutcome.__members__) == ("", True)
+    assert found["outcome_sentence"]
+
+
+@pytest.mark.parametrize("verb", ["simulate", "map"])
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_cage_that_cannot_be_is_refused_in_one_line(case, verb, capsys):
+    """The same line whoever asks."""
+    text, said = REFUSED[case]
+    assert said in refused(capsys, verb, study(text))
+
+
+@pytest.mark.parametrize("verb", ["simulate", "stability", "rank", "map"])
+@pytest.mark.parametrize("case", SETTINGS)
+def test_an_ensemble_that_cannot_be_is_refused_in_one_line(case, verb, capsys):
+    """Neither waited for nor begun."""
+    text, said = SETTINGS[case]
+    lines = [line for line in BASE.splitlines() if not line.startswith(text.partition(" ")[0])]
+    assert said in refused(capsys, verb, study(text, "\n".join([*lines, ""])))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"ball_count": 1},
+        {"ball_count": 100, "pocket_clearance": 1e-4},
+        {"race_damping": damping_for(0.0, 3e6, 0.025)},
+        {"race_damping": math.inf},
+        {"ball_cage_friction": 0.0},
+        {"land_friction": 0.0},
+        {"pocket_clearance": 0.0},
+        {"land_clearance": 1e-9},
+    ],
+)
+def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
+    """One ball, a hundred, eta 0 and 1, no friction, no play: numbers, and a sentence that says why."""
+    cage = replace(CAGE, **changes)
+    found = judge(cage, run_ensemble(cage, SHORT))
+    assert found.verdict in Verdict
+    assert found.reason.endswith(".")
+    assert np.isfinite(found.growth_rate)
+
+
+def test_eta_of_zero_and_of_one_are_dampings():
+    """The most that returns nothing, sqrt(k M)/2, and one without bound."""
+    assert race_damping_at(CAGE, 0.0) == pytest.approx(math.sqrt(3e6 * 0.025) / 2.0, rel=1e-12)  # rounding
+    assert race_damping_at(CAGE, 1.0) == math.inf
+
+
+def test_a_kick_lost_in_rounding_is_refused_by_the_engine_too():
+    """Its energy would be zero, and growth a number over it."""
+    with pytest.raises(InputError, match=r"kicks must each be a finite number > 1e-09"):
+        simulate(CAGE, kick=1e-300, duration=0.01)
+
+
+def test_a_stalled_run_says_so():
+    """Its history is shorter; the table and the document give the reason, not the length alone."""
+    asked = read_study(study(""))
+    history = replace(simulate(CAGE, kick=0.5, duration=0.01, samples=20), outcome=RunOutcome.STALLED)
+    answer = SimulationAnswer(cage=cage_state(asked), history=history, kick=0.5, run=0)
+    found = document("simulate", answer, asked, [])
+    said = " ".join(report("simulate", found, where=None).split())
+    assert found["outcome"] == "STALLED"
+    assert "STALLED after 10 ms. Too many impacts in no time: the run was ended undecided." in said
