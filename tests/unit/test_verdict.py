@@ -121,7 +121,9 @@ def test_runs_in_which_nothing_touches_decide_nothing():
     flight = ensemble([[DIES] * 24], kicks=(0.5,), largest_contact_force=0.0)
     result = judge(CAGE, flight)
     assert result.verdict is Verdict.UNDECIDED
-    assert result.reason == "Too short to decide: from 0.5 m/s nothing touches within 0.3 s."
+    assert result.reason == (
+        "Too short to decide, or too weak a kick: from 0.5 m/s nothing touches in any run (at most 0.3 s)."
+    )
     assert judge(CAGE, replace(flight, largest_land_force=flight.kicks + 0 * flight.growth_rate)).verdict is (
         Verdict.STABLE
     )
@@ -241,7 +243,8 @@ def test_a_kick_weaker_than_the_turning_frame_is_not_instability():
     assert (result.verdict, result.cage_motion) == (Verdict.UNDECIDED, CageMotion.STABLE)
     assert result.reason == (
         "Too weak a kick to decide: from 0.1 m/s (0.25 mJ) 100 % of the runs end with more energy than the "
-        "kick, but with no more than the turning frame can give without it (0.449 mJ)."
+        "kick, but with no more than the turning frame can give without it (0.449 mJ, as a kick of "
+        "0.134 m/s)."
     )
 
 
@@ -251,6 +254,19 @@ def test_growth_beyond_what_drives_the_cage_is_instability():
     assert judge(GUIDED, ensemble([[GROWS] * 16] * 3, energy_growth=growth)).verdict is Verdict.UNSTABLE
     growth[0] = 1.7
     assert judge(GUIDED, ensemble([[GROWS] * 16] * 3, energy_growth=growth)).verdict is Verdict.UNDECIDED
+
+
+def test_a_kick_that_its_drive_outgrows_does_not_count_as_wild():
+    """From 0.1 m/s the drive alone, from 0.5 m/s all die, from 2 m/s all grow: sub-critical in between."""
+    growth = np.array([[1.7] * 16, [0.01] * 16, [9.0] * 16])
+    rows = [[GROWS] * 16, [DIES] * 16, [GROWS] * 16]
+    result = judge(GUIDED, ensemble(rows, energy_growth=growth))
+    assert result.reason == "Sub-critical: the motion dies from 0.5 m/s and grows from 2 m/s."
+    rows[2] = [GROWS] * 4 + [DIES] * 12
+    assert judge(GUIDED, ensemble(rows, energy_growth=growth)).reason == (
+        "No clear answer: the motion grows in 100 % from 0.1 m/s (by the cage's drive alone: 100 %), "
+        "0 % from 0.5 m/s, 25 % from 2 m/s."
+    )
 
 
 def test_gravity_unbalance_and_leading_balls_drive_too():

@@ -28,9 +28,11 @@ def at_every_kick(what: str, counts: Counts, runs: int) -> str:
 
 
 def untouched(ensemble: Ensemble, quiet: Array) -> str:
-    """Return that nothing touches."""
-    duration = f"{ensemble.duration:.3g} s"
-    return f"Too short to decide: from {quiet[0]:g} m/s nothing touches within {duration}."
+    """Return that nothing touches; a run may have ended before its time."""
+    return (
+        f"Too short to decide, or too weak a kick: from {quiet[0]:g} m/s nothing touches in any run "
+        f"(at most {ensemble.duration:.3g} s)."
+    )
 
 
 def stalled(ensemble: Ensemble) -> str:
@@ -43,10 +45,11 @@ def too_weak(cage: PlanarCage, ensemble: Ensemble, driven: Mask) -> str:
     """Return from which kicks the runs have more energy than the kick, but none that their drive lacks."""
     i = int(np.argmax(driven.mean(axis=1)))
     kick, drive = 1e3 * kick_energy(cage, ensemble)[i], 1e3 * drive_energy(cage)
+    harder = math.sqrt(2.0 * drive_energy(cage) / cage.mass)
     return (
         f"Too weak a kick to decide: from {ensemble.kicks[i]:g} m/s ({kick:.3g} mJ) "
         f"{_percent(driven[i].mean())} of the runs end with more energy than the kick, but with no more than "
-        f"{_drives(cage)} can give without it ({drive:.3g} mJ)."
+        f"{_drives(cage)} can give without it ({drive:.3g} mJ, as a kick of {harder:.3g} m/s)."
     )
 
 
@@ -106,7 +109,7 @@ def drift(cage: PlanarCage, ensemble: Ensemble, measured: float) -> str:
     return f"The motion dies, but the cage has no land and drifts: {seen}."
 
 
-def mixed(kicks: Array, calm: Mask, wild: Mask, grows: Counts, runs: int) -> str:
+def mixed(kicks: Array, calm: Mask, wild: Mask, grows: Counts, explained: Counts, runs: int) -> str:
     """Return that small kicks die and large ones grow, or what share grows from each kick.
 
     Parameters
@@ -114,9 +117,9 @@ def mixed(kicks: Array, calm: Mask, wild: Mask, grows: Counts, runs: int) -> str
     kicks : ndarray
         Shape (kick,) [m/s].
     calm, wild : ndarray
-        Whether nine in ten die, or grow, shape (kick,).
-    grows : ndarray
-        Runs that grow, shape (kick,).
+        Whether nine in ten die, or grow beyond their drive, shape (kick,).
+    grows, explained : ndarray
+        Runs that grow, and those among them that their drive explains, shape (kick,).
     runs : int
         Runs at each kick.
     """
@@ -125,8 +128,14 @@ def mixed(kicks: Array, calm: Mask, wild: Mask, grows: Counts, runs: int) -> str
     if below < above:
         return f"Sub-critical: the motion dies from {below:g} m/s and grows from {above:g} m/s."
     order = np.argsort(kicks)
-    shares = ", ".join(f"{100 * grows[i] / runs:.0f} % from {kicks[i]:g} m/s" for i in order)
+    shares = ", ".join(_grown(kicks[i], grows[i] / runs, explained[i] / runs) for i in order)
     return f"No clear answer: the motion grows in {shares}."
+
+
+def _grown(kick: float, share: Ratio, explained: Ratio) -> str:
+    """Return the share that grows from a kick, and the share that its drive alone explains."""
+    driven = f" (by the cage's drive alone: {_percent(explained)})" if explained else ""
+    return f"{_percent(share)} from {kick:g} m/s{driven}"
 
 
 def _percent(share: Ratio | np.floating) -> str:

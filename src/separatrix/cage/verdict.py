@@ -208,10 +208,11 @@ def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask, drift_rat
     runs = ensemble.outcome.shape[1]
     dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
     if not _clear(runs - grows, runs):
-        if _clear(runs - grows + explained.sum(axis=1), runs):
+        by_drive = explained.sum(axis=1)
+        if _clear(runs - grows + by_drive, runs):
             return reason.too_weak(cage, ensemble, explained)
-        calm, wild = dies / runs >= CLEAR, grows / runs >= CLEAR
-        return reason.mixed(ensemble.kicks, calm, wild, grows, runs)
+        calm, wild = dies / runs >= CLEAR, (grows - by_drive) / runs >= CLEAR
+        return reason.mixed(ensemble.kicks, calm, wild, grows, by_drive, runs)
     if ensemble.count(RunOutcome.STALLED).any():
         return reason.stalled(ensemble)
     if drifts(cage) or not _clear(dies, runs):
