@@ -38,7 +38,7 @@ from separatrix.figures.scene import (
     turned,
 )
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION
-from separatrix.units import Array
+from separatrix.units import Array, format_number
 
 SIZE = (7.6, 4.8)
 DOTS = 100
@@ -65,7 +65,7 @@ def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Imag
     """Yield the picture of each moment; what stands still is drawn once."""
     figure = Figure(figsize=SIZE, dpi=DOTS)
     canvas: Any = FigureCanvasAgg(figure)
-    plan = (0.0, 0.0, 0.6, 0.95)
+    plan = (0.0, 0.0, 0.6, 0.9)
     parts = (
         _Cage(figure.add_axes(plan), at),
         _Path(figure.add_axes(_middle(at, plan)), data, at, moments),
@@ -110,10 +110,13 @@ def _explained(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> N
     pocket, land = float(np.abs(at.force).max()), float(at.land_force.max())
     arrow: Any = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
     named = [
-        (Line2D([], [], color=VERMILION, **arrow), f"a pocket's force on the cage, up to {pocket:.3g} N")
+        (
+            Line2D([], [], color=VERMILION, **arrow),
+            f"a pocket's force on the cage, up to {format_number(pocket, 3)} N",
+        )
     ]
     if np.isfinite(at.gap):
-        named.append((Line2D([], [], color=BLACK, **arrow), f"the land's, up to {land:.3g} N"))
+        named.append((Line2D([], [], color=BLACK, **arrow), f"the land's, up to {format_number(land, 3)} N"))
         named.append((Line2D([], [], color=GREY, lw=1.6), "land"))
     figure.legend(
         *zip(*named, strict=True),
@@ -133,13 +136,20 @@ def _notes(data: xr.Dataset, at: Scene, moments: Array) -> str:
     pace = f"{1e3 * np.median(steps):.3g} \N{MICRO SIGN}s a frame" if steps.size else "one frame"
     spans = " and ".join(f"{first:.3g} to {last:.4g} ms" for first, last in parts)
     lines = [
-        f"Offset, lead and play {at.enlarged:g} times too large; so are",
-        "dents, where cage and ball or land overlap.",
+        *to_scale(at.enlarged),
         "Arrows as long as the root of the force.",
         "Standing still in space." if at.frame.any() else "The picture turns with the ball set.",
         "Time runs ever faster." if simulation.is_logarithmic(data) else f"Shown: {spans}, {pace}.",
     ]
     return "\n".join(lines)
+
+
+def to_scale(enlarged: float) -> tuple[str, str]:
+    """Return how many times too large movements are drawn, in two lines."""
+    if enlarged == 1.0:
+        return "Offset, lead and play to scale; so are dents,", "where cage and ball or land overlap."
+    times = f"{format_number(enlarged, 2)} times too large"
+    return f"Offset, lead and play {times}; so are", "dents, where cage and ball or land overlap."
 
 
 class _Clock:
@@ -160,9 +170,9 @@ class _Energy:
 
     def __init__(self, axes: Axes, data: xr.Dataset, moments: Array) -> None:
         simulation.draw_energy(axes, data)
-        for first, last in shown_parts(data, moments):
-            if not simulation.is_logarithmic(data):
-                axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
+        parts = shown_parts(data, moments)
+        for first, last in parts if len(parts) > 1 else ():
+            axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
         self.time = np.maximum(simulation.milliseconds(data)[moments], axes.get_xlim()[0])
         self.energy = np.asarray(axes.lines[0].get_ydata(), dtype=float)[moments]
         self.dot = axes.plot([], [], "o", color=BLACK, ms=4, clip_on=False, animated=True)[0]
@@ -184,7 +194,11 @@ class _Path:
         self.samples = [np.asarray(data[name].values) for name in ("time", "position", "velocity")]
         size = 1.0 / reach * INSIDE * (at.radius - at.half_width)
         axes.text(
-            0.5, 0.0, f"path of the centre,\n{size:.2g} times too large", **NOTE, transform=axes.transAxes
+            0.5,
+            0.0,
+            f"path of the centre,\n{format_number(size, 2)} times too large",
+            **NOTE,
+            transform=axes.transAxes,
         )
         self.pockets = pocket_boundary(pocket_angles(data), half_plays(data))
         land = land_boundary(data)

@@ -18,6 +18,9 @@ AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 FINE, LAST = 6, 5
 """Points drawn for a sample of the path, and turns at its end that are drawn darker."""
 
+BEYOND = 2.0
+"""Half the play over the land's gap from which the pockets are left out of the picture."""
+
 NEVER = 1e3
 """A pocket boundary so many times the play away, along the radius of a single ball, is none."""
 
@@ -134,19 +137,24 @@ def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset, legend: bool =
 
 def orbit_reach(data: xr.Dataset) -> float:
     """Return what a picture of the orbit must show on either side [m]."""
-    found = [float(np.abs(data["position"].values).max()), 2.0 * float(half_plays(data).max())]
-    land = land_boundary(data)
-    if land is not None:
-        found.append(float(land.max()))
-    else:
-        found[1] /= 1.5
-    return 1.08 * max(*found, 1e-9)
+    far, land, play = (float(np.abs(data["position"].values).max()), land_boundary(data), largest_play(data))
+    found = max(far, play or 0.0, 0.0 if land is None else float(land.max()))
+    return 1.12 * max(found, 1e-9)
+
+
+def largest_play(data: xr.Dataset) -> float | None:
+    """Return half the largest play of the pockets [m]; None if the centre stays far within."""
+    play, land = float(half_plays(data).max()), land_boundary(data)
+    far = float(np.hypot(*data["position"].values.T).max())
+    least = max(far, 0.0 if land is None else float(land.max()))
+    return play if land is None or play <= BEYOND * least else None
 
 
 def _boundaries(axes: Axes, data: xr.Dataset) -> None:
     """Draw where the first pocket and where the land touches, if there are such places."""
     pockets, land = pocket_boundary(pocket_angles(data), half_plays(data)), land_boundary(data)
-    known: list[tuple[Array, str, Any, str]] = [(pockets, BLACK, "-", "a pocket touches")]
+    known: list[tuple[Array, str, Any, str]] = []
+    known += [] if largest_play(data) is None else [(pockets, BLACK, "-", "a pocket touches")]
     known += [] if land is None else [(land, VERMILION, (0, (4, 1.5)), "the land touches")]
     for radius, colour, style, label in known:
         if radius.max() > 0.0:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from separatrix.figures import spectrum
-from separatrix.figures.orbit import draw_orbit, half_plays, land_boundary
+from separatrix.figures.orbit import draw_orbit, land_boundary, largest_play
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, PAGE, VERMILION, label_lines
 from separatrix.units import Array
 
@@ -154,7 +154,8 @@ def draw_work(axes: Axes, data: xr.Dataset) -> None:
 
 def _offset(axes: Axes, data: xr.Dataset) -> None:
     """Draw how far the centre is from the axis, with the pocket play and the land."""
-    limit = [(half_plays(data).max(), BLACK, "half play")]
+    play = largest_play(data)
+    limit = [] if play is None else [(play, BLACK, "half play")]
     land = land_boundary(data)
     if land is not None:
         limit.append((land.max(), VERMILION, "land"))
