@@ -253,11 +253,14 @@ def test_a_check_that_differs_is_counted(study):
         for name, parameter in (("x", "restitution_factor"), ("y", "ball_cage_friction"))
     }
     asked = question(study, **axes, adaptive=True)
-    i, j = next(iter(filled(asked).checked))
+    calm = filled(asked)
+    assert len(calm.found) == 25 + len(calm.checked)  # the coarse grid, 5 by 5, and the checks
+    assert set(calm.inferred.values()) == {Verdict.STABLE}
+    i, j = next(iter(calm.checked))
     found = inference(filled(asked, island=(values[i], values[j])))
-    assert (found.checked, found.decided_otherwise) == (len(filled(asked).checked), 1)
+    assert (found.checked, found.decided_otherwise) == (len(calm.checked), 1)
     assert (found.error_low, found.error_high) == wilson_interval(1, found.checked)
-    assert inference(filled(asked)).decided_otherwise == 0
+    assert inference(calm).decided_otherwise == 0
 
 
 def filled(asked: MapQuestion, island: tuple[float, float] | None = None) -> Filled:
