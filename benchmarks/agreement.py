@@ -2,8 +2,9 @@
 
     python benchmarks/agreement.py [RESTITUTION_FACTOR ...]
 
-Frictions go in ten equal ratios from 0.7 times the band's lower end to 1.4 times its upper; two seeds, every
-kick and run of the study.
+Frictions go in 14 equal ratios from 0.7 times the band's lower end to 1.4 times its upper, so that they stand
+densest where verdicts change; every kick and run of the study, its whole evidence, two seeds of which neither
+placed the band.
 """
 
 from __future__ import annotations
@@ -12,34 +13,59 @@ import sys
 from collections import Counter
 from dataclasses import replace
 
-from separatrix.cage import Verdict, judge, run_ensemble
+from separatrix.cage import PlanarCage, Verdict, judge, run_ensemble, wilson_interval
 from separatrix.chain import cage_state
-from separatrix.stability import cage_at, critical_friction
+from separatrix.stability import SEARCHED_FRICTION, cage_at, critical_friction
+from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
-SEEDS = (1, 2)
-FACTORS = (0.1, 0.3, 0.5, 0.7, 0.9)
-STEPS = 10
+SEEDS = (101, 102)
+FACTORS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9)
+STEPS = 14
 
-study = read_study("cryogenic-turbopump")
-cage = cage_state(study).cage
-pairs: Counter[tuple[str, str]] = Counter()
-for eta in [float(text) for text in sys.argv[1:]] or FACTORS:
-    point = critical_friction(cage, eta, study.stability)
-    low, high = 0.7 * (point.critical_friction_low or 0.01), 1.4 * (point.critical_friction_high or 1.0)
-    for step in range(STEPS):
-        rubbing = cage_at(cage, eta, low * (high / low) ** (step / (STEPS - 1)))
-        verdicts = (
-            judge(
-                rubbing, run_ensemble(rubbing, replace(study.stability, seed=seed), growth_only=True, jobs=2)
-            )
-            for seed in SEEDS
-        )
-        pairs[tuple(found.verdict.name for found in verdicts)] += 1  # type: ignore[index]
+Pairs = Counter[tuple[Verdict, ...]]
 
-undecided = Verdict.UNDECIDED.name
-both = {pair: count for pair, count in pairs.items() if undecided not in pair}
-one = sum(count for pair, count in pairs.items() if pair.count(undecided) == 1)
-same = sum(count for (a, b), count in both.items() if a == b)
-print(f"points {sum(pairs.values())}: {dict(pairs)}")
-print(f"both decided {sum(both.values())}, the same verdict {same}; one of two undecided {one}")
+
+def pairs_at(cage: PlanarCage, settings: StabilitySettings, eta: float) -> Pairs:
+    """Verdicts of both seeds at each friction."""
+    point = critical_friction(cage, eta, settings)
+    low = 0.7 * (point.critical_friction_low or 0.01)
+    high = 1.4 * (point.critical_friction_high or SEARCHED_FRICTION)
+    frictions = [low * (high / low) ** (step / (STEPS - 1)) for step in range(STEPS)]
+    return Counter(verdicts(cage_at(cage, eta, f), settings) for f in frictions)
+
+
+def verdicts(cage: PlanarCage, settings: StabilitySettings) -> tuple[Verdict, ...]:
+    """Verdict of each seed."""
+    return tuple(judge(cage, run_ensemble(cage, replace(settings, seed=s), jobs=2)).verdict for s in SEEDS)
+
+
+def report(pairs: Pairs) -> str:
+    """Counts, and the share of agreement where both decide."""
+    both = {pair: n for pair, n in pairs.items() if Verdict.UNDECIDED not in pair}
+    decided, same = sum(both.values()), sum(n for (a, b), n in both.items() if a is b)
+    low, high = wilson_interval(same, decided) if decided else (0.0, 1.0)
+    one = sum(n for pair, n in pairs.items() if pair.count(Verdict.UNDECIDED) == 1)
+    alike = sum(n for (a, b), n in pairs.items() if a is b)
+    return (
+        f"{sum(pairs.values())} points; both decided {decided}, of them the same {same} "
+        f"({100 * low:.1f} to {100 * high:.1f} %); only one undecided {one}; "
+        f"the same of three verdicts {alike}"
+    )
+
+
+def main() -> None:
+    """Count over all restitution factors."""
+    study = read_study("cryogenic-turbopump")
+    cage, total = cage_state(study).cage, Counter[tuple[Verdict, ...]]()
+    for eta in [float(text) for text in sys.argv[1:]] or FACTORS:
+        found = pairs_at(cage, study.stability, eta)
+        total += found
+        print(f"eta {eta:g}: {report(found)}", flush=True)
+    print(report(total))
+    for pair, n in sorted(total.items(), key=lambda item: -item[1]):
+        print(f"  {' and '.join(verdict.name for verdict in pair)}: {n}")
+
+
+if __name__ == "__main__":
+    main()

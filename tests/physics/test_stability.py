@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import pytest
 
-from separatrix.cage import PlanarCage, growth_probability, judge, run_ensemble, wilson_interval
+from separatrix.cage import PlanarCage, drift_law, growth_probability, judge, run_ensemble, wilson_interval
+from separatrix.report.stability import drift_note
 from separatrix.stability import (
     GrowthCounter,
     cage_at,
@@ -241,3 +242,18 @@ def test_a_verdict_is_interrupted_between_its_parts():
     stop.set()
     with pytest.raises(Stopped):
         whole_ensemble(CAGE, SETTINGS, stop)
+
+
+def test_the_curve_of_a_landless_cage_says_that_it_drifts():
+    """Turning without a land: the rate of the linear law, and no word of stable; silent where it is held."""
+    landless = replace(CAGE, cage_speed=400.0)
+    law = drift_law(landless)
+    found = curve_of_points(landless, SETTINGS, [])
+    assert found.drifts
+    assert found.drift_rate_law == law
+    text = " ".join(drift_note({"drifts": found.drifts, "drift_rate_law": law}).split())
+    assert f"drifts at any friction, by the linear law at {law:.3f} 1/s" in text
+    assert "no verdict there is STABLE" in text
+    held = curve_of_points(replace(landless, cage_speed=0.0), SETTINGS, [])
+    assert not held.drifts
+    assert drift_note({"drifts": held.drifts, "drift_rate_law": held.drift_rate_law}) == ""

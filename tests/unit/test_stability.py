@@ -343,6 +343,7 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
         "hard_limit": [limit],
         "here": here,
         "kicks": [0.1, 2],
+        "drifts": False,
     }
     text = "\n".join(curve(document))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())

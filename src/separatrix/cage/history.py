@@ -42,8 +42,8 @@ class History:
         Work done on the cage since the start by each of `SOURCES`, shape (time,) [J].
     outcome : RunOutcome
         How the run ended; the same as in an ensemble with this kick, seed and run.
-    energy_growth : float
-        As in the ensemble [-].
+    energy_growth, drift_rate : float
+        As in the ensemble [-] and [1/s].
     """
 
     time: Array
@@ -62,6 +62,7 @@ class History:
     half_play: Array
     outcome: RunOutcome
     energy_growth: Ratio
+    drift_rate: float
 
 
 def simulate(
@@ -192,4 +193,5 @@ def _history(cage: PlanarCage, rows: Array, evidence: Array, play: Array, angles
         half_play=play,
         outcome=RunOutcome(int(evidence[slots.OUTCOME])),
         energy_growth=float(evidence[slots.GROWTH]),
+        drift_rate=float(evidence[slots.DRIFT_RATE]),
     )

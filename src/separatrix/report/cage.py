@@ -151,6 +151,7 @@ def orbit_facts(document: Document) -> list[tuple[str, str]]:
         ("Largest offset", quantity(document["largest_offset"], "m")),
         ("Mean offset at the end", f"{quantity(mean, 'm')}, over the last fifth"),
         ("Its spread", evenness),
+        ("Drift rate", drift_text(document)),
     ]
 
 

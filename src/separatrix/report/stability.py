@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from separatrix.report.tables import ABSENT, facts, number, paragraph, section, table
+from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]
 
@@ -18,7 +18,7 @@ HEADERS = (
     "hard\nlimit",
 )
 LEGEND = "\n" + paragraph(
-    "critical friction: half the runs grow from the middle kick; stable below, unstable above. band: nine in "
+    "critical friction: half the runs grow from the middle kick; fewer below, more above. band: nine in "
     "ten runs die from every kick below its low end, and grow from every kick above its high end. linear "
     "limit: no clearance. hard limit: walls as pockets, evenly spaced. Both for balls at rest."
 )
@@ -28,8 +28,24 @@ def curve(document: Document) -> list[str]:
     """Points of the curve with band and limits, and the band at this bearing's own restitution factor."""
     limits = [_by_eta(document[key]) for key in ("linear_limit", "hard_limit")]
     rows = [_row(point, limits) for point in document["curve"]]
-    blocks = [section("Stability curve", table(HEADERS, rows), LEGEND)]
+    blocks = [section("Stability curve", table(HEADERS, rows), LEGEND + drift_note(document))]
     return blocks + ([_here(document)] if document["here"] else [])
+
+
+def drift_note(document: Document) -> str:
+    """Say that a cage which nothing holds is stable nowhere, and how fast it drifts; empty if it is held."""
+    if not document["drifts"]:
+        return ""
+    rate = document["drift_rate_law"]
+    pace = (
+        f", by the linear law at {number(rate)} 1/s (e-fold every {quantity(1.0 / rate, 's')})"
+        if rate
+        else ""
+    )
+    return "\n\n" + paragraph(
+        f"This cage has no land and drifts at any friction{pace}. Below the curve a kick dies, but no "
+        "verdict there is STABLE."
+    )
 
 
 def _by_eta(limits: Any) -> dict[float, float | None]:

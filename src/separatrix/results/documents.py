@@ -134,6 +134,8 @@ def cage(state: Any) -> Document:
 
 def simulation(record: Any) -> Document:
     """Return the course of one run, how it ended, and the cage."""
+    from separatrix.cage.drive import drift_rate_law
+
     history = record.history
     return (
         {
@@ -142,6 +144,7 @@ def simulation(record: Any) -> Document:
             "outcome_sentence": outcome_sentence(history.outcome),
             "largest_offset": plain(np.hypot(*history.position.T).max()),
             "largest_contact_force": plain(np.abs(history.contact_force).max()),
+            "drift_rate_law": plain(drift_rate_law(record.cage.cage)),
         }
         | plain_record(history, "history")
         | cage(record.cage)

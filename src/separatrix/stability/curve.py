@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage
+from separatrix.cage.drive import drift_rate_law, drifts
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
@@ -45,6 +46,11 @@ class StabilityCurve:
         The ensemble.
     searched_friction : float
         The friction up to which was looked [-].
+    drifts : bool
+        Whether nothing holds the cage centre: below the curve a kick dies, but no verdict there is STABLE.
+    drift_rate_law : float
+        Rate of that drift by the linear law, at any friction, with the cage's own race damping; 0 with a land
+        or a ball set at rest [1/s].
     adaptive : bool
         Whether the restitution factors were chosen here.
     complete : bool
@@ -64,6 +70,8 @@ class StabilityCurve:
     duration: Second
     ball_scatter: Ratio
     searched_friction: Ratio
+    drifts: bool
+    drift_rate_law: float
     adaptive: bool
     complete: bool
 
@@ -238,6 +246,8 @@ def curve_of_points(
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
         searched_friction=SEARCHED_FRICTION,
+        drifts=drifts(cage),
+        drift_rate_law=drift_rate_law(cage),
         adaptive=not settings.restitution_factors,
         complete=complete,
     )

@@ -1,0 +1,284 @@
+"""Critical friction against chi, kick over clearance: from hard impacts to the linear limit, in one figure.
+
+    python benchmarks/chi_law.py --out FILE.png --csv FILE.csv [--runs 128]
+
+chi = v0 sqrt(M/k)/c_p is how far a kick presses a pocket in, over the clearance. The cage: 11 balls, 50 g,
+3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the kick changes; a change of
+the clearance would give the same, since nothing else has a length. A run lasts 0.3 s, or 250 crossings of the
+clearance if that is longer.
+
+Points already in the CSV are not computed again, so a complete one is only drawn; Ctrl-C keeps what is
+finished and draws it. In the CSV chi = 0 stands for hard impacts (walls instead of springs, with the same
+starts) and chi = inf for the linear limit in closed form.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from separatrix.cage import PlanarCage, RunOutcome, run_hard_ensemble
+from separatrix.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    PAGE,
+    PURPLE,
+    VERMILION,
+    canvas,
+    journal,
+    save,
+    settled,
+)
+from separatrix.stability import (
+    Count,
+    Crossing,
+    GrowthCounter,
+    Response,
+    cage_at,
+    critical_friction,
+    linear_limit,
+)
+from separatrix.study import StabilitySettings
+from separatrix.units import Array
+
+MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
+CAGE = PlanarCage(
+    mass=MASS, moment_of_inertia=MASS * RADIUS**2, ball_count=11, pitch_radius=RADIUS, cage_speed=0.0,
+    inner_speed=1000.0, outer_speed=0.0, pocket_clearance=2 * HALF_PLAY, ball_cage_stiffness=STIFFNESS,
+    race_damping=2000.0, ball_cage_friction=0.1,
+)  # fmt: skip
+KICK, DURATION, CROSSINGS = 0.5, 0.3, 250
+FACTORS = (0.9, 0.8, 0.6, 0.3)
+CHI_MIDDLE = KICK * math.sqrt(MASS / STIFFNESS) / HALF_PLAY
+CHIS = tuple(CHI_MIDDLE * 10 ** (step / 4) for step in range(-7, 12))
+CHECKED = {0.9: 0.078, 0.8: 0.115, 0.6: 0.165}
+"""Critical friction at the middle chi by other programs with fixed steps, 100 runs, 10 % each."""
+
+JUMP, SHARP, AGAIN = 10 ** (1 / 24), 1.02, 32
+"""Where all runs change over within a step of the ladder, it is halved, 32 runs a time, down to 2 %."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A row of the CSV: critical friction with its 95 % interval."""
+
+    restitution_factor: float
+    chi: float
+    kick_m_s: float
+    duration_s: float
+    runs: int
+    critical_friction: float
+    low: float
+    high: float
+
+
+def settings_at(chi: float, runs: int) -> StabilitySettings:
+    """Ensemble of one kick; hard impacts know no spring, and take the middle kick."""
+    kick = KICK * chi / CHI_MIDDLE if chi > 0.0 else KICK
+    return StabilitySettings(
+        kicks=(kick,), runs=runs, duration=max(DURATION, CROSSINGS * 2 * HALF_PLAY / kick)
+    )
+
+
+def computed(eta: float, chi: float, runs: int) -> Point:
+    """Point of a curve, or of one of its limits."""
+    if math.isinf(chi):
+        f = linear_limit(CAGE, eta).critical_friction
+        return Point(eta, chi, chi, 0.0, 0, f, f, f)
+    settings = settings_at(chi, runs)
+    found = hard_impacts(eta, settings) if chi == 0.0 else pressed_pockets(eta, settings)
+    return Point(eta, chi, settings.kicks[0] if chi else 0.0, settings.duration, runs,
+                 found.value, found.low, found.high)  # fmt: skip
+
+
+def pressed_pockets(eta: float, settings: StabilitySettings) -> Crossing:
+    """Critical friction of the planar engine."""
+    counter = GrowthCounter(CAGE, settings)
+    at = critical_friction(CAGE, eta, settings, counter=counter, band=False)
+    if at.critical_friction is None or at.scatter_low is None or at.scatter_high is None:
+        raise SystemExit(f"eta {eta:g}, kick {settings.kicks[0]:g} m/s: {at.reason}")
+    found = Crossing(at.critical_friction, at.scatter_low, at.scatter_high)
+    if not math.isclose(found.high / found.low, JUMP, rel_tol=1e-9):
+        return found
+
+    return sharpened(
+        found, lambda f: counter.count(eta, f, settings.kicks[0], first_run=0, runs=AGAIN).interval()
+    )
+
+
+def sharpened(found: Crossing, interval: Callable[[float], tuple[float, float]]) -> Crossing:
+    """Narrower bracket of a jump: at its ends one half is outside the 95 % interval of P(grow)."""
+    low, high = found.low, found.high
+    while high / low > SHARP:
+        middle = math.sqrt(low * high)
+        least, most = interval(middle)
+        if least <= 0.5 <= most:
+            return Crossing(middle, low, high)
+        low, high = (middle, high) if most < 0.5 else (low, middle)
+    return Crossing(math.sqrt(low * high), low, high)
+
+
+def hard_impacts(eta: float, settings: StabilitySettings) -> Crossing:
+    """The same ball leads and free ring, with walls: each blow returns what spring and damper would."""
+
+    def look(friction: float, first_run: int, runs: int) -> Count:
+        numbered = replace(settings, seed=settings.seed + first_run)
+        ensemble = run_hard_ensemble(cage_at(CAGE, eta, friction), numbered, runs=runs)
+        return Count(int(ensemble.count(RunOutcome.GROWS)[0]), runs)
+
+    found = Response(look, settings.runs).crossing(0.5, round(1.5 * settings.runs), 0.15)
+    if not isinstance(found, Crossing):
+        raise SystemExit(f"eta {eta:g}: hard impacts have no critical friction, P(grow) lies {found.value}")
+    return found
+
+
+def read(path: Path) -> list[Point]:
+    """Points of an earlier call; none if there is no file."""
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        return [Point(**{k: int(v) if k == "runs" else float(v) for k, v in row.items()})
+                for row in csv.DictReader(file)]  # fmt: skip
+
+
+def write(path: Path, points: list[Point]) -> None:
+    """Write beside and rename, so that an interrupt leaves whole rows."""
+    beside = path.with_name(path.name + ".part")
+    with beside.open("w", newline="") as file:
+        rows = csv.DictWriter(file, list(Point.__dataclass_fields__), lineterminator="\n")
+        rows.writeheader()
+        for point in sorted(points, key=lambda p: (-p.restitution_factor, p.chi)):
+            rows.writerow({k: v if k == "runs" else f"{v:.6g}" for k, v in asdict(point).items()})
+    beside.replace(path)
+
+
+def wanted() -> Iterator[tuple[float, float]]:
+    """Restitution factor and chi of every point, limits first."""
+    for chi in (math.inf, 0.0, *CHIS):
+        for eta in FACTORS:
+            yield eta, chi
+
+
+def collect(path: Path, runs: int) -> list[Point]:
+    """Compute what the CSV lacks, one row at a time, until done or interrupted."""
+    points = read(path)
+    known = {(p.restitution_factor, f"{p.chi:.6g}") for p in points}
+    missing = [at for at in wanted() if (at[0], f"{at[1]:.6g}") not in known]
+    began = time.perf_counter()
+    try:
+        for i, (eta, chi) in enumerate(missing, 1):
+            points.append(computed(eta, chi, runs))
+            write(path, points)
+            p, spent = points[-1], time.perf_counter() - began
+            print(f"{i}/{len(missing)} {spent:.0f} s: eta {eta:g}, chi {chi:.3g}: "
+                  f"{p.critical_friction:.4f} ({p.low:.4f} to {p.high:.4f})", file=sys.stderr)  # fmt: skip
+    except KeyboardInterrupt:
+        print(f"interrupted: {len(points)} points are kept in {path}", file=sys.stderr)
+    return points
+
+
+COLOURS = dict(zip(FACTORS, (BLUE, GREEN, VERMILION, PURPLE), strict=True))
+MARKS = dict(zip(FACTORS, ("o", "s", "^", "D"), strict=True))
+
+
+def draw(points: list[Point], path: Path) -> None:
+    """One figure: points with intervals, lines of the limits."""
+    with journal():
+        figure, axes = canvas(PAGE, 4.4)
+        axes.set(xscale="log", yscale="log", xlim=(2.4e-3, 420.0), ylim=(0.018, 0.5))
+        for eta in FACTORS:
+            curve(axes, eta, {p.chi: p for p in points if p.restitution_factor == eta})
+        for eta, friction in CHECKED.items():
+            axes.plot(CHI_MIDDLE, friction, marker="x", ms=6, mew=1.2, color=COLOURS[eta], ls="")
+        finish(axes)
+        legend(figure)
+        save(settled(figure), path)
+
+
+def curve(axes: Axes, eta: float, points: dict[float, Point]) -> None:
+    """Points of one restitution factor, with its limits where they belong."""
+    colour, dots = COLOURS[eta], [p for chi, p in points.items() if 0.0 < chi < math.inf]
+    heights = np.array([p.critical_friction for p in dots])
+    ends = np.abs(np.array([[p.low for p in dots], [p.high for p in dots]]) - heights)
+    look = {"color": colour, "marker": MARKS[eta], "ms": 3.5, "lw": 0.0, "elinewidth": 0.9, "capsize": 1.8}
+    axes.errorbar([p.chi for p in dots], heights, yerr=ends, **look)
+    if 0.0 in points:
+        hard = points[0.0]
+        axes.fill_between([2.4e-3, 0.03], hard.low, hard.high, color=colour, alpha=0.2, lw=0)
+        axes.plot([2.4e-3, 0.03], [hard.critical_friction] * 2, color=colour, lw=1.0, ls="-.")
+    if math.inf in points:
+        linear = points[math.inf].critical_friction
+        axes.plot([0.3, 420.0], [linear] * 2, color=colour, lw=1.0, ls="--")
+        chi = np.geomspace(2.5, 420.0, 200)
+        axes.plot(chi, linear * softening(chi), color=colour, lw=0.9)
+        text = rf"$\eta$ = {eta:g}"
+        axes.annotate(text, (420.0, linear), (4, 0), textcoords="offset points", color=colour, va="center")
+
+
+def softening(chi: Array) -> Array:
+    """Share of the linear limit at which a steady whirl has the kick's energy, by harmonic balance.
+
+    A pocket that is free for half play c_p and moves by A has the mean stiffness k s(c_p/A), and the law of
+    the linear limit goes with its root; the energy of the kick is that of a whirl of radius A.
+    """
+    share = np.ones_like(chi)
+    for _ in range(200):
+        d = math.sqrt(CAGE.ball_count / 2) * np.sqrt(share) / chi
+        share = 0.5 * share + 0.5 * (1.0 - 2.0 / np.pi * (np.arcsin(d) + d * np.sqrt(1.0 - d * d)))
+    return np.sqrt(share)
+
+
+def finish(axes: Axes) -> None:
+    """Axes and their labels; the kick of the cage at hand along the top."""
+    axes.set(
+        xlabel=r"kick over clearance $\chi = v_0\,\sqrt{M/k}\,/\,c_p$ [-]",
+        ylabel=r"friction at which half the runs grow, $f_{BC}$ [-]",
+    )
+    axes.set_yticks([0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5])
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter("")
+    axes.xaxis.set_major_formatter("{x:g}")
+    per_chi = KICK / CHI_MIDDLE
+    top = axes.secondary_xaxis("top", functions=(lambda chi: chi * per_chi, lambda kick: kick / per_chi))
+    top.set_xlabel(r"kick at $c_p$ = 0.3 mm, 50 g, 3 MN/m [m/s]")
+    top.xaxis.set_major_formatter("{x:g}")
+
+
+def legend(figure: Figure) -> None:
+    """What the marks and lines are, below the picture."""
+    look = {"color": GREY, "lw": 1.0}
+    bar = Line2D([], [], marker="o", ms=3.5, color=GREY, lw=0.0)
+    handles = {
+        "planar engine, with 95 % interval (colours: restitution factor)": bar,
+        "other programs with fixed steps, 100 runs": Line2D([], [], marker="x", ms=6, color=GREY, lw=0.0),
+        "hard impacts: walls, same starts, with 95 % interval": Line2D([], [], ls="-.", **look),
+        "linear limit: no clearance": Line2D([], [], ls="--", **look),
+        "linear law softened by the clearance (harmonic balance)": Line2D([], [], ls="-", **look),
+    }
+    figure.legend(list(handles.values()), list(handles), loc="outside lower left", ncols=2, fontsize=6.5)
+
+
+def main() -> None:
+    """Compute what is missing, then draw."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, required=True, help="picture")
+    parser.add_argument("--csv", type=Path, required=True, help="its points, read and completed")
+    parser.add_argument("--runs", type=int, default=128, help="scale of the runs at a point")
+    asked = parser.parse_args()
+    draw(collect(asked.csv, asked.runs), asked.out)
+
+
+if __name__ == "__main__":
+    main()
