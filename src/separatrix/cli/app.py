@@ -36,12 +36,16 @@ MOST_JOBS = 1024
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
 KICK_HELP = 'For instance "0.5 m/s" [default: the middle kick of the study].'
-ADAPTIVE_HELP = "Run only points near a change of the answer; the others are marked as not run."
+ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, and check some of them."
 EPILOGS = {
     "map": "An axis is a numeric key of the study file with its section, or restitution_factor, "
     "ball_cage_friction, kick: --x cage.pocket_clearance=0.1..1mm --y film.race_friction=0.02..0.3:40:log. "
     "Finished points are kept in the folder of the answer: after Ctrl-C the same call goes on from them. "
-    "With --json and no --out nothing is kept."
+    "With --json and no --out nothing is kept.",
+    "simulate": "A run that ends early says why: decided, or STALLED (too many impacts in no time). "
+    "--animate mp4 needs the extra animation.",
+    "stability": "Beside the curve: its sub-critical band, each kick's own curve, the linear and the "
+    "hard-impact limit, and the critical friction at the bearing's own restitution factor.",
 }
 
 HELP = """Will the cage of this dry-lubricated ball bearing run stably, and which cage material is best?
