@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from separatrix import results
+from separatrix import figures, results
 from separatrix.cli import main
+from separatrix.figures.animation import animate
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -119,6 +120,8 @@ def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch)
     assert not [name for name in names if name.startswith(".")]
     with Image.open("moving/simulation.gif") as film:
         assert film.n_frames > 1
+    animate(results.load("moving/simulate.nc"), Path("again.gif"))  # from what was saved, to the byte
+    assert Path("again.gif").read_bytes() == Path("moving/simulation.gif").read_bytes()
 
 
 def test_two_runs_are_compared(folder, capsys):
@@ -139,6 +142,9 @@ def test_two_runs_are_compared(folder, capsys):
     names = {path.name for path in Path("both").iterdir()}
     assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
     assert Path("both/compare.txt").read_text(encoding="ascii") == text
+    saved = [results.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
+    figures.save(figures.compared(*saved, ("A small run", "A heavy cage")), Path("again.svg"))
+    assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
 
 
 def test_a_comparison_as_a_document_writes_nothing(folder, capsys):

@@ -54,13 +54,13 @@ def test_whirl_spectrum_tells_forward_from_backward(turns):
 
 
 def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
-    """A velocity that turns at 100 t Hz is strongest near 100 t Hz in each piece of the run."""
+    """A velocity that turns at 1000 t Hz is strongest near 1000 t Hz in each piece of the run."""
     time = np.linspace(0, 1, 4001)
-    phase = np.pi * 100.0 * time**2
+    phase = np.pi * 1000.0 * time**2
     found = spectrum_against_time(time, np.column_stack([np.cos(phase), np.sin(phase)]))
     middles, frequency, share = found
     strongest = frequency[share.argmax(axis=1)]
-    assert strongest == pytest.approx(100.0 * middles, abs=frequency[1] - frequency[0])  # one bin
+    assert strongest == pytest.approx(1000.0 * middles, abs=frequency[1] - frequency[0])  # one bin
     assert middles[0] < 0.1
     assert middles[-1] > 0.9
 
