@@ -70,6 +70,9 @@ def test_a_point_is_the_ensemble_of_its_cage(study):
         alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, growth_only=True)
         assert point.grown == int(alone.count(RunOutcome.GROWS)[0])
         assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
+        evidence = judge(there, alone)
+        for name in ("largest_offset", "drift_rate", "largest_contact_force"):
+            assert getattr(point, name) == getattr(evidence, name)
         whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12, growth_only=True)
         assert point.runs == 6 or point.decision is judge(there, whole).verdict
 

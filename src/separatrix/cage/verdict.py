@@ -118,8 +118,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     unstable one.
     """
     grows = ensemble.outcome == RunOutcome.GROWS
-    drift_rate = float(np.median(ensemble.drift_rate[~grows])) if not grows.all() else 0.0
-    verdict, because = _decide(cage, ensemble, drift_rate)
+    verdict, because = decide(cage, ensemble)
     dies = int(ensemble.count(RunOutcome.DIES).sum())
     low, high = wilson_interval(dies, ensemble.outcome.size)
     whirling = grows if grows.any() else np.ones_like(grows)
@@ -139,7 +138,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         largest_offset=float(ensemble.largest_offset.max()),
         mean_offset=float(np.median(ensemble.mean_offset)),
         orbit_evenness=_evenness(ensemble),
-        drift_rate=drift_rate,
+        drift_rate=drift_rate(ensemble),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         largest_land_force=float(ensemble.largest_land_force.max()),
@@ -184,8 +183,14 @@ def _whirl_ratio(cage: PlanarCage, ensemble: Ensemble, whirling: Mask) -> Ratio 
     return float(np.median(ensemble.orbit_speed[whirling])) / abs(cage.cage_speed)  # runs are turned forward
 
 
-def _decide(cage: PlanarCage, ensemble: Ensemble, drift_rate: float) -> tuple[Verdict, str]:
-    """Verdict and the sentence that gives its reason."""
+def drift_rate(ensemble: Ensemble) -> float:
+    """Median growth rate of the mean offset over the runs that do not grow; 0 if all do [1/s]."""
+    held = ensemble.outcome != RunOutcome.GROWS
+    return float(np.median(ensemble.drift_rate[held])) if held.any() else 0.0
+
+
+def decide(cage: PlanarCage, ensemble: Ensemble) -> tuple[Verdict, str]:
+    """Verdict and the sentence that gives its reason: `judge` without the rest of the evidence."""
     runs = ensemble.outcome.shape[1]
     quiet = ensemble.kicks[~_touched(ensemble)]
     if quiet.size:
@@ -196,14 +201,14 @@ def _decide(cage: PlanarCage, ensemble: Ensemble, drift_rate: float) -> tuple[Ve
     gains = ensemble.count(RunOutcome.GROWS) - explained.sum(axis=1)
     if _mostly(gains, runs):
         return Verdict.UNSTABLE, reason.at_every_kick("The motion grows", gains, runs)
-    why = _not_stable(cage, ensemble, explained, drift_rate)
+    why = _not_stable(cage, ensemble, explained)
     dies = ensemble.count(RunOutcome.DIES)
     if why:
         return Verdict.UNDECIDED, why
     return Verdict.STABLE, reason.at_every_kick("The motion dies", dies, runs)
 
 
-def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask, drift_rate: float) -> str:
+def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask) -> str:
     """Return why a cage that does not grow at every kick is not stable either; empty if it is stable."""
     runs = ensemble.outcome.shape[1]
     dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
@@ -216,7 +221,7 @@ def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask, drift_rat
     if ensemble.count(RunOutcome.STALLED).any():
         return reason.stalled(ensemble)
     if drifts(cage) or not _clear(dies, runs):
-        return reason.drift(cage, ensemble, drift_rate)
+        return reason.drift(cage, ensemble, drift_rate(ensemble))
     return _odd_end(cage, ensemble)
 
 

@@ -10,8 +10,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, wilson_interval
+from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, run_ensemble, wilson_interval
 from separatrix.cage.orbit import driven
+from separatrix.cage.verdict import decide, drift_rate
 from separatrix.chain import (
     CageState,
     TractionState,
@@ -227,21 +228,24 @@ def joined(first: Ensemble, others: Ensemble) -> Ensemble:
 
 
 def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
-    found = judge(cage, ensemble)
+    decision, reason = decide(cage, ensemble)
     grown, runs = int(ensemble.count(RunOutcome.GROWS)[0]), ensemble.outcome.shape[1]
     low, high = wilson_interval(grown, runs)
     return MapPoint(
         x=x,
         y=y,
-        decision=found.verdict,
+        decision=decision,
         probability_grow=grown / runs,
         probability_low=low,
         probability_high=high,
         runs=runs,
         grown=grown,
         growth_rate=growth_rate(ensemble),
+        largest_offset=float(ensemble.largest_offset.max()),
+        drift_rate=drift_rate(ensemble),
+        largest_contact_force=float(ensemble.largest_contact_force.max()),
         restitution_factor=eta,
-        reason=found.reason,
+        reason=reason,
     )
 
 

@@ -9,7 +9,7 @@ from separatrix.cage import Verdict
 from separatrix.errors import InputError
 from separatrix.stability.map_rule import side
 from separatrix.study import Study
-from separatrix.units import MetrePerSecond, Ratio, Second
+from separatrix.units import Metre, MetrePerSecond, Newton, Ratio, Second
 
 NOT_RUN = "not run"
 
@@ -40,6 +40,10 @@ class MapPoint:
         Runs that were made, and those among them that grow.
     growth_rate : float or None
         Median over the runs [1/s].
+    largest_offset, largest_contact_force : float or None
+        Of the cage centre [m], and between a ball and its pocket [N], in any run as far as it was run.
+    drift_rate : float or None
+        Median over the runs that do not grow; 0 for one that was ended early [1/s].
     restitution_factor : float or None
         Eta of the chain at this point, or that of the axis [-].
     margin : float or None
@@ -61,6 +65,9 @@ class MapPoint:
     runs: int = 0
     grown: int = 0
     growth_rate: float | None = None
+    largest_offset: Metre | None = None
+    drift_rate: float | None = None
+    largest_contact_force: Newton | None = None
     restitution_factor: Ratio | None = None
     margin: float | None = None
     inferred_decision: Verdict | None = None
