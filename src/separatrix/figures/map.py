@@ -21,6 +21,9 @@ REFUSED, NOT_RUN = "#9a9a9a", "not run"
 SPACE = 1.5
 """Steps of an axis that are in proportion beyond this are taken as logarithmic."""
 
+HALF = 0.5 - 1e-6
+"""Level of the contour: no share equals it, which would make the contour cross itself."""
+
 COLOURS = ListedColormap(colormaps["cividis_r"](np.linspace(0.0, 0.92, 256)), "growth")
 """Even for the eye, for the colour-blind and in grey: light where motion dies, dark where it grows."""
 
@@ -183,7 +186,7 @@ def _half(axes: Axes, data: xr.Dataset) -> None:
         return
     values = [axis_values(data, name) for name in "xy"]
     for colour, width in (("white", 3.2), (VERMILION, 1.6)):
-        axes.contour(*values, share, levels=[0.5], colors=[colour], linewidths=[width])
+        axes.contour(*values, share, levels=[HALF], colors=[colour], linewidths=[width])
     axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs grow")
 
 
