@@ -79,10 +79,13 @@ def test_the_orbit_of_a_run_is_read_from_its_last_fifth():
         "time": [0.0, 0.5, 0.79, 0.8, 1.0],
         "position": [[1.0, 0.0], [1.0, 0.0], [1.0, 0.0], [3e-3, 0.0], [0.0, -5e-3]],
         "largest_offset": 1.0,
+        "drift_rate": 1.97,
+        "drift_rate_law": 2.04,
     }
     lines = dict(orbit_facts(run))
     assert lines["Mean offset at the end"] == "4 mm, over the last fifth"
     assert lines["Its spread"] == "0.25 of it (0: a circle about the axis)"
+    assert lines["Drift rate"] == "1.97 1/s; by the linear law 2.04 1/s"
 
 
 def test_the_offset_is_held_against_land_and_pockets():
