@@ -50,6 +50,7 @@ from separatrix.stability import (
     critical_friction,
     linear_limit,
 )
+from separatrix.stability.response import LADDER
 from separatrix.study import StabilitySettings
 from separatrix.units import Array
 
@@ -66,8 +67,9 @@ CHIS = tuple(CHI_MIDDLE * 10 ** (step / 4) for step in range(-7, 12))
 CHECKED = {0.9: 0.078, 0.8: 0.115, 0.6: 0.165}
 """Critical friction at the middle chi by other programs with fixed steps, 100 runs, 10 % each."""
 
-JUMP, SHARP, AGAIN = 10 ** (1 / 24), 1.02, 32
-"""Where all runs change over within a step of the ladder, it is halved, 32 runs a time, down to 2 %."""
+SHARP, AGAIN = 1.02, 16
+"""Where the fitted interval is narrower than a step of the ladder, P may rise more steeply than the fit
+allows for: the step is halved, 16 runs a time, down to 2 %."""
 
 
 @dataclass(frozen=True)
@@ -110,22 +112,33 @@ def pressed_pockets(eta: float, settings: StabilitySettings) -> Crossing:
     if at.critical_friction is None or at.scatter_low is None or at.scatter_high is None:
         raise SystemExit(f"eta {eta:g}, kick {settings.kicks[0]:g} m/s: {at.reason}")
     found = Crossing(at.critical_friction, at.scatter_low, at.scatter_high)
-    if not math.isclose(found.high / found.low, JUMP, rel_tol=1e-9):
+    low, high = step_around(found.value)
+    if found.high / found.low > 1.0001 * high / low:
         return found
-
     return sharpened(
-        found, lambda f: counter.count(eta, f, settings.kicks[0], first_run=0, runs=AGAIN).interval()
+        found,
+        low,
+        high,
+        lambda f: counter.count(eta, f, settings.kicks[0], first_run=0, runs=AGAIN).interval(),
     )
 
 
-def sharpened(found: Crossing, interval: Callable[[float], tuple[float, float]]) -> Crossing:
-    """Narrower bracket of a jump: at its ends one half is outside the 95 % interval of P(grow)."""
-    low, high = found.low, found.high
+def step_around(friction: float) -> tuple[float, float]:
+    """Neighbours on the ladder of frictions."""
+    above = next(i for i, f in enumerate(LADDER) if f > friction)
+    return LADDER[above - 1], LADDER[above]
+
+
+def sharpened(
+    found: Crossing, low: float, high: float, interval: Callable[[float], tuple[float, float]]
+) -> Crossing:
+    """Bracket of a jump: one half is outside the 95 % interval of P(grow) at its ends; else what was found."""
+    step = high / low
     while high / low > SHARP:
         middle = math.sqrt(low * high)
         least, most = interval(middle)
         if least <= 0.5 <= most:
-            return Crossing(middle, low, high)
+            return found if high / low == step else Crossing(middle, low, high)
         low, high = (middle, high) if most < 0.5 else (low, middle)
     return Crossing(math.sqrt(low * high), low, high)
 

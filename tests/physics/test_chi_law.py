@@ -1,0 +1,91 @@
+"""Kick over clearance, chi = v0 sqrt(M/k)/c_p, decides: impacts, a softened whirl, then the linear law.
+
+The whole curves are in docs/images/chi-law.csv (benchmarks/chi_law.py); the points here are of that cage.
+"""
+
+from dataclasses import replace
+from math import sqrt
+
+import pytest
+
+from separatrix.cage import (
+    PlanarCage,
+    growth_probability,
+    linear_critical_friction,
+    run_ensemble,
+    run_hard_ensemble,
+)
+from separatrix.stability import cage_at
+from separatrix.study import StabilitySettings
+
+RADIUS, MASS, STIFFNESS, HALF_PLAY = 0.03, 0.05, 3e6, 0.3e-3
+CAGE = PlanarCage(
+    mass=MASS, moment_of_inertia=MASS * RADIUS**2, ball_count=11, pitch_radius=RADIUS, cage_speed=0.0,
+    inner_speed=1000.0, outer_speed=0.0, pocket_clearance=2 * HALF_PLAY, ball_cage_stiffness=STIFFNESS,
+    race_damping=2000.0, ball_cage_friction=0.1,
+)  # fmt: skip
+CROSSINGS = 250
+
+
+def settings(chi, runs=64):
+    """Ensemble of one kick, as long as in the curves: 0.3 s, or 250 crossings of the clearance."""
+    kick = chi * HALF_PLAY / sqrt(MASS / STIFFNESS)
+    return StabilitySettings(kicks=(kick,), runs=runs, duration=max(0.3, CROSSINGS * 2 * HALF_PLAY / kick))
+
+
+def linear(eta):
+    """Critical friction without clearance."""
+    return linear_critical_friction(cage_at(CAGE, eta, 0.0))
+
+
+def share(eta, friction, chi, runs=64):
+    """P(grow)."""
+    return growth_probability(run_ensemble(cage_at(CAGE, eta, friction), settings(chi, runs)))[0]
+
+
+@pytest.mark.parametrize("chi", [0.0121, 0.215])
+def test_kick_and_clearance_count_by_their_ratio_only(chi):
+    """Twice the kick in twice the play is the same motion, twice as large: every bit of it."""
+    cage, ensemble = cage_at(CAGE, 0.8, 0.12), settings(chi, 16)
+    wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance)
+    small = run_ensemble(cage, ensemble)
+    large = run_ensemble(wide, ensemble, kicks=[2 * kick for kick in ensemble.kicks])
+    assert (small.outcome == large.outcome).all()
+    assert (small.energy_growth == large.energy_growth).all()
+
+
+@pytest.mark.parametrize("eta", [0.9, 0.8, 0.6, 0.3])
+def test_weak_kicks_meet_hard_impacts(eta):
+    """Springs and walls, the same starts, at chi of 0.004: P(grow) alike within 0.2.
+
+    That is 3 standard deviations of a difference of two shares of 128 runs.
+    """
+    friction = {0.9: 0.14, 0.8: 0.19, 0.6: 0.26, 0.3: 0.33}[eta]
+    cage, ensemble = cage_at(CAGE, eta, friction), settings(0.00383, 128)
+    hard = growth_probability(run_hard_ensemble(cage, ensemble))[0]
+    assert 0.2 < hard < 0.8
+    assert share(eta, friction, 0.00383, 128) == pytest.approx(hard, abs=0.2)
+
+
+@pytest.mark.parametrize("eta", [0.9, 0.8])
+def test_weak_kicks_need_two_to_six_times_the_friction_of_the_linear_law(eta):
+    """At chi of 0.012 less than a tenth of 64 runs grows at twice the linear limit, more than nine at six."""
+    assert share(eta, 2.0 * linear(eta), 0.0121) < 0.1
+    assert share(eta, 6.0 * linear(eta), 0.0121) > 0.9
+
+
+@pytest.mark.parametrize("eta", [0.6, 0.3])
+def test_a_whirl_of_a_few_times_the_play_needs_less_friction_than_the_linear_law(eta):
+    """At chi of 12 harmonic balance has 0.88 of the limit: all die below 0.82, all grow at 0.97.
+
+    The play takes a fifth of the pockets' stiffness, and the linear law goes with its root.
+    """
+    assert share(eta, 0.82 * linear(eta), 12.1, runs=4) == 0.0
+    assert share(eta, 0.97 * linear(eta), 12.1, runs=4) == 1.0
+
+
+@pytest.mark.parametrize("eta", [0.8, 0.3])
+def test_strong_kicks_meet_the_linear_law(eta):
+    """At chi of 121 harmonic balance is 1.2 % below the limit: all die at 0.94 of it, all grow at 1.05."""
+    assert share(eta, 0.94 * linear(eta), 121.0, runs=4) == 0.0
+    assert share(eta, 1.05 * linear(eta), 121.0, runs=4) == 1.0
