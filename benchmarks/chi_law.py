@@ -132,7 +132,7 @@ def step_around(friction: float) -> tuple[float, float]:
 def sharpened(
     found: Crossing, low: float, high: float, interval: Callable[[float], tuple[float, float]]
 ) -> Crossing:
-    """Bracket of a jump: one half is outside the 95 % interval of P(grow) at its ends; else what was found."""
+    """Bracket of a jump: one half is outside the 95 % interval of P(grow) at its ends; else the fit."""
     step = high / low
     while high / low > SHARP:
         middle = math.sqrt(low * high)
