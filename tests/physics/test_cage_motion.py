@@ -243,7 +243,8 @@ def test_a_history_is_the_run_of_the_ensemble(samples):
         assert history.outcome == whole.outcome[0, run]
         assert history.energy_growth == whole.energy_growth[0, run]
         assert len(history.time) <= samples
-        assert np.hypot(*history.position.T).max() <= whole.largest_offset[0, run] * (1 + 1e-12)
+        # 1e-4: the largest between two nodes of a step is read from parabolas; seen: 5e-5
+        assert np.hypot(*history.position.T).max() <= whole.largest_offset[0, run] * (1 + 1e-4)
 
 
 def test_a_history_is_consistent_with_itself():

@@ -59,6 +59,7 @@ def ensemble(
     }
     impacts = np.zeros((*outcome.shape, CAGE.ball_count), dtype=np.int64)
     given = {"kicks": np.array(kicks[: len(rows)]), "pocket_impacts": impacts, "duration": 0.3}
+    given["cut"] = np.zeros(outcome.shape, dtype=bool)
     return Ensemble(outcome=outcome, **{**spread, **given, **evidence})
 
 

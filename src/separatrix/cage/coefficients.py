@@ -46,7 +46,6 @@ class Coefficients(NamedTuple):
     lobes: int
     lobe_rows: int
     harmonics: int
-    drive: Array  # free speeds' cosines and sines, shape (2 harmonic, ball)
     ramp_time: float
     ramp_start: float
     needs_rotation: bool
@@ -55,8 +54,8 @@ class Coefficients(NamedTuple):
     fastest: float  # bound on the rate of the motion in contact
 
 
-def coefficients(cage: PlanarCage, angles: Array, kick: MetrePerSecond) -> Coefficients:
-    """Kernel's numbers of a cage whose pockets lie at these angles, shape (ball,) [rad]."""
+def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
+    """Kernel's numbers of a cage."""
     T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     tilt = cage.pocket_tilt[0]
@@ -77,7 +76,7 @@ def coefficients(cage: PlanarCage, angles: Array, kick: MetrePerSecond) -> Coeff
         onset=ONSET * (1.25 * M * kick**2 / K) ** 0.4 if K > 0.0 else 0.0,
         yielding=M / (cage.race_damping * T),
         friction=cage.friction_sense * cage.ball_cage_friction / tilt,
-        slowest=1e-3 * kick * T,
+        slowest=1e-2 * kick * T,
         gravity=cage.gravity * T * T,
         eccentricity=cage.unbalance / M,
         land_side=side,
@@ -90,7 +89,6 @@ def coefficients(cage: PlanarCage, angles: Array, kick: MetrePerSecond) -> Coeff
         lobes=cage.land_lobes,
         lobe_rows=BALLS + 2 * cage.ball_count,
         harmonics=harmonics,
-        drive=_drive(cage, angles) * T,
         ramp_time=cage.ramp_time / T,
         ramp_start=cage.ramp_start,
         needs_rotation=rotating,
@@ -100,13 +98,24 @@ def coefficients(cage: PlanarCage, angles: Array, kick: MetrePerSecond) -> Coeff
     )
 
 
-def _drive(cage: PlanarCage, angles: Array) -> Array:
-    """Free speed of each ball as it goes round, by harmonics: cosines and sines, shape (2 harmonic, ball)."""
+def as_record(p: Coefficients) -> np.void:
+    """The same as a record, which kernels hand on by its address instead of copying 30 numbers."""
+    kinds = {"float": np.float64, "int": np.int64, "bool": np.bool_}
+    fields = [(name, kinds[kind.__forward_arg__]) for name, kind in Coefficients.__annotations__.items()]
+    record: np.void = np.array([tuple(p)], dtype=fields)[0]
+    return record
+
+
+def free_speeds(cage: PlanarCage, angles: Array) -> Array:
+    """Free speed of each ball as it goes round, by harmonics: cosines and sines, shape (2 harmonic, ball).
+
+    In metres by the engine's unit of time.
+    """
     rows = []
     for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
         c, s = np.cos(h * angles), np.sin(h * angles)
         rows += [a * c + b * s, b * c - a * s]
-    return np.array(rows).reshape(len(rows), angles.size)
+    return np.array(rows).reshape(len(rows), angles.size) * time_unit(cage)
 
 
 def series_columns(cage: PlanarCage) -> int:

@@ -5,12 +5,19 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from separatrix.cage import slots
-from separatrix.cage.coefficients import coefficients, fastest_rate, series_columns, time_unit
+from separatrix.cage.coefficients import (
+    as_record,
+    coefficients,
+    fastest_rate,
+    free_speeds,
+    series_columns,
+    time_unit,
+)
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk, series_of
 from separatrix.errors import InputError
@@ -23,6 +30,8 @@ if TYPE_CHECKING:
 
     from separatrix.study import StabilitySettings
 
+Scalar = TypeVar("Scalar", bound=np.generic)
+
 CHUNK_RADIANS = 200_000.0
 """Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
 second of work."""
@@ -34,9 +43,10 @@ GROWN, DEAD = 100.0, 1e-4
 """A run ends early, as growing or dying, at these multiples of the energy scale; it changes no outcome."""
 
 GROWS_ON, DIES_OUT = 10.0, 1e-4
-"""A run also ends when its mean energy over a fifth, from the second on, is above, or (where only growth is
-asked for) below these multiples of the kick's. Of 1008 runs around the threshold they change no outcome; 1e-3
-changed one, which fell to 7e-4 and grew again."""
+"""A run also ends when its mean energy, fiftieth by fiftieth of its time, stays above the first multiple of
+the energy scale for two of them, or (where only growth is asked for) below the second of the kick's for five;
+or when five are alike within 1 % and above the kick's, or (again) below a tenth of it. Of 2248 runs of the
+shipped cage (three kicks, eta 0.1 to 0.95, friction 0.03 to 0.35) this changed no outcome."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +70,7 @@ class Ensemble:
         Mean and standard deviation of the offset over the last window [m].
     orbit_speed : ndarray
         Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
-        squared offset, over the last window [rad/s].
+        squared offset, over the last window; positive as the ball set turns [rad/s].
     drift_rate : ndarray
         Growth rate of the mean offset between the last two fifths; 0 if the run ended early [1/s].
     whirl_frequency, whirl_direction : ndarray
@@ -73,6 +83,8 @@ class Ensemble:
     energy_imbalance : ndarray
         What the ledger of sources and sinks leaves unexplained, over the work done [-]; 0 if only growth was
         asked for.
+    cut : ndarray
+        Whether a run was ended as soon as it was known to die: what is said of its end is said of that time.
     duration : float
         Length of a run that is not ended early [s].
     """
@@ -93,11 +105,22 @@ class Ensemble:
     pocket_impacts: NDArray[np.int64]
     land_impacts: NDArray[np.int64]
     energy_imbalance: Array
+    cut: NDArray[np.bool_]
     duration: Second
 
     def count(self, outcome: RunOutcome) -> NDArray[np.int64]:
         """Runs that ended so at each kick, shape (kick,)."""
         return np.asarray(np.count_nonzero(self.outcome == outcome, axis=1), dtype=np.int64)
+
+    def share(self, doing: NDArray[np.bool_]) -> Array:
+        """Share of the runs at each kick that end so, shape (kick,) [-].
+
+        Of runs that were cut nobody knows: they count as those that do not grow and were not cut.
+        """
+        grows, told = self.outcome == RunOutcome.GROWS, ~self.cut
+        held = told & ~grows
+        among = np.sum(doing & held, axis=1) / np.maximum(held.sum(axis=1), 1)
+        return np.asarray((doing & grows).mean(axis=1) + (~grows).mean(axis=1) * among)
 
 
 def run_ensemble(
@@ -133,6 +156,7 @@ def run_ensemble(
     InputError
         No kick or no run, or a run would need more steps than can be waited for.
     """
+    forward = cage.rotation_sense > 0
     cage = turned_forward(cage)
     speeds, runs = chosen(settings, kicks, runs)
     check_length(cage, settings.duration)
@@ -146,7 +170,9 @@ def run_ensemble(
 
     size = max(1, int(CHUNK_RADIANS / (settings.duration * fastest_rate(cage))))
     spread(work, len(speeds), runs, size, jobs)
-    return gathered(speeds, evidence, hits, settings.duration)
+    return gathered(
+        speeds, evidence, hits if forward else other_way_round(hits), settings.duration, may_cut=growth_only
+    )
 
 
 def run_rows(
@@ -165,12 +191,12 @@ def run_rows(
     The ledger of work is kept unless only growth is asked for; the motion is the same.
     """
     unit, balls = time_unit(cage), cage.ball_count
-    p = coefficients(cage, np.array(cage.ball_angles), kick)
+    p, drive = as_record(coefficients(cage, kick)), free_speeds(cage, np.array(cage.ball_angles))
     history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
     limits = run_limits(cage, kick, growth_only=growth_only)
     fifth = duration / FIFTHS / unit
     series = series_of(series_columns(cage))
-    run_chunk(p, starts, kick * unit, series, fifth, limits, cage.rotation_sense, history,
+    run_chunk(p, drive, starts, kick * unit, series, fifth, limits, cage.rotation_sense, history,
               not growth_only, evidence, hits)  # fmt: skip
     evidence[:, [slots.FORCE, slots.LAND_FORCE]] *= cage.mass
 
@@ -252,7 +278,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, *, growth_only: bool = Fa
         drift=2.0 * cage.half_play if landless and cage.half_play > 0 else math.inf,
         grows_above=GROWN * scale,
         dies_below=-1.0 if driven else DEAD * scale,
-        mean_grows_above=GROWS_ON * given,
+        mean_grows_above=GROWS_ON * scale,
         mean_dies_below=DIES_OUT * given if growth_only else -1.0,
     )
 
@@ -264,6 +290,11 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> Joule:
     """
     way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
     return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
+
+
+def other_way_round(by_ball: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Columns of balls counted the other way round, shape (..., ball); ball 0 stays."""
+    return np.roll(by_ball[..., ::-1], 1, axis=-1)
 
 
 def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int, jobs: int) -> None:
@@ -283,7 +314,9 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second) -> Ensemble:
+def gathered(
+    kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second, *, may_cut: bool
+) -> Ensemble:
     """Record of the evidence of all runs, shape (kick, run, evidence)."""
 
     def column(slot: int) -> Array:
@@ -306,5 +339,8 @@ def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: S
         pocket_impacts=hits,
         land_impacts=column(slots.LAND_IMPACTS).astype(np.int64),
         energy_imbalance=column(slots.IMBALANCE),
+        cut=may_cut
+        & (column(slots.OUTCOME) == RunOutcome.DIES)
+        & (column(slots.FOLLOWED) < (1.0 - 1e-9) * duration),
         duration=duration,
     )

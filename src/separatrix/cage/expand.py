@@ -19,11 +19,13 @@ from __future__ import annotations
 import numpy as np
 
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
-from separatrix.cage.series import ORDER, POWERS, product
+from separatrix.cage.series import POWERS, SPARE, product
 from separatrix.cage.slots import (
     BALLS,
     CLEAR,
     COS,
+    COSINE,
+    DRIVE,
     ES,
     EX,
     EY,
@@ -39,11 +41,15 @@ from separatrix.cage.slots import (
     GX,
     GY,
     KEPT,
+    LIST,
     NORMAL,
     NX,
     NY,
+    PENETRATION,
     RELEASED,
+    SIDE,
     SIN,
+    SINE,
     STICK,
     TANGENT,
     TORQUE,
@@ -54,50 +60,51 @@ from separatrix.cage.slots import (
     X,
     Y,
 )
-from separatrix.compiled import kernel
+from separatrix.compiled import inner_kernel
 
 AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
 """1 / (n + 1)."""
 
 
-@kernel
-def gather(drive, waves, cos, sin, q, active, count, sums):  # type: ignore[no-untyped-def]
+@inner_kernel
+def gather(pockets, touch, waves, count, sums):  # type: ignore[no-untyped-def]
     """Sums over the pockets in touch: of directions and their products, and of penetrations.
 
     With a radial load also, for each harmonic, of the free speeds' cosines and sines, times the same.
     """
-    sums[:] = 0.0
+    for k in range(8 + 3 * waves):
+        sums[k] = 0.0
     for i in range(count):
-        j = active[i]
-        c, s = cos[j], sin[j]
+        j = touch[LIST, i]
+        c, s = pockets[COSINE, j], pockets[SINE, j]
         sums[0] += c * c
         sums[1] += c * s
         sums[2] += s * s
         sums[3] += c
         sums[4] += s
-        sums[5] += q[j] * c
-        sums[6] += q[j] * s
-        sums[7] += q[j]
+        sums[5] += pockets[PENETRATION, j] * c
+        sums[6] += pockets[PENETRATION, j] * s
+        sums[7] += pockets[PENETRATION, j]
         for k in range(waves):
-            sums[8 + 3 * k] += drive[k, j] * c
-            sums[9 + 3 * k] += drive[k, j] * s
-            sums[10 + 3 * k] += drive[k, j]
+            sums[8 + 3 * k] += pockets[DRIVE + k, j] * c
+            sums[9 + 3 * k] += pockets[DRIVE + k, j] * s
+            sums[10 + 3 * k] += pockets[DRIVE + k, j]
 
 
-@kernel
-def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ignore[no-untyped-def]
+@inner_kernel
+def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-untyped-def]
     """Fill the series of the motion from the state in their first coefficients.
 
     Parameters
     ----------
     p : Coefficients
         The cage.
-    cos, sin, q : ndarray
-        Directions of the pockets [-] and penetrations of those in touch [m], shape (ball,).
+    pockets, touch : ndarray
+        Rows of numbers and of whole numbers by ball, as in `slots`.
     w : ndarray
         Series, shape (power, column).
-    side, active, count : ndarray, ndarray, int
-        Side on which each pocket touches its ball (1, -1; 0 not; 2 both), and the list of those that touch.
+    count : int
+        How many pockets touch their balls.
     land : int
         Mode of the land.
     now : tuple of float
@@ -105,6 +112,7 @@ def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ig
     sums : ndarray
         Room for `gather`.
     """
+    order = w.shape[0] - SPARE
     share, rise = now
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
@@ -114,7 +122,7 @@ def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ig
     ramped, heavy, pressed = rise != 0.0, p.gravity != 0.0, land != CLEAR and land != RELEASED
     gx, gy = (GX, GY) if leaning else (X, Y)
     if linear:
-        gather(p.drive, waves, cos, sin, q, active, count, sums)
+        gather(pockets, touch, waves, count, sums)
     cc, cs, ss, c, s, qc, qs, qq = sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7]
     x, y, vx, vy, vs = w[0, X], w[0, Y], w[0, VX], w[0, VY], w[0, W]
     ex = ey = es = 0.0
@@ -125,7 +133,7 @@ def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ig
         w[0, FELT + k] = w[0, GONE + k] = 0.0
     if pressed:
         land_geometry(p, w, gx, gy, 0)
-    for n in range(ORDER + 1):
+    for n in range(order + 1):
         after = AFTER[n]
         dx, dy, ds = vx * after, vy * after, vs * after
         w[n + 1, X], w[n + 1, Y], w[n + 1, S] = dx, dy, ds
@@ -163,7 +171,7 @@ def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ig
                     w[n + 1, FELT + k] -= rate * w[n - 1, FELT + k]
             w[n + 1, EX], w[n + 1, EY], w[n + 1, ES], w[n + 1, KEPT] = ex, ey, es, kept
         elif count > 0:
-            fx, fy, torque = hertz_forces(p, cos, sin, w, gx, gy, side, active, count, share, rise, n)
+            fx, fy, torque = hertz_forces(p, pockets, touch, w, gx, gy, count, share, rise, n)
         ax = 2.0 * turning * vy + second * x
         ay = -2.0 * turning * vx + second * y
         twist = 0.0
@@ -188,20 +196,20 @@ def expand(p, cos, sin, q, w, side, active, count, land, now, sums):  # type: ig
         w[n + 1, VX], w[n + 1, VY], w[n + 1, W] = vx, vy, vs
 
 
-@kernel
+@inner_kernel
 def place_centre(w, eccentricity, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the geometric centre, which the unbalance parts from the centre of mass."""
     w[n, GX] = w[n, X] - eccentricity * w[n, COS]
     w[n, GY] = w[n, Y] - eccentricity * w[n, SIN]
 
 
-@kernel
+@inner_kernel
 def centre_torque(w, eccentricity, radius, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the torque that forces at the geometric centre have about that of mass, over M R."""
     return -eccentricity * (product(w, COS, FY, n) - product(w, SIN, FX, n)) / radius
 
 
-@kernel
+@inner_kernel
 def spin_up_terms(w, turning, spin_up, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the accelerations that a frame has more when its turning grows."""
     ax, ay = spin_up * w[n, Y], -spin_up * w[n, X]
@@ -214,27 +222,32 @@ def spin_up_terms(w, turning, spin_up, n):  # type: ignore[no-untyped-def]
     return ax, ay
 
 
-@kernel
-def hertz_forces(p, cos, sin, w, gx, gy, side, active, count, share, rise, n):  # type: ignore[no-untyped-def]
+@inner_kernel
+def hertz_forces(p, pockets, touch, w, gx, gy, count, share, rise, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the forces of Hertz pockets in touch, and n + 1 of their penetrations."""
     sum_cos = sum_sin = total = 0.0
     for i in range(count):
-        j = active[i]
-        depth, force = BALLS + j, BALLS + cos.size + j
-        w[n, force] = hertz_power(p, w, depth, force, side[j], n)
+        j = touch[LIST, i]
+        depth, force = BALLS + j, BALLS + pockets.shape[1] + j
+        w[n, force] = hertz_power(p, w, depth, force, touch[SIDE, j], n)
         give = p.yielding * share * w[n, force]
         if n > 0:
             give += p.yielding * rise * w[n - 1, force]
-        w[n + 1, depth] = w[n + 1, gy] * cos[j] - w[n + 1, gx] * sin[j] + w[n + 1, S] - give * AFTER[n]
+        w[n + 1, depth] = (
+            w[n + 1, gy] * pockets[COSINE, j]
+            - w[n + 1, gx] * pockets[SINE, j]
+            + w[n + 1, S]
+            - give * AFTER[n]
+        )
         for k in range(2 * p.harmonics):
-            w[n + 1, depth] -= p.drive[k, j] * w[n + 1, GONE + k]
-        sum_cos += w[n, force] * cos[j]
-        sum_sin += w[n, force] * sin[j]
+            w[n + 1, depth] -= pockets[DRIVE + k, j] * w[n + 1, GONE + k]
+        sum_cos += w[n, force] * pockets[COSINE, j]
+        sum_sin += w[n, force] * pockets[SINE, j]
         total += w[n, force]
     return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
 
 
-@kernel
+@inner_kernel
 def hertz_power(p, w, depth, force, side, n):  # type: ignore[no-untyped-def]
     """Coefficient n of K |q|^1.5 with the sign of q."""
     start = w[0, depth]
@@ -247,7 +260,7 @@ def hertz_power(p, w, depth, force, side, n):  # type: ignore[no-untyped-def]
     return total / (n * start)
 
 
-@kernel
+@inner_kernel
 def rotate(w, radius, n):  # type: ignore[no-untyped-def]
     """Coefficient n, from 1, of the cosine and the sine of the rotation theta = S / R."""
     cosine = sine = 0.0
@@ -258,7 +271,7 @@ def rotate(w, radius, n):  # type: ignore[no-untyped-def]
     w[n, SIN] = sine / (n * radius)
 
 
-@kernel
+@inner_kernel
 def turn_frame(w, waves, turning, spin_up, n):  # type: ignore[no-untyped-def]
     """Coefficient n + 1 of the cosines and sines of the frame's turning and its multiples."""
     for k in range(0, waves, 2):
@@ -271,7 +284,7 @@ def turn_frame(w, waves, turning, spin_up, n):  # type: ignore[no-untyped-def]
         w[n + 1, c], w[n + 1, s] = cosine * scale, sine * scale
 
 
-@kernel
+@inner_kernel
 def drive_balls(w, waves, share, rise, n):  # type: ignore[no-untyped-def]
     """Coefficient n + 1 of the way that a ball goes by a free speed of the form of each harmonic."""
     for k in range(waves):
@@ -281,7 +294,7 @@ def drive_balls(w, waves, share, rise, n):  # type: ignore[no-untyped-def]
         w[n + 1, GONE + k] = speed * AFTER[n]
 
 
-@kernel
+@inner_kernel
 def press_land(p, w, gx, gy, mode, now, n):  # type: ignore[no-untyped-def]
     """Add coefficient n of the land's force to the forces; a sticking one keeps the sliding at zero."""
     push_land(p, w, n)
@@ -293,7 +306,7 @@ def press_land(p, w, gx, gy, mode, now, n):  # type: ignore[no-untyped-def]
     rub_land(p, w, n)
 
 
-@kernel
+@inner_kernel
 def holding_force(p, w, gx, gy, now, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the friction that keeps coefficient n + 1 of the sliding at zero.
 

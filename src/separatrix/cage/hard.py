@@ -276,7 +276,7 @@ def run_hard_ensemble(
 
     spread(work, speeds.size, runs, CHUNK_RUNS, jobs)
     hits = np.zeros((speeds.size, runs, cage.ball_count), dtype=np.int64)
-    return gathered(speeds, evidence, hits, settings.duration)
+    return gathered(speeds, evidence, hits, settings.duration, may_cut=False)
 
 
 def _walls(cage: PlanarCage, *, may_turn: bool) -> Walls:

@@ -8,7 +8,7 @@ import numpy as np
 
 from separatrix.cage import slots
 from separatrix.cage.coefficients import time_unit
-from separatrix.cage.ensemble import check_length, chosen, random_starts, run_rows
+from separatrix.cage.ensemble import check_length, chosen, other_way_round, random_starts, run_rows
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
@@ -119,16 +119,11 @@ def _mirrored(history: History) -> History:
         velocity=history.velocity * flip,
         rotation=-history.rotation,
         rotation_rate=-history.rotation_rate,
-        ball_lead=-_other_way_round(history.ball_lead),
-        contact_force=-_other_way_round(history.contact_force),
-        pocket_angle=-_other_way_round(history.pocket_angle),
-        half_play=_other_way_round(history.half_play),
+        ball_lead=-other_way_round(history.ball_lead),
+        contact_force=-other_way_round(history.contact_force),
+        pocket_angle=-other_way_round(history.pocket_angle),
+        half_play=other_way_round(history.half_play),
     )
-
-
-def _other_way_round(by_ball: Array) -> Array:
-    """Return columns of balls counted the other way round, shape (..., ball); ball 0 stays."""
-    return np.roll(by_ball[..., ::-1], 1, axis=-1)
 
 
 def follow(

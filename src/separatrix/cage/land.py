@@ -29,7 +29,7 @@ from separatrix.cage.slots import (
     TURN_SIN,
     W,
 )
-from separatrix.compiled import kernel
+from separatrix.compiled import inner_kernel
 
 if TYPE_CHECKING:
     from separatrix.units import Ratio
@@ -65,7 +65,7 @@ def rebound_damping(restitution: Ratio) -> Ratio:
     return float(brentq(lambda zeta: rebound(zeta) - target, 0.0, 100.0, xtol=1e-14))
 
 
-@kernel
+@inner_kernel
 def land_geometry(p, w, gx, gy, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the centre's distance, its direction and the depth in the land."""
     if n == 0:
@@ -89,7 +89,7 @@ def land_geometry(p, w, gx, gy, n):  # type: ignore[no-untyped-def]
         w[n, DEPTH] += p.roundness * w[n, LOBE_COS]
 
 
-@kernel
+@inner_kernel
 def lobes(p, w, n):  # type: ignore[no-untyped-def]
     """Coefficient n of cosine and sine of the lobes' angle, and of that sine over the distance."""
     w[n, TURN_COS] = product(w, NX, COS, n) + product(w, NY, SIN, n)
@@ -106,7 +106,7 @@ def lobes(p, w, n):  # type: ignore[no-untyped-def]
     w[n, TILT] = tilt / w[0, DISTANCE]
 
 
-@kernel
+@inner_kernel
 def push_land(p, w, n):  # type: ignore[no-untyped-def]
     """Add coefficient n of the land's normal force to that of the forces and of the torque over M R."""
     w[n, NORMAL] = p.land_stiffness * w[n, DEPTH] + p.land_damping * (n + 1) * w[n + 1, DEPTH]
@@ -116,7 +116,7 @@ def push_land(p, w, n):  # type: ignore[no-untyped-def]
         lean(p, w, n)
 
 
-@kernel
+@inner_kernel
 def lean(p, w, n):  # type: ignore[no-untyped-def]
     """Turn the normal force by the slope of the lobes: it is along the gradient of the depth."""
     a = p.roundness * p.lobes
@@ -126,7 +126,7 @@ def lean(p, w, n):  # type: ignore[no-untyped-def]
     w[n, TORQUE] -= a * product(w, NORMAL, LOBE_SIN, n) / p.radius
 
 
-@kernel
+@inner_kernel
 def rub_land(p, w, n):  # type: ignore[no-untyped-def]
     """Add coefficient n of the land's friction to that of the forces and of the torque over M R."""
     w[n, FX] -= product(w, TANGENT, NY, n)
@@ -134,7 +134,7 @@ def rub_land(p, w, n):  # type: ignore[no-untyped-def]
     w[n, TORQUE] += p.land_side * w[n, TANGENT]
 
 
-@kernel
+@inner_kernel
 def slide_speed(p, w, gx, gy, now, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the speed of the cage's surface on the ring's, from places up to n + 1."""
     speed = p.land_side * w[n, W]

@@ -19,7 +19,17 @@ from separatrix.cage.events import (
 from separatrix.cage.evidence import enter_step, enter_work, record
 from separatrix.cage.expand import expand
 from separatrix.cage.land import land_geometry, slide_speed
-from separatrix.cage.series import ORDER, ROUNDING, body_values, stretch, value
+from separatrix.cage.series import (
+    BRIEF_ORDER,
+    KNOT_ROWS,
+    ORDER,
+    ROUNDING,
+    SPARE,
+    grip_at,
+    motion_at,
+    stretch,
+    value,
+)
 from separatrix.cage.slots import (
     BACKWARD,
     BALLS,
@@ -27,10 +37,9 @@ from separatrix.cage.slots import (
     CLEAR,
     CLOCK,
     COS,
+    COSINE,
     DEPTH,
-    ES,
-    EX,
-    EY,
+    DRIVE,
     FELT,
     FORWARD,
     FRAME,
@@ -38,35 +47,44 @@ from separatrix.cage.slots import (
     GX,
     GY,
     HARMONICS,
-    KEPT,
     LAND_HITS,
+    LEAD,
+    LIST,
     NORMAL,
     NX,
+    PENETRATION,
+    PLAY,
     RELEASED,
+    SIDE,
     SIN,
+    SINE,
     SLIDING,
     STEPS,
     STICK,
     TANGENT,
     VX,
     VY,
+    WORKS,
     S,
     W,
     X,
     Y,
 )
-from separatrix.compiled import kernel
+from separatrix.compiled import inlined_kernel, inner_kernel, kernel
 
-PRECISION = 2.0**-53
+PRECISION = 2.0**-46
 LONGEST = 1e6
 HOLD = 1e-9
 """Share by which the friction asked of a sticking land may pass what it can hold, by rounding."""
+
+SOON = 0.4
+"""Time after which an event came that makes the next step a brief one."""
 
 MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
 """Steps in the time of a radian of the fastest motion: a run that asks for more stands still in time."""
 
 
-@kernel
+@inlined_kernel
 def speed_share(p, clock):  # type: ignore[no-untyped-def]
     """Share of the full speed at a time, and its rate."""
     if clock >= p.ramp_time:
@@ -75,7 +93,7 @@ def speed_share(p, clock):  # type: ignore[no-untyped-def]
     return p.ramp_start + rise * clock, rise
 
 
-@kernel
+@inner_kernel
 def frame_angle(p, clock):  # type: ignore[no-untyped-def]
     """Angle by which the frame has turned."""
     ramped = min(clock, p.ramp_time)
@@ -86,8 +104,8 @@ def frame_angle(p, clock):  # type: ignore[no-untyped-def]
     return angle
 
 
-@kernel
-def load_state(p, s, q, w, active, count):  # type: ignore[no-untyped-def]
+@inlined_kernel
+def load_state(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
     """First coefficients of the series from the state."""
     for i in range(6):
         w[0, i] = s[i]
@@ -104,24 +122,25 @@ def load_state(p, s, q, w, active, count):  # type: ignore[no-untyped-def]
             w[0, FRAME + 2 * h + 1] = np.sin((h + 1) * angle)
     if p.hertz != 0.0:
         for i in range(count):
-            w[0, BALLS + active[i]] = q[active[i]]
+            w[0, BALLS + touch[LIST, i]] = pockets[PENETRATION, touch[LIST, i]]
 
 
-@kernel
+@inlined_kernel
 def step_length(p, w):  # type: ignore[no-untyped-def]
     """Time for which the series gives the speeds to the last bit."""
+    order = w.shape[0] - SPARE
     scale = PRECISION * (abs(w[0, VX]) + abs(w[0, VY]) + abs(w[0, W]) + p.slowest)
-    last = max(abs(w[ORDER, VX]), abs(w[ORDER, VY]), abs(w[ORDER, W]))
-    before = max(abs(w[ORDER - 1, VX]), abs(w[ORDER - 1, VY]), abs(w[ORDER - 1, W]))
+    last = max(abs(w[order, VX]), abs(w[order, VY]), abs(w[order, W]))
+    before = max(abs(w[order - 1, VX]), abs(w[order - 1, VY]), abs(w[order - 1, W]))
     h = LONGEST
     if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / ORDER))
+        h = min(h, (scale / last) ** (1.0 / order))
     if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
+        h = min(h, (scale / before) ** (1.0 / (order - 1)))
     return h
 
 
-@kernel
+@inlined_kernel
 def rescale(p, w, balls, count, h, pressed):  # type: ignore[no-untyped-def]
     """Make the step the unit of time of all series that are looked at."""
     stretch(w, 0, BODY, h)
@@ -135,16 +154,16 @@ def rescale(p, w, balls, count, h, pressed):  # type: ignore[no-untyped-def]
         stretch(w, NX, SLIDING + 1, h)
 
 
-@kernel
-def settle_stick(p, cos, sin, q, w, side, active, count, now, sums):  # type: ignore[no-untyped-def]
+@inner_kernel
+def settle_stick(p, pockets, touch, w, count, now, sums):  # type: ignore[no-untyped-def]
     """Mode of a land on which nothing slides: it sticks if its friction can hold, else it starts to slide."""
-    expand(p, cos, sin, q, w, side, active, count, STICK, now, sums)
+    expand(p, pockets, touch, w, count, STICK, now, sums)
     if abs(w[0, TANGENT]) <= p.land_friction * w[0, NORMAL] * (1.0 + HOLD):
         return STICK
     return BACKWARD if w[0, TANGENT] > 0.0 else FORWARD
 
 
-@kernel
+@inner_kernel
 def first_sliding(p, w, now):  # type: ignore[no-untyped-def]
     """Speed at which the cage's surface slides on the ring's, from the first coefficients."""
     gx, gy, vx, vy = w[0, X], w[0, Y], w[0, VX], w[0, VY]
@@ -156,8 +175,8 @@ def first_sliding(p, w, now):  # type: ignore[no-untyped-def]
     return (gx * vy - gy * vx) / r + p.land_side * (w[0, W] - p.ring_slide * now[0])
 
 
-@kernel
-def land_after(p, cos, sin, q, w, side, active, count, now, kind, sums):  # type: ignore[no-untyped-def]
+@inner_kernel
+def land_after(p, pockets, touch, w, count, now, kind, sums):  # type: ignore[no-untyped-def]
     """Mode of the land after a change; the series' first coefficients hold the state."""
     if kind == LAND_CLEAR:
         return CLEAR
@@ -171,71 +190,86 @@ def land_after(p, cos, sin, q, w, side, active, count, now, kind, sums):  # type
         sliding = first_sliding(p, w, now)
         if abs(sliding) > ROUNDING * (abs(w[0, W]) + abs(p.ring_slide)):
             return FORWARD if sliding > 0.0 else BACKWARD
-    return settle_stick(p, cos, sin, q, w, side, active, count, now, sums)
+    return settle_stick(p, pockets, touch, w, count, now, sums)
 
 
-@kernel
+@inlined_kernel
 def kinetic(p, s):  # type: ignore[no-untyped-def]
     """Kinetic energy of the cage in the turning frame, over its mass."""
     return 0.5 * (s[VX] * s[VX] + s[VY] * s[VY] + p.inertia * s[W] * s[W])
 
 
-@kernel
-def place_of(p, cos, sin, s, j):  # type: ignore[no-untyped-def]
+@inner_kernel
+def land_energy(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
+    """Energy in the land's spring, over the mass."""
+    load_state(p, pockets, touch, s, w, count)
+    gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
+    land_geometry(p, w, gx, gy, 0)
+    return 0.5 * p.land_stiffness * w[0, DEPTH] ** 2
+
+
+@inner_kernel
+def place_of(p, pockets, s, j):  # type: ignore[no-untyped-def]
     """Place of pocket j along the circumference, against a ball without lead."""
     x, y = s[X], s[Y]
     if p.eccentricity != 0.0:
         x -= p.eccentricity * np.cos(s[S] / p.radius)
         y -= p.eccentricity * np.sin(s[S] / p.radius)
-    return y * cos[j] - x * sin[j] + s[S]
+    return y * pockets[COSINE, j] - x * pockets[SINE, j] + s[S]
 
 
-@kernel
-def finish_step(p, cos, sin, w, s, lead, q, side, active, count, h, end, ends):  # type: ignore[no-untyped-def]
+@inlined_kernel
+def finish_step(p, pockets, touch, w, s, count, h, end, after):  # type: ignore[no-untyped-def]
     """State at the end of a step, from its series."""
-    body_values(w, end, ends)
-    for i in range(6):
-        s[i] = ends[i]
+    s[X], s[Y], s[VX], s[VY], s[S], s[W] = after
     s[CLOCK] += end * h
+    if count > 0 and p.hertz == 0.0:
+        ex, ey, es, kept = grip_at(w, end)
     for i in range(count):
-        j = active[i]
+        j = touch[LIST, i]
         if p.hertz != 0.0:
-            q[j] = value(w, BALLS + j, end)
+            pockets[PENETRATION, j] = value(w, BALLS + j, end)
         else:
-            q[j] = q[j] * ends[KEPT] + ends[EY] * cos[j] - ends[EX] * sin[j] + ends[ES]
+            pockets[PENETRATION, j] = (
+                pockets[PENETRATION, j] * kept + ey * pockets[COSINE, j] - ex * pockets[SINE, j] + es
+            )
             for k in range(2 * p.harmonics):
-                q[j] -= p.drive[k, j] * value(w, FELT + k, end)
+                pockets[PENETRATION, j] -= pockets[DRIVE + k, j] * value(w, FELT + k, end)
     for k in range(2 * p.harmonics):
         gone = value(w, GONE + k, end)
-        for j in range(lead.size):
-            if side[j] == 0:
-                lead[j] += p.drive[k, j] * gone
+        for j in range(pockets.shape[1]):
+            if touch[SIDE, j] == 0:
+                pockets[LEAD, j] += pockets[DRIVE + k, j] * gone
 
 
-@kernel
-def change_pocket(p, cos, sin, half, s, lead, q, side, active, mode, hits, kind, ball):  # type: ignore[no-untyped-def]
+@inner_kernel
+def change_pocket(p, pockets, touch, s, mode, hits, kind, ball):  # type: ignore[no-untyped-def]
     """Put a ball on the list of those in touch (beyond the balls: on the negative side), or take it off."""
     if kind == TOUCH:
-        j = ball % side.size
-        side[j] = 1 if ball < side.size else -1
-        q[j] = place_of(p, cos, sin, s, j) - lead[j] - side[j] * half[j]
+        j = ball % pockets.shape[1]
+        touch[SIDE, j] = 1 if ball < pockets.shape[1] else -1
+        pockets[PENETRATION, j] = (
+            place_of(p, pockets, s, j) - pockets[LEAD, j] - touch[SIDE, j] * pockets[PLAY, j]
+        )
         if p.hertz != 0.0:
-            q[j] = side[j] * p.onset
-        active[mode[0]] = j
+            pockets[PENETRATION, j] = touch[SIDE, j] * p.onset
+        touch[LIST, mode[0]] = j
         mode[0] += 1
         hits[j] += 1
         return
-    lead[ball] = place_of(p, cos, sin, s, ball) - side[ball] * half[ball] - q[ball]
-    side[ball] = 0
+    pockets[LEAD, ball] = (
+        place_of(p, pockets, s, ball) - touch[SIDE, ball] * pockets[PLAY, ball] - pockets[PENETRATION, ball]
+    )
+    touch[SIDE, ball] = 0
     kept = 0
     for i in range(mode[0]):
-        if active[i] != ball:
-            active[kept] = active[i]
+        if touch[LIST, i] != ball:
+            touch[LIST, kept] = touch[LIST, i]
             kept += 1
     mode[0] = kept
 
 
-@kernel
+@inlined_kernel
 def longest_step(p, w, s, land, left):  # type: ignore[no-untyped-def]
     """Time for which the series may be used: their own, and up to the next time at which something is due."""
     h = min(step_length(p, w), left)
@@ -248,20 +282,30 @@ def longest_step(p, w, s, land, left):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def make_room():  # type: ignore[no-untyped-def]
+    """Arrays that `advance` works in."""
+    return (
+        np.zeros(8 + 6 * HARMONICS),
+        np.zeros(ORDER + 1),
+        np.zeros(WORKS),
+        np.zeros((KNOT_ROWS, BODY)),
+    )
+
+
+@inner_kernel
 def advance(  # type: ignore[no-untyped-def]
-    p, cos, sin, half, s, lead, q, w, side, active, mode, ledger, tally, hits, length, ceiling, rows, books
+    p, pockets, touch, s, w, mode, ledger, tally, hits, length, ceiling, rows, books, room
 ):
     """Advance the cage by a time, in place.
 
     Parameters
     ----------
-    p, cos, sin, half
-        The cage, and its pockets' directions and half play.
-    s, lead, q : ndarray
-        State as in `slots`; lead of each ball that does not touch, and penetration of each that does [m].
-    w, side, active, mode : ndarray
-        Series; side on which each pocket touches; list of those; number of those, mode of the land, and rows
-        of history filled.
+    p, pockets, touch
+        The cage, and numbers by ball as in `slots`.
+    s, w : ndarray
+        State as in `slots`, and series.
+    mode : ndarray
+        How many pockets touch their balls, mode of the land, and rows of history filled.
     ledger, tally, hits : ndarray
         Work since the start, integrals of this window, and impacts of every pocket.
     length, ceiling : float
@@ -278,38 +322,44 @@ def advance(  # type: ignore[no-untyped-def]
     """
     done, taken = 0.0, 0
     most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if p.hertz != 0.0 else 1.0)
-    sums, ends, c = np.zeros(8 + 6 * HARMONICS), np.zeros(BODY), np.zeros(ORDER + 1)
+    sums, c, work, knot = room
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
+    long, long_c, brief = w, c, False
     while done < length and kinetic(p, s) < ceiling:
         taken += 1
         if taken > most:
             return False
         now = speed_share(p, s[CLOCK])
+        w = long[: BRIEF_ORDER + SPARE] if brief else long[: ORDER + SPARE]
+        c = long_c[: BRIEF_ORDER + 1] if brief else long_c[: ORDER + 1]
         count, land = mode[0], mode[1]
         pressed = land != CLEAR and land != RELEASED
-        load_state(p, s, q, w, active, count)
-        expand(p, cos, sin, q, w, side, active, count, land, now, sums)
+        load_state(p, pockets, touch, s, w, count)
+        expand(p, pockets, touch, w, count, land, now, sums)
         if pressed and land != STICK:
-            for n in range(ORDER + 1):
+            for n in range(w.shape[0] - 2):
                 w[n, SLIDING] = slide_speed(p, w, gx, gy, now, n)
         h = longest_step(p, w, s, land, length - done)
-        rescale(p, w, cos.size, count, h, pressed)
-        end, kind, ball = pocket_change(p, cos, sin, half, lead, q, w, side, active, count, c)
+        rescale(p, w, pockets.shape[1], count, h, pressed)
+        end, kind, ball, deepest = pocket_change(p, pockets, touch, w, count, knot, c)
         if p.land_side != 0.0:
             end, kind = land_change(p, w, land, h, end, kind, c)
         if rows.shape[0] > mode[2]:
-            mode[2] = record(p, cos, sin, half, w, s, lead, q, side, active, count, land, now, h, end,
-                             sums, ledger, rows, mode[2])  # fmt: skip
+            mode[2] = record(
+                p, pockets, touch, w, s, count, land, now, h, end, sums, ledger, rows, mode[2], work
+            )
         if books:
-            enter_work(p, cos, sin, w, q, active, count, land, now, h, end, sums, ledger)
-        enter_step(p, cos, sin, w, q, side, active, count, pressed, h, end, tally, c)
-        finish_step(p, cos, sin, w, s, lead, q, side, active, count, h, end, ends)
+            enter_work(p, pockets, touch, w, count, land, now, h, end, sums, ledger, work)
+        after = motion_at(w, end)
+        enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tally, c)
+        finish_step(p, pockets, touch, w, s, count, h, end, after)
+        brief = kind != NOTHING and end * h < SOON
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind in (PART, TOUCH):
-            change_pocket(p, cos, sin, half, s, lead, q, side, active, mode, hits, kind, ball)
+            change_pocket(p, pockets, touch, s, mode, hits, kind, ball)
         elif kind != NOTHING:
-            load_state(p, s, q, w, active, count)
-            mode[1] = land_after(p, cos, sin, q, w, side, active, count, now, kind, sums)
+            load_state(p, pockets, touch, s, w, count)
+            mode[1] = land_after(p, pockets, touch, w, count, now, kind, sums)
             tally[LAND_HITS] += kind == LAND_TOUCH
     tally[STEPS] += taken
     return True

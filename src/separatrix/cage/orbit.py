@@ -46,14 +46,15 @@ class CageMotion(Enum):
 def cage_motion(cage: PlanarCage, ensemble: Ensemble) -> CageMotion:
     """Class of the motion from the kick that is worst: what at least half of its runs do."""
     wild = unstable(cage, ensemble)
-    if _half(wild):
+    if _half(ensemble, wild):
         return CageMotion.UNSTABLE
-    return CageMotion.CIRCLING if _half(wild | circling(cage, ensemble)) else CageMotion.STABLE
+    even = wild | circling(cage, ensemble)
+    return CageMotion.CIRCLING if _half(ensemble, even) else CageMotion.STABLE
 
 
-def _half(runs: Mask) -> bool:
+def _half(ensemble: Ensemble, runs: Mask) -> bool:
     """Whether at least half of the runs do so from any kick."""
-    return bool(np.any(runs.mean(axis=1) >= 0.5))
+    return bool(np.any(ensemble.share(runs) >= 0.5))
 
 
 def unstable(cage: PlanarCage, ensemble: Ensemble) -> Mask:

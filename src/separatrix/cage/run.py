@@ -9,12 +9,16 @@ import numpy as np
 from numpy.random import Generator, Philox
 
 from separatrix.cage.evidence import pocket_energy
-from separatrix.cage.motion import advance, kinetic
+from separatrix.cage.motion import advance, kinetic, land_energy, make_room
 from separatrix.cage.planar import RunOutcome
 from separatrix.cage.series import POWERS
 from separatrix.cage.slots import (
+    CLEAR,
+    COSINE,
     DIRECTION,
     DRIFT_RATE,
+    DRIVE,
+    FOLLOWED,
     FORCE,
     FORCE_MAX,
     GROSS,
@@ -22,13 +26,14 @@ from separatrix.cage.slots import (
     GROWTH_RATE,
     IMBALANCE,
     KINETIC,
-    LAND_ENERGY,
     LAND_FORCE,
     LAND_HITS,
     LAND_IMPACTS,
     LAND_MAX,
     LARGEST_OFFSET,
+    LEAD,
     LEDGER,
+    LIST,
     MEAN_OFFSET,
     MEAN_X,
     MEAN_Y,
@@ -38,8 +43,11 @@ from separatrix.cage.slots import (
     OFFSET_SQUARED,
     ORBIT_SPEED,
     OUTCOME,
-    POCKET_ENERGY,
+    PENETRATION,
+    PLAY,
     ROWS,
+    SIDE,
+    SINE,
     SPEED_SQUARED,
     STATE,
     SWEPT,
@@ -58,6 +66,15 @@ if TYPE_CHECKING:
 
 FIFTHS = 5
 LOOKS = 10  # looks at the energy in each fifth
+LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 2, 5, 5
+"""Looks in a row, at the mean energy since the last, that tell how a run ends: beyond limits, or alike."""
+
+LONG_LOOK = 50.0
+"""Time between looks from which on they tell: some turns, in radians of the motion with one ball in touch."""
+
+EVEN, SURELY, WEAK = 0.01, 1.05, 0.1
+"""Share by which looks may differ that are alike; shares of the kick's energy beyond which they tell."""
+
 UNKNOWN = -1
 DIES, GROWS, DRIFT, STALLED = (
     int(RunOutcome.DIES),
@@ -73,24 +90,24 @@ class Limits(NamedTuple):
     drift: float
     grows_above: float
     dies_below: float
-    mean_grows_above: float  # of the mean over a fifth, from the second on
+    mean_grows_above: float  # of the mean since the last look
     mean_dies_below: float
 
 
 @kernel
-def held_energy(p, q, active, count):  # type: ignore[no-untyped-def]
+def held_energy(p, pockets, touch, count):  # type: ignore[no-untyped-def]
     """Energy in the pockets' springs, over the mass."""
     held = 0.0
     for i in range(count):
-        held += pocket_energy(p, q[active[i]])
+        held += pocket_energy(p, pockets[PENETRATION, touch[LIST, i]])
     return held
 
 
 @kernel
 def watch(  # type: ignore[no-untyped-def]
-    p, cos, sin, half, s, lead, q, w, side, active, mode, ledger, tally, hits, fifth, limits, rows, books
+    p, pockets, touch, s, w, mode, ledger, tally, hits, fifth, start, limits, rows, books, room
 ):
-    """Run until the outcome is known or the time is over.
+    """Run until the outcome is known or the time is over; `start` is the kick's energy over the mass.
 
     Returns
     -------
@@ -98,19 +115,17 @@ def watch(  # type: ignore[no-untyped-def]
         Outcome or `UNKNOWN`, the last window looked at, and its length.
     """
     look = fifth / LOOKS
+    above = below = even = touches = 0
+    level, may_die = -1.0, limits.mean_dies_below > 0.0
     for window in range(FIFTHS):
         for part in range(LOOKS):
+            before = tally[window, KINETIC]
             going = advance(
                 p,
-                cos,
-                sin,
-                half,
+                pockets,
+                touch,
                 s,
-                lead,
-                q,
                 w,
-                side,
-                active,
                 mode,
                 ledger,
                 tally[window],
@@ -119,19 +134,30 @@ def watch(  # type: ignore[no-untyped-def]
                 limits.grows_above,
                 rows,
                 books,
+                room,
             )
             if not going:
                 return STALLED, window, (part + 1) * look
-            energy = kinetic(p, s) + held_energy(p, q, active, mode[0])
+            energy = kinetic(p, s) + held_energy(p, pockets, touch, mode[0])
             if energy > limits.grows_above:
                 return GROWS, window, (part + 1) * look
             if energy < limits.dies_below:
                 return DIES, window, (part + 1) * look
-        mean = tally[window, KINETIC] / fifth
-        if window > 0 and mean > limits.mean_grows_above:
-            return GROWS, window, fifth
-        if window > 0 and mean < limits.mean_dies_below:
-            return DIES, window, fifth
+            if look < LONG_LOOK:
+                continue
+            mean = (tally[window, KINETIC] - before) / look
+            above = above + 1 if mean > limits.mean_grows_above else 0
+            below = below + 1 if mean < limits.mean_dies_below else 0
+            met = mode[0] > 0 or np.sum(hits) > touches
+            touches = np.sum(hits)
+            even = even + 1 if met and abs(mean - level) <= EVEN * level else 1
+            if even == 1:
+                level = mean
+            settled = even >= LOOKS_EVEN
+            if above == LOOKS_ABOVE or (settled and mean > SURELY * start):
+                return GROWS, window, (part + 1) * look
+            if below == LOOKS_BELOW or (settled and may_die and mean < WEAK * start):
+                return DIES, window, (part + 1) * look
     return UNKNOWN, FIFTHS - 1, fifth
 
 
@@ -144,39 +170,40 @@ def drift_rate(tally, length):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def imbalance(p, s, ledger, start):  # type: ignore[no-untyped-def]
+def imbalance(p, pockets, touch, s, w, mode, ledger, start):  # type: ignore[no-untyped-def]
     """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
-    held = ledger[POCKET_ENERGY] + ledger[LAND_ENERGY]
+    held = held_energy(p, pockets, touch, mode[0])
+    if mode[1] != CLEAR:
+        held += land_energy(p, pockets, touch, s, w, mode[0])
     unexplained = kinetic(p, s) + held - start - np.sum(ledger[:WORKS])
     return abs(unexplained) / (ledger[GROSS] + start)
 
 
 @kernel
-def run_one(p, cos, sin, half, direction, kick, start_lead, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
     `kick` and `fifth` are in units of the engine.
     """
-    balls = cos.size
+    balls = pockets.shape[1]
     s, ledger, tally = np.zeros(STATE), np.zeros(LEDGER), np.zeros((FIFTHS, TALLY))
-    lead, q = start_lead.copy(), np.zeros(balls)
-    side, active, mode = np.zeros(balls, np.int64), np.zeros(balls, np.int64), np.zeros(3, np.int64)
+    touch, mode = np.zeros((2, balls), np.int64), np.zeros(3, np.int64)
     if p.gripped:
-        side[:] = 2
-        q[:] = -lead
-        active[:] = np.arange(balls)
+        touch[SIDE] = 2
+        pockets[PENETRATION] = -pockets[LEAD]
+        touch[LIST] = np.arange(balls)
         mode[0] = balls
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
     start = kinetic(p, s)
-    ledger[POCKET_ENERGY] = held_energy(p, q, active, mode[0])
     outcome, window, length = watch(
-        p, cos, sin, half, s, lead, q, w, side, active, mode, ledger, tally, hits, fifth, limits, rows, books
+        p, pockets, touch, s, w, mode, ledger, tally, hits, fifth, start, limits, rows, books, make_room()
     )
     end = tally[window]
     out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
     mean = end[KINETIC] / length
     out[GROWTH] = mean / start
     middle = (window * fifth + 0.5 * length) * p.unit
+    out[FOLLOWED] = (window * fifth + length) * p.unit
     out[GROWTH_RATE] = 0.5 * np.log(mean / start) / middle
     if outcome == UNKNOWN:
         out[DRIFT_RATE] = drift_rate(tally, length * p.unit)
@@ -188,7 +215,7 @@ def run_one(p, cos, sin, half, direction, kick, start_lead, w, fifth, limits, se
     force = 1.0 / p.unit**2
     out[FORCE] = np.max(tally[:, FORCE_MAX]) * force
     out[LAND_FORCE] = np.max(tally[:, LAND_MAX]) * force
-    out[IMBALANCE] = imbalance(p, s, ledger, start) if books else 0.0
+    out[IMBALANCE] = imbalance(p, pockets, touch, s, w, mode, ledger, start) if books else 0.0
     out[MEAN_OFFSET] = end[OFFSET] / length
     out[OFFSET_SPREAD] = np.sqrt(max(0.0, end[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
     orbit = end[SWEPT] / end[OFFSET_SQUARED] if end[OFFSET_SQUARED] > 0.0 else 0.0
@@ -198,21 +225,21 @@ def run_one(p, cos, sin, half, direction, kick, start_lead, w, fifth, limits, se
 
 
 @kernel
-def run_chunk(p, starts, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_chunk(p, drive, starts, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
     [m], its half play [m] and its angle [rad].
     """
     balls = hits.shape[1]
+    pockets = np.zeros((DRIVE + drive.shape[0], balls))
+    pockets[DRIVE:] = drive
     for i in range(starts.shape[0]):
         start = starts[i]
         angle = start[1 + 2 * balls :]
-        cos, sin = np.cos(angle), np.sin(angle)
-        lead, half = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
-        run_one(
-            p, cos, sin, half, start[0], kick, lead, w, fifth, limits, sense, rows, books, out[i], hits[i]
-        )
+        pockets[COSINE], pockets[SINE], pockets[PENETRATION] = np.cos(angle), np.sin(angle), 0.0
+        pockets[LEAD], pockets[PLAY] = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
+        run_one(p, pockets, start[0], kick, w, fifth, limits, sense, rows, books, out[i], hits[i])
 
 
 def random_start(seed: int, run: int, ball_count: int) -> Array:

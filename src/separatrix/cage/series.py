@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.slots import BODY
-from separatrix.compiled import kernel
+from separatrix.cage.slots import ES, EX, EY, KEPT, VX, VY, S, W, X, Y
+from separatrix.compiled import inlined_kernel, inner_kernel
 
-ORDER = 20
-"""Terms of a series beyond the first. The step is chosen so that the last ones are below rounding."""
+ORDER, BRIEF_ORDER = 24, 16
+"""Terms of a series beyond the first; the fewer in a step that an event is likely to end soon. The step is so
+long that the last ones are near rounding."""
 
-POWERS = ORDER + 3
+SPARE = 3
+"""Rows of a series of order n are n + 3: the first, n terms, and two that a mode in between needs."""
+
+POWERS = ORDER + SPARE
 NEVER = 2.0
 """Time of what does not happen within a step; a step lasts from 0 to 1."""
 
@@ -18,8 +22,18 @@ ROUNDING = 4.0 * 2.0**-52
 MOST_MARCHES = 500
 MOST_ZEROS = 3
 
+STAYS, FALLS, MAY_FALL = range(3)
+"""Above zero between two knots; falls through zero, once; or neither is known."""
 
-@kernel
+SLOPE_OFF = np.sqrt(3.0) / 216.0
+_POWER = np.arange(ORDER + 1.0)
+_FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
+HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER
+EARLY, LATE = _FOURTH * 0.5**_POWER, _FOURTH * 0.5**4
+KNOT_ROWS = 5
+
+
+@inner_kernel
 def product(w, a, b, n):  # type: ignore[no-untyped-def]
     """Coefficient n of the product of columns a and b."""
     total = 0.0
@@ -28,59 +42,75 @@ def product(w, a, b, n):  # type: ignore[no-untyped-def]
     return total
 
 
-@kernel
+@inlined_kernel
 def value(w, column, t):  # type: ignore[no-untyped-def]
     """Value of a column at a time."""
-    total = w[ORDER, column]
-    for n in range(ORDER - 1, -1, -1):
+    order = w.shape[0] - SPARE
+    total = w[order, column]
+    for n in range(order - 1, -1, -1):
         total = total * t + w[n, column]
     return total
 
 
-@kernel
+@inner_kernel
 def slope(w, column, t):  # type: ignore[no-untyped-def]
     """Derivative of a column at a time."""
-    total = ORDER * w[ORDER, column]
-    for n in range(ORDER - 1, 0, -1):
+    order = w.shape[0] - SPARE
+    total = order * w[order, column]
+    for n in range(order - 1, 0, -1):
         total = total * t + n * w[n, column]
     return total
 
 
-@kernel
-def body_values(w, t, out):  # type: ignore[no-untyped-def]
-    """Values of the first columns at a time, into `out`."""
-    for k in range(BODY):
-        out[k] = w[ORDER, k]
-    for n in range(ORDER - 1, -1, -1):
-        for k in range(BODY):
-            out[k] = out[k] * t + w[n, k]
+@inlined_kernel
+def motion_at(w, t):  # type: ignore[no-untyped-def]
+    """Centre of mass and its velocity, rotation slip and its rate at a time."""
+    order = w.shape[0] - SPARE
+    x = y = vx = vy = s = spin = 0.0
+    for n in range(order, -1, -1):
+        x, y, vx = x * t + w[n, X], y * t + w[n, Y], vx * t + w[n, VX]
+        vy, s, spin = vy * t + w[n, VY], s * t + w[n, S], spin * t + w[n, W]
+    return x, y, vx, vy, s, spin
 
 
-@kernel
+@inlined_kernel
+def grip_at(w, t):  # type: ignore[no-untyped-def]
+    """What linear pockets in touch follow, at a time: see `expand`."""
+    order = w.shape[0] - SPARE
+    ex = ey = es = kept = 0.0
+    for n in range(order, -1, -1):
+        ex, ey = ex * t + w[n, EX], ey * t + w[n, EY]
+        es, kept = es * t + w[n, ES], kept * t + w[n, KEPT]
+    return ex, ey, es, kept
+
+
+@inlined_kernel
 def stretch(w, first, last, factor):  # type: ignore[no-untyped-def]
     """Change the unit of time of some columns: one new unit is `factor` old ones."""
+    order = w.shape[0] - SPARE
     power = factor
-    for n in range(1, ORDER + 1):
+    for n in range(1, order + 1):
         for k in range(first, last):
             w[n, k] *= power
         power *= factor
 
 
-@kernel
+@inlined_kernel
 def travel(w, column):  # type: ignore[no-untyped-def]
     """Bound on how far a column moves from its start within the step."""
+    order = w.shape[0] - SPARE
     total = 0.0
-    for n in range(1, ORDER + 1):
+    for n in range(1, order + 1):
         total += abs(w[n, column])
     return total
 
 
-@kernel
+@inner_kernel
 def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
     r"""First time up to `end` at which :math:`g = start + sign \sum_{n \ge 1} c_n t^n` has fallen to zero.
 
     From any time, :math:`g` lies above the parabola with its value, its slope and minus a bound of its
-    curvature over the whole step. The zero of that parabola is a time up to which there is no zero of g; from
+    curvature up to `end`. The zero of that parabola is a time up to which there is no zero of g; from
     there the next parabola starts. So the march converges to the first zero from below, quadratically, and
     cannot pass over it, however short the touch. A zero at the start (a contact that has just changed) is
     divided out; the first coefficient that is more than rounding then says which way g goes.
@@ -101,8 +131,9 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
     float
         The time, or `NEVER`.
     """
+    order = c.size - 1
     scale = abs(start) + noise
-    for n in range(1, ORDER + 1):
+    for n in range(1, order + 1):
         scale += abs(c[n])
     tiny = ROUNDING * scale
     out = 0
@@ -115,12 +146,14 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
             return NEVER
         lead = sign * c[out]
     bend = 0.0
-    for n in range(out + 2, ORDER + 1):
-        bend += (n - out) * (n - out - 1) * abs(c[n])
+    power = 1.0
+    for n in range(out + 2, order + 1):
+        bend += (n - out) * (n - out - 1) * abs(c[n]) * power
+        power *= end
     t = 0.0
     for _ in range(MOST_MARCHES):
         g = d = 0.0
-        for n in range(ORDER, out, -1):
+        for n in range(order, out, -1):
             d = d * t + g
             g = g * t + c[n]
         d = sign * (d * t + g)
@@ -136,18 +169,122 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
     return t
 
 
-@kernel
+@inlined_kernel
+def knots(w, column, knot):  # type: ignore[no-untyped-def]
+    """Slope of a column at the start; value and slope in the middle; both at the end: into its column.
+
+    The slopes are times half the step.
+    """
+    order = w.shape[0] - SPARE
+    middle = middle_slope = last = last_slope = 0.0
+    for n in range(order + 1):
+        c = w[n, column]
+        middle += HALVES[n] * c
+        middle_slope += HALF_SLOPES[n] * c
+        last += c
+        last_slope += 0.5 * n * c
+    knot[0, column] = 0.5 * w[1, column]
+    knot[1, column], knot[2, column] = middle, middle_slope
+    knot[3, column], knot[4, column] = last, last_slope
+
+
+@inlined_kernel
+def reach(start, knot, column):  # type: ignore[no-untyped-def]
+    """How far from its start a column comes by its knots, without what lies off the cubics between them."""
+    return max(
+        abs(knot[0, column]) / 3.0,
+        abs(knot[1, column] - knot[2, column] / 3.0 - start),
+        abs(knot[1, column] + knot[2, column] / 3.0 - start),
+        abs(knot[3, column] - knot[4, column] / 3.0 - start),
+        abs(knot[3, column] - start),
+    )
+
+
+@inlined_kernel
+def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore[no-untyped-def]
+    """What a function does between two knots, from its values and its slopes times their distance there.
+
+    Values up to `tiny` are no more than rounding.
+
+    The cubic through them lies between the corners of its Bezier polygon. The function lies off that cubic
+    by no more than 1/384 of its fourth derivative (`fourth`: times the fourth power of the distance), its
+    slope by sqrt(3)/216 (Birkhoff and Priver 1967). At a share t of the way it lies off by no more than
+    fourth t^2 (1 - t)^2 / 24, less than 1/144 of it in both inner corners make up for.
+    """
+    one, two = start + start_slope / 3.0, last - last_slope / 3.0
+    inner, outer = min(one, two), min(start, last)
+    if min(inner, outer) > fourth / 384.0 or (outer > 0.0 and inner > fourth / 144.0):
+        return STAYS
+    if start > 0.0 and last < -tiny and max(one - start, two - one, last - two) < -SLOPE_OFF / 3.0 * fourth:
+        return FALLS
+    return MAY_FALL
+
+
+@inlined_kernel
+def top(start, start_slope, last, last_slope, fourth):  # type: ignore[no-untyped-def]
+    """Bound from above of a function between two knots, as in `falling`."""
+    return max(start, last, start + start_slope / 3.0, last - last_slope / 3.0) + fourth / 384.0
+
+
+@inner_kernel
+def earliest_zero(c, start, middle, last, sign, early, late, end, noise):  # type: ignore[no-untyped-def]
+    """First zero as by `first_zero`, where it is known what each half of the step does, and the knots."""
+    if early == FALLS:
+        return single_zero(c, start, sign, 0.0, 0.5, 0.5 * start / (start - middle), noise)
+    if early == MAY_FALL:
+        t = first_zero(c, start, sign, min(end, 0.5), noise)
+        if t < NEVER:
+            return t
+    if late == STAYS or end <= 0.5:
+        return NEVER
+    if late == FALLS:
+        return single_zero(c, start, sign, 0.5, 1.0, 0.5 + 0.5 * middle / (middle - last), noise)
+    return first_zero(c, start, sign, end, noise)
+
+
+@inner_kernel
+def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-untyped-def]
+    r"""Zero of :math:`start + sign \sum_{n \ge 1} c_n t^n` between two times, where it falls throughout."""
+    order = c.size - 1
+    tiny = ROUNDING * (abs(start) + noise)
+    for n in range(1, order + 1):
+        tiny += ROUNDING * abs(c[n])
+    t = guess
+    for _ in range(MOST_MARCHES):
+        g = d = 0.0
+        for n in range(order, 0, -1):
+            d = d * t + g
+            g = g * t + c[n]
+        d = sign * (d * t + g)
+        g = start + sign * g * t
+        if abs(g) <= tiny:
+            break
+        if g > 0.0:
+            low = t
+        else:
+            high = t
+        t -= g / d
+        if not low < t < high:
+            t = 0.5 * (low + high)
+            if not low < t < high:
+                break
+    return t
+
+
+@inner_kernel
 def copy_column(w, column, c):  # type: ignore[no-untyped-def]
     """Copy a column into one series."""
-    for n in range(ORDER + 1):
+    order = w.shape[0] - SPARE
+    for n in range(order + 1):
         c[n] = w[n, column]
 
 
-@kernel
+@inner_kernel
 def peak(c, sign, end):  # type: ignore[no-untyped-def]
     """Largest value of a series times `sign` up to a time: at its ends, or where it turns once between."""
-    last, last_slope = c[ORDER], 0.0
-    for n in range(ORDER - 1, -1, -1):
+    order = c.size - 1
+    last, last_slope = c[order], 0.0
+    for n in range(order - 1, -1, -1):
         last_slope = last_slope * end + last
         last = last * end + c[n]
     largest = max(sign * c[0], sign * last)
@@ -157,8 +294,8 @@ def peak(c, sign, end):  # type: ignore[no-untyped-def]
     g = 0.0
     while high - low > 1e-3:
         middle = 0.5 * (low + high)
-        g, d = c[ORDER], 0.0
-        for n in range(ORDER - 1, -1, -1):
+        g, d = c[order], 0.0
+        for n in range(order - 1, -1, -1):
             d = d * middle + g
             g = g * middle + c[n]
         if sign * d > 0.0:

@@ -20,12 +20,17 @@ FRAME, FELT, GONE = 33, 33 + 2 * HARMONICS, 33 + 4 * HARMONICS
 # Then for each ball, with Hertz springs, penetration and force over the mass; then the powers of the lobes.
 BALLS = 33 + 6 * HARMONICS
 
+# Rows by ball: direction of its pocket, half the play, lead of a ball that does not touch, penetration of one
+# that does, and the free speed's cosines and sines of each harmonic. Of whole numbers: the side on which the
+# pocket touches its ball (1, -1; 0 not; 2 both), and the list of those that touch.
+COSINE, SINE, PLAY, LEAD, PENETRATION, DRIVE = range(6)
+SIDE, LIST = range(2)
+
 # State of a run: the first six above, then the clock.
 CLOCK = 6
 STATE = 7
 
-# Ledger: work done on the cage by each source (a sink is negative), the sum of the magnitudes, and the
-# energies that pockets and land hold.
+# Ledger: work done on the cage by each source (a sink is negative), and the sum of the magnitudes.
 SOURCES = (
     "pocket_friction",
     "race_dampers",
@@ -39,8 +44,8 @@ SOURCES = (
 POCKET_FRICTION, RACE_DAMPERS, BALL_DRIVE, LAND_FRICTION = range(4)
 LAND_DAMPING, GRAVITY, MOVING_FRAME, UNBALANCE = range(4, 8)
 WORKS = 8
-GROSS, POCKET_ENERGY, LAND_ENERGY = 8, 9, 10
-LEDGER = 11
+GROSS = 8
+LEDGER = 9
 
 # Modes of the land.
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
@@ -54,8 +59,8 @@ TALLY = 13
 
 # Evidence of a run.
 OUTCOME, GROWTH, GROWTH_RATE, LARGEST_OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE = range(8)
-LAND_FORCE, IMBALANCE, MEAN_OFFSET, OFFSET_SPREAD, ORBIT_SPEED, LAND_IMPACTS, ROWS = range(8, 15)
-EVIDENCE = 15
+LAND_FORCE, IMBALANCE, MEAN_OFFSET, OFFSET_SPREAD, ORBIT_SPEED, LAND_IMPACTS, ROWS, FOLLOWED = range(8, 16)
+EVIDENCE = 16
 
 # A row of a history: geometric centre, velocity, rotation slip and its rate, time, work, energies of
 # pockets and land, force of the land, then lead and force of every ball.

@@ -121,7 +121,8 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     verdict, because = decide(cage, ensemble)
     dies = int(ensemble.count(RunOutcome.DIES).sum())
     low, high = wilson_interval(dies, ensemble.outcome.size)
-    whirling = grows if grows.any() else np.ones_like(grows)
+    told = ~ensemble.cut
+    whirling = grows if grows.any() else told
     kick, rate, rate_low, rate_high = _fastest_growth(ensemble)
     pockets, land = _impact_shares(ensemble)
     return Judgement(
@@ -136,7 +137,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         growth_rate_high=rate_high,
         growth_kick=kick,
         largest_offset=float(ensemble.largest_offset.max()),
-        mean_offset=float(np.median(ensemble.mean_offset)),
+        mean_offset=float(np.median(ensemble.mean_offset[told])),
         orbit_evenness=_evenness(ensemble),
         drift_rate=drift_rate(ensemble),
         drift_rate_law=drift_rate_law(cage),
@@ -148,7 +149,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         whirl_direction=int(np.sign(np.median(ensemble.whirl_direction[whirling]))),
         whirl_ratio=_whirl_ratio(cage, ensemble, whirling),
         drive_energy=drive_energy(cage),
-        energy_growth=float(np.median(ensemble.energy_growth)),
+        energy_growth=float(np.median(ensemble.energy_growth[told])),
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
         runs=ensemble.outcome.shape[1],
@@ -166,7 +167,7 @@ def _fastest_growth(ensemble: Ensemble) -> tuple[float, float, float | None, flo
 
 def _evenness(ensemble: Ensemble) -> Ratio:
     """Median of spread over mean of the offset, over the runs that left the axis at all."""
-    off = ensemble.mean_offset > 0.0
+    off = (ensemble.mean_offset > 0.0) & ~ensemble.cut
     return float(np.median(ensemble.offset_spread[off] / ensemble.mean_offset[off])) if off.any() else 0.0
 
 
@@ -185,7 +186,7 @@ def _whirl_ratio(cage: PlanarCage, ensemble: Ensemble, whirling: Mask) -> Ratio 
 
 def drift_rate(ensemble: Ensemble) -> float:
     """Median growth rate of the mean offset over the runs that do not grow; 0 if all do [1/s]."""
-    held = ensemble.outcome != RunOutcome.GROWS
+    held = (ensemble.outcome != RunOutcome.GROWS) & ~ensemble.cut
     return float(np.median(ensemble.drift_rate[held])) if held.any() else 0.0
 
 
@@ -229,11 +230,17 @@ def _odd_end(cage: PlanarCage, ensemble: Ensemble) -> str:
     """Return what else keeps a motion that lost energy from being stable; empty if nothing does."""
     runs = ensemble.outcome.shape[1]
     circles, left = sustained(cage, ensemble), left_pockets(cage, ensemble)
-    if not _clear(runs - circles.sum(axis=1), runs):
+    if not _clear(_without(ensemble, circles), runs):
         return reason.keeps_circling(cage, ensemble, circles)
-    if not _clear(runs - left.sum(axis=1), runs):
+    if not _clear(_without(ensemble, left), runs):
         return reason.out_of_pockets(cage, ensemble, left)
     return ""
+
+
+def _without(ensemble: Ensemble, doing: Mask) -> Counts:
+    """Runs at each kick that do not end so, shape (kick,)."""
+    runs = ensemble.outcome.shape[1]
+    return np.asarray(runs - np.ceil(runs * ensemble.share(doing) - 1e-9), dtype=np.int64)
 
 
 def _touched(ensemble: Ensemble) -> Mask:

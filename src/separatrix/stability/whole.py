@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from math import isfinite
 from threading import Event
 from typing import Any
 
@@ -15,9 +16,15 @@ from separatrix.study import StabilitySettings
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
+FOLLOWED = 8
+"""Runs from each kick that are followed to their end also where it is known to be rest on the land."""
+
 
 def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -> Ensemble:
-    """Every run of the settings from every kick: the same numbers as `run_ensemble` at once.
+    """Every run of the settings from every kick.
+
+    The first `FOLLOWED` are followed to their end. Where a land holds the cage, which cannot drift then, the
+    others that die end as soon as that is known (`Ensemble.cut`); no outcome depends on it.
 
     Raises
     ------
@@ -25,10 +32,13 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
         `stop` was set before the last part.
     """
     parts: list[Ensemble] = []
-    for first in range(0, settings.runs, PART):
+    first, size = 0, FOLLOWED
+    while first < settings.runs:
         if stop.is_set():
             raise Stopped
-        parts.append(run_ensemble(cage, settings, runs=min(PART, settings.runs - first), first_run=first))
+        runs, cut = min(size, settings.runs - first), first > 0 and isfinite(cage.land_gap)
+        parts.append(run_ensemble(cage, settings, runs=runs, first_run=first, growth_only=cut))
+        first, size = first + runs, PART
     return joined(parts)
 
 
