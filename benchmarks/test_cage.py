@@ -1,12 +1,16 @@
 """Speed of the planar cage: simulated seconds per second and core, of the shipped class and others.
 
 Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
-second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`.
+second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`, with the impacts on
+pockets and land. Runs whose end is known before count as whole ones. The small steps of the second road, on
+the same cage in the same session, are there to compare.
 """
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+import small_step
 
 from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
 from separatrix.study import Guidance, StabilitySettings
@@ -35,13 +39,28 @@ CASES = {
 }
 
 
+@pytest.mark.parametrize("growth_only", [True, False], ids=["growth only", "whole evidence and ledger"])
 @pytest.mark.parametrize("name", CASES)
-def test_planar_motion(benchmark, name):
+def test_planar_motion(benchmark, name, growth_only):
     """Runs of 0.3 s on one core."""
     settings = StabilitySettings(kicks=(0.5,), runs=RUNS, duration=0.3)
     run_ensemble(CASES[name], settings, runs=1)
-    benchmark(run_ensemble, CASES[name], settings)
+    found = benchmark(run_ensemble, CASES[name], settings, growth_only=growth_only)
+    impacts = int(found.pocket_impacts.sum() + found.land_impacts.sum())
     benchmark.extra_info["simulated_seconds_per_second"] = 0.3 * RUNS / benchmark.stats["mean"]
+    benchmark.extra_info["impacts_per_second"] = impacts / benchmark.stats["mean"]
+
+
+def test_small_steps(benchmark):
+    """The second road with steps of 1 us, 3 ms of the shipped class, on one core."""
+    lead = np.linspace(-1e-4, 1e-4, SHIPPED.ball_count)
+
+    def follow():
+        small_step.follow(SHIPPED, kick=0.5, direction=1.0, ball_lead=lead, duration=3e-3, step=1e-6)
+
+    follow()
+    benchmark(follow)
+    benchmark.extra_info["simulated_seconds_per_second"] = 3e-3 / benchmark.stats["mean"]
 
 
 def test_hard_impacts(benchmark):

@@ -194,7 +194,7 @@ def test_the_ledger_closes(cage):
 
 @pytest.mark.slow
 def test_ending_early_changes_no_outcome(monkeypatch):
-    """1008 runs around the threshold, at rest, turning and on a land, with and without early ends."""
+    """432 runs around the threshold, at rest, turning and on a land, with and without early ends."""
     cases = [
         (cage, kick)
         for cage in (
@@ -207,16 +207,17 @@ def test_ending_early_changes_no_outcome(monkeypatch):
         )
         for kick in (0.1, 0.5, 2.0)
     ]
-    settings = StabilitySettings(runs=56, duration=0.1)
+    settings = StabilitySettings(runs=24, duration=0.3)
     early = [run_ensemble(cage, settings, kicks=(kick,), jobs=2).outcome for cage, kick in cases]
     growth = [
         run_ensemble(cage, settings, kicks=(kick,), growth_only=True, jobs=2).outcome for cage, kick in cases
     ]
-    monkeypatch.setattr(ensemble, "GROWN", 1e30)
+    monkeypatch.setattr(ensemble, "GROWN", 1e6)
+    monkeypatch.setattr(ensemble, "GROWS_ON", math.inf)
     monkeypatch.setattr(ensemble, "DEAD", 0.0)
     late = [run_ensemble(cage, settings, kicks=(kick,), jobs=2).outcome for cage, kick in cases]
-    assert np.size(early) == 1008
-    assert 200 < np.count_nonzero(np.array(early) == RunOutcome.GROWS) < 800
+    assert np.size(early) == 432
+    assert 80 < np.count_nonzero(np.array(early) == RunOutcome.GROWS) < 350
     assert np.array_equal(early, late)
     assert np.array_equal(np.array(growth) == RunOutcome.GROWS, np.array(late) == RunOutcome.GROWS)
 

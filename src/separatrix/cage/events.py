@@ -133,6 +133,7 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, c):  # type: ignore[no
         noise = abs(w[0, S]) + abs(w[0, X]) + abs(w[0, Y]) + pockets[PLAY, j]
         tiny, grip = ROUNDING * noise, GRAINS * ROUNDING * noise - p.onset
         start, early, late = sign * q + grip, MAY_FALL, MAY_FALL
+        rise = turn = fall = 0.0
         middle = last = start
         if alike:
             rise, middle = sign * held(knot, 0, q, cos, sin), sign * held(knot, 1, q, cos, sin) + grip
@@ -145,7 +146,7 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, c):  # type: ignore[no
         if early == STAYS and (late == STAYS or end <= 0.5):
             continue
         penetration(p, pockets, w, j, c)
-        t = earliest_zero(c, start, middle, last, sign, early, late, end, noise)
+        t = earliest_zero(c, (start, rise, middle, turn, last, fall), sign, early, late, end, noise)
         if t < end:
             end, kind, ball = t, PART, j
     return end, kind, ball, deepest if alike else np.inf
@@ -168,23 +169,30 @@ def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, c, end, kind, ball):  
         if touch[SIDE, j] != 0 or abs(u) + most < play:
             continue
         noise = abs(w[0, S]) + abs(pockets[LEAD, j]) + abs(w[0, gx]) + abs(w[0, gy])
-        ready = False
+        tiny, ready = ROUNDING * noise, False
+        rise = turn = fall = 0.0
+        middle, last, high, low = u, u, np.inf, -np.inf
+        if alike:
+            rise, turn = free(knot, 0, gx, gy, cos, sin), free(knot, 2, gx, gy, cos, sin)
+            middle = free(knot, 1, gx, gy, cos, sin) - pockets[LEAD, j]
+            last, fall = free(knot, 3, gx, gy, cos, sin) - pockets[LEAD, j], free(knot, 4, gx, gy, cos, sin)
+            high = max(top(u, rise, middle, turn, off), top(middle, turn, last, fall, late_off))
+            low = -max(top(-u, -rise, -middle, -turn, off), top(-middle, -turn, -last, -fall, late_off))
         for sign in (1.0, -1.0):
+            if high < play if sign > 0.0 else low > -play:
+                continue
             early = late = MAY_FALL
-            start = middle = last = play - sign * u
+            start, half, whole = play - sign * u, play - sign * middle, play - sign * last
             if alike:
-                rise, turn = -sign * free(knot, 0, gx, gy, cos, sin), -sign * free(knot, 2, gx, gy, cos, sin)
-                middle = play - sign * (free(knot, 1, gx, gy, cos, sin) - pockets[LEAD, j])
-                last = play - sign * (free(knot, 3, gx, gy, cos, sin) - pockets[LEAD, j])
-                fall = -sign * free(knot, 4, gx, gy, cos, sin)
-                early = falling(start, rise, middle, turn, off, ROUNDING * noise)
-                late = falling(middle, turn, last, fall, late_off, ROUNDING * noise)
+                early = falling(start, -sign * rise, half, -sign * turn, off, tiny)
+                late = falling(half, -sign * turn, whole, -sign * fall, late_off, tiny)
             if early == STAYS and (late == STAYS or end <= 0.5):
                 continue
             if not ready:
                 way(p, pockets, w, gx, gy, j, c)
                 ready = True
-            t = earliest_zero(c, start, middle, last, -sign, early, late, end, noise)
+            at = (start, -sign * rise, half, -sign * turn, whole, -sign * fall)
+            t = earliest_zero(c, at, -sign, early, late, end, noise)
             if t < end:
                 end, kind, ball = t, TOUCH, (j if sign > 0.0 else j + pockets.shape[1])
     return end, kind, ball

@@ -65,11 +65,11 @@ if TYPE_CHECKING:
     from separatrix.units import Array
 
 FIFTHS = 5
-LOOKS = 10  # looks at the energy in each fifth
-LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 2, 5, 5
+LOOKS = 20  # looks at the energy in each fifth
+LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 3, 10, 6
 """Looks in a row, at the mean energy since the last, that tell how a run ends: beyond limits, or alike."""
 
-LONG_LOOK = 50.0
+LONG_LOOK = 25.0
 """Time between looks from which on they tell: some turns, in radians of the motion with one ball in touch."""
 
 EVEN, SURELY, WEAK = 0.01, 1.05, 0.1
@@ -153,7 +153,7 @@ def watch(  # type: ignore[no-untyped-def]
             even = even + 1 if met and abs(mean - level) <= EVEN * level else 1
             if even == 1:
                 level = mean
-            settled = even >= LOOKS_EVEN
+            settled = even >= LOOKS_EVEN and limits.mean_grows_above < np.inf
             if above == LOOKS_ABOVE or (settled and mean > SURELY * start):
                 return GROWS, window, (part + 1) * look
             if below == LOOKS_BELOW or (settled and may_die and mean < WEAK * start):

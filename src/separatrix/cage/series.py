@@ -20,10 +20,13 @@ NEVER = 2.0
 
 ROUNDING = 4.0 * 2.0**-52
 MOST_MARCHES = 500
+NEAR = 1e-8
+"""Last step of Newton's in units of a step in time: what is left is of its square."""
+
 MOST_ZEROS = 3
 
 STAYS, FALLS, MAY_FALL = range(3)
-"""Above zero between two knots; falls through zero, once; or neither is known."""
+"""Above zero between two knots; falls through zero once; or neither is known."""
 
 SLOPE_OFF = np.sqrt(3.0) / 216.0
 _POWER = np.arange(ORDER + 1.0)
@@ -208,15 +211,19 @@ def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore
 
     The cubic through them lies between the corners of its Bezier polygon. The function lies off that cubic
     by no more than 1/384 of its fourth derivative (`fourth`: times the fourth power of the distance), its
-    slope by sqrt(3)/216 (Birkhoff and Priver 1967). At a share t of the way it lies off by no more than
+    slope by sqrt(3)/216, its curvature by 1/12 (Birkhoff and Priver 1967): falling, or concave, throughout,
+    it has one zero. At a share t of the way it lies off by no more than
     fourth t^2 (1 - t)^2 / 24, less than 1/144 of it in both inner corners make up for.
     """
     one, two = start + start_slope / 3.0, last - last_slope / 3.0
     inner, outer = min(one, two), min(start, last)
     if min(inner, outer) > fourth / 384.0 or (outer > 0.0 and inner > fourth / 144.0):
         return STAYS
-    if start > 0.0 and last < -tiny and max(one - start, two - one, last - two) < -SLOPE_OFF / 3.0 * fourth:
-        return FALLS
+    if start > 0.0 and last < -tiny:
+        if max(one - start, two - one, last - two) < -SLOPE_OFF / 3.0 * fourth:
+            return FALLS
+        if max(start - 2.0 * one + two, one - 2.0 * two + last) < -fourth / 72.0:
+            return FALLS
     return MAY_FALL
 
 
@@ -226,11 +233,28 @@ def top(start, start_slope, last, last_slope, fourth):  # type: ignore[no-untype
     return max(start, last, start + start_slope / 3.0, last - last_slope / 3.0) + fourth / 384.0
 
 
-@inner_kernel
-def earliest_zero(c, start, middle, last, sign, early, late, end, noise):  # type: ignore[no-untyped-def]
+@inlined_kernel
+def cubic_zero(start, start_slope, last, last_slope):  # type: ignore[no-untyped-def]
+    """Share of the way between two knots at which the cubic through them is about zero."""
+    square = 3.0 * (last - start) - 2.0 * start_slope - last_slope
+    cube = 2.0 * (start - last) + start_slope + last_slope
+    x = start / (start - last)
+    for _ in range(4):
+        f = ((cube * x + square) * x + start_slope) * x + start
+        rate = (3.0 * cube * x + 2.0 * square) * x + start_slope
+        x = min(1.0, max(0.0, x - f / rate)) if rate != 0.0 else x
+    return x
+
+
+@inlined_kernel
+def earliest_zero(c, knots, sign, early, late, end, noise):  # type: ignore[no-untyped-def]
     """First zero as by `first_zero`, where it is known what each half of the step does, and the knots."""
+    start, rise, middle, turn, last, fall = knots
     if early == FALLS:
-        return single_zero(c, start, sign, 0.0, 0.5, 0.5 * start / (start - middle), noise)
+        guess = 0.5 * cubic_zero(start, rise, middle, turn)
+        return single_zero(
+            c, start, sign, 0.0, min(0.5, end), 0.5 * cubic_zero(start, rise, middle, turn), noise
+        )
     if early == MAY_FALL:
         t = first_zero(c, start, sign, min(end, 0.5), noise)
         if t < NEVER:
@@ -238,18 +262,20 @@ def earliest_zero(c, start, middle, last, sign, early, late, end, noise):  # typ
     if late == STAYS or end <= 0.5:
         return NEVER
     if late == FALLS:
-        return single_zero(c, start, sign, 0.5, 1.0, 0.5 + 0.5 * middle / (middle - last), noise)
+        guess = 0.5 + 0.5 * cubic_zero(middle, turn, last, fall)
+        return single_zero(c, start, sign, 0.5, end, guess, noise)
     return first_zero(c, start, sign, end, noise)
 
 
 @inner_kernel
 def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-untyped-def]
-    r"""Zero of :math:`start + sign \sum_{n \ge 1} c_n t^n` between two times, where it falls throughout."""
+    r"""Zero of :math:`start + sign \sum_{n \ge 1} c_n t^n` up to `high`, if its only one is before."""
     order = c.size - 1
     tiny = ROUNDING * (abs(start) + noise)
     for n in range(1, order + 1):
         tiny += ROUNDING * abs(c[n])
-    t = guess
+    limit = high
+    t = min(guess, limit)
     for _ in range(MOST_MARCHES):
         g = d = 0.0
         for n in range(order, 0, -1):
@@ -259,12 +285,18 @@ def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-unt
         g = start + sign * g * t
         if abs(g) <= tiny:
             break
+        if g > 0.0 and t == limit:
+            return NEVER
         if g > 0.0:
             low = t
         else:
             high = t
         t -= g / d
-        if not low < t < high:
+        if abs(g) < NEAR * abs(d) and low < t < high:
+            break
+        if t >= limit and high == limit:
+            t = limit
+        elif not low < t < high:
             t = 0.5 * (low + high)
             if not low < t < high:
                 break
