@@ -1,9 +1,9 @@
-"""Speed of the planar cage: simulated seconds per second and core, of the shipped class and others.
+"""Speed of the planar cage: simulated seconds and impacts per second and core, of the shipped class too.
 
 Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
-second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`, with the impacts on
-pockets and land. Runs whose end is known before count as whole ones. The small steps of the second road, on
-the same cage in the same session, are there to compare.
+second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`, with the impacts
+on pockets and land. Runs whose end is known before count as whole ones. The small steps of the second road,
+on the same class of cage in the same session, are there to compare.
 """
 
 from dataclasses import replace

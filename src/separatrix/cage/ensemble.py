@@ -21,6 +21,7 @@ from separatrix.cage.coefficients import (
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk, series_of
 from separatrix.errors import InputError
+from separatrix.study import LEAST_KICK, NO_KICK
 from separatrix.units import Array, Joule, MetrePerSecond, Second
 
 if TYPE_CHECKING:
@@ -254,11 +255,9 @@ def chosen(
     """Kicks, shape (kick,), and runs: those given, else those of the settings; refuse what is no ensemble."""
     speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
     count = settings.runs if runs is None else runs
-    if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > 0)):
-        cure = "A kick of zero starts nothing that could grow or die."
-        raise InputError(
-            "[stability] kicks", "must be one or more speeds > 0", "m/s", str(speeds.tolist()), cure
-        )
+    if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > LEAST_KICK)):
+        rule = f"must be one or more speeds > {LEAST_KICK:g}"
+        raise InputError("[stability] kicks", rule, "m/s", str(speeds.tolist()), NO_KICK)
     if count < 1:
         raise InputError("[stability] runs", "must be at least 1", "-", str(count))
     return speeds, count

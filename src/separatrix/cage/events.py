@@ -105,7 +105,9 @@ def fourths(w, a, b, c, most):  # type: ignore[no-untyped-def]
     order = w.shape[0] - SPARE
     early = late = 0.0
     for n in range(4, order + 1):
-        size = abs(w[n, a]) + abs(w[n, b]) + abs(w[n, c]) + most * abs(w[n, KEPT])
+        size = abs(w[n, a]) + abs(w[n, b]) + abs(w[n, c])
+        if most > 0.0:
+            size += most * abs(w[n, KEPT])
         early += EARLY[n] * size
         late += LATE[n] * size
     return early, late

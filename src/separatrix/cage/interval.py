@@ -19,7 +19,8 @@ def wilson_interval(successes: int, count: int) -> tuple[Ratio, Ratio]:
     p, z2 = successes / count, NORMAL_95**2
     middle = (p + z2 / (2 * count)) / (1 + z2 / count)
     half = NORMAL_95 / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    low, high = max(0.0, middle - half), min(1.0, middle + half)
+    return min(low, p), max(high, p)  # rounding would leave none and all just outside
 
 
 def mean_half_width(values: Array) -> float | None:

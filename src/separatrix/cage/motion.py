@@ -40,6 +40,7 @@ from separatrix.cage.slots import (
     COSINE,
     DEPTH,
     DRIVE,
+    EX,
     FELT,
     FORWARD,
     FRAME,
@@ -47,6 +48,7 @@ from separatrix.cage.slots import (
     GX,
     GY,
     HARMONICS,
+    KEPT,
     LAND_HITS,
     LEAD,
     LIST,
@@ -143,7 +145,11 @@ def step_length(p, w):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def rescale(p, w, balls, count, h, pressed):  # type: ignore[no-untyped-def]
     """Make the step the unit of time of all series that are looked at."""
-    stretch(w, 0, BODY, h)
+    stretch(w, X, W + 1, h)
+    if count > 0:
+        stretch(w, EX, KEPT + 1, h)
+    if p.eccentricity != 0.0:
+        stretch(w, GX, GY + 1, h)
     if p.needs_rotation:
         stretch(w, COS, SIN + 1, h)
     if p.needs_frame:

@@ -72,6 +72,9 @@ LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 3, 10, 6
 LONG_LOOK = 25.0
 """Time between looks from which on they tell: some turns, in radians of the motion with one ball in touch."""
 
+NOTHING_LEFT = 2.0**-104
+"""Share of the kick's energy below which speeds are rounding: growth rates count no further."""
+
 EVEN, SURELY, WEAK = 0.01, 1.05, 0.1
 """Share by which looks may differ that are alike; shares of the kick's energy beyond which they tell."""
 
@@ -204,7 +207,7 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
     out[GROWTH] = mean / start
     middle = (window * fifth + 0.5 * length) * p.unit
     out[FOLLOWED] = (window * fifth + length) * p.unit
-    out[GROWTH_RATE] = 0.5 * np.log(mean / start) / middle
+    out[GROWTH_RATE] = 0.5 * np.log(max(out[GROWTH], NOTHING_LEFT)) / middle
     if outcome == UNKNOWN:
         out[DRIFT_RATE] = drift_rate(tally, length * p.unit)
         outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[LARGEST_OFFSET] > limits.drift else DIES)
