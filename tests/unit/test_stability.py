@@ -8,13 +8,18 @@ from itertools import accumulate, pairwise
 import numpy as np
 import pytest
 
+from separatrix.cage import RunOutcome, run_ensemble
+from separatrix.chain import cage_state
+from separatrix.errors import ValidityWarning
 from separatrix.report.stability import curve
 from separatrix.stability import (
     Count,
     CriticalFriction,
+    GrowthCounter,
     Response,
     Side,
     closed_hard_limit,
+    growth,
     restitution_threshold,
     threshold_factors,
 )
@@ -23,6 +28,7 @@ from separatrix.stability.pool import Stopped, work_out, work_through
 from separatrix.stability.response import LADDER, cell_of
 from separatrix.stability.tracing import COARSE, FINEST, finer
 from separatrix.study import StabilitySettings
+from separatrix.study_file import read_study
 
 
 def response(probability, runs=64):
@@ -116,6 +122,17 @@ def test_runs_are_numbered_one_after_the_other():
     Response(look, 64).crossing(0.5, 96, 0.1)
     ends = [0, *accumulate(runs for _, runs in asked)]
     assert [first for first, _ in asked] == ends[:-1]
+
+
+def test_runs_that_stalled_are_told(monkeypatch):
+    """They count as not growing, and a warning says how many, from which kick, at which friction."""
+    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4, growth_only=True)
+    found.outcome[0, :3] = (RunOutcome.GROWS, RunOutcome.STALLED, RunOutcome.STALLED)
+    monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
+    counter = GrowthCounter(cage, StabilitySettings())
+    with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not growing"):
+        assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
 
 
 def test_24_that_agree_are_unanimous():

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from math import inf
 from threading import Event
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
+from separatrix.errors import ValidityWarning
 from separatrix.restitution import damping_for
 from separatrix.stability.pool import Stopped
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
+
+STALLS = (
+    "Curve: {} of {} runs from {:g} m/s at friction {:.3g} met too many impacts in no time; "
+    "they count as not growing."
+)
 
 ALIKE = 24
 """So many runs that all agree are enough: more would tell nothing."""
@@ -95,5 +102,7 @@ class GrowthCounter:
             found = run_ensemble(
                 cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, growth_only=True
             )
+            if stalled := int(found.count(RunOutcome.STALLED)[0]):
+                warnings.warn(STALLS.format(stalled, runs, kick, friction), ValidityWarning, stacklevel=2)
             self._counts[key] = Count(int(found.count(RunOutcome.GROWS)[0]), runs)
         return self._counts[key]
