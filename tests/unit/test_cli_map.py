@@ -229,7 +229,7 @@ def test_a_file_that_is_no_ledger_is_refused(capsys):
     assert (Path("m") / NAME).read_text() == "mine" * 1000
 
 
-SLOW = ["map", "slow.toml", "--points", "12", "--jobs", "1", "--json"]
+SLOW = ["map", "slow.toml", "--points", "16", "--jobs", "1", "--json"]
 
 
 def command(*options: str) -> list[str]:
@@ -254,12 +254,12 @@ def started(sent: int) -> tuple[int, str, str]:
     process = subprocess.Popen(
         command("--out", "m"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    for _ in range(1200):
+    for _ in range(6000):  # five minutes: a new machine compiles first
         if kept("m") > 0:
             break
         time.sleep(0.05)
     process.send_signal(sent)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=300)
     return process.returncode, out, err
 
 
@@ -271,10 +271,10 @@ def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     assert err.endswith("The same call goes on from there.\n")
     left = [point for point in part["points"] if not point["runs"]]
     assert {point["reason"] for point in left} == {"not run: interrupted"}
-    assert 0 < part["counts"]["not_run"] == len(left) < 144
+    assert 0 < part["counts"]["not_run"] == len(left) < 256
     assert main([*SLOW, "--out", "m"]) == 0
     whole, said = capsys.readouterr()
-    assert f"{144 - len(left)} of 144 points were finished" in said
+    assert f"{256 - len(left)} of 256 points were finished" in said
     assert main(SLOW) == 0
     assert json.loads(whole) == json.loads(capsys.readouterr().out)
 
