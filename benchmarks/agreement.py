@@ -2,9 +2,9 @@
 
     python benchmarks/agreement.py [RESTITUTION_FACTOR ...]
 
-Frictions go in 14 equal ratios from 0.7 times the band's lower end to 1.4 times its upper, so that they stand
-densest where verdicts change; every kick and run of the study, its whole evidence, two seeds of which neither
-placed the band.
+Frictions go in 30 equal ratios from 0.7 times the band's lower end to 1.4 times its upper, so that they stand
+densest where verdicts change; every kick and run of the study, followed as for `rank`, two seeds of which
+neither placed the band.
 """
 
 from __future__ import annotations
@@ -12,16 +12,19 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from dataclasses import replace
+from threading import Event
 
-from separatrix.cage import PlanarCage, Verdict, judge, run_ensemble, wilson_interval
+from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
 from separatrix.chain import cage_state
 from separatrix.stability import SEARCHED_FRICTION, cage_at, critical_friction
+from separatrix.stability.whole import whole_ensemble
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
 SEEDS = (101, 102)
 FACTORS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9)
-STEPS = 14
+STEPS = 30
+NEVER = Event()
 
 Pairs = Counter[tuple[Verdict, ...]]
 
@@ -37,7 +40,7 @@ def pairs_at(cage: PlanarCage, settings: StabilitySettings, eta: float) -> Pairs
 
 def verdicts(cage: PlanarCage, settings: StabilitySettings) -> tuple[Verdict, ...]:
     """Verdict of each seed."""
-    return tuple(judge(cage, run_ensemble(cage, replace(settings, seed=s), jobs=2)).verdict for s in SEEDS)
+    return tuple(judge(cage, whole_ensemble(cage, replace(settings, seed=s), NEVER)).verdict for s in SEEDS)
 
 
 def report(pairs: Pairs) -> str:

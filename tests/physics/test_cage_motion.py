@@ -270,3 +270,17 @@ def test_a_growing_run_ends_before_its_numbers_do():
     )
     assert np.all(result.outcome == RunOutcome.GROWS)
     assert np.all(np.isfinite(result.energy_growth))
+
+
+def test_a_whirl_that_grazes_its_pockets_goes_on():
+    """A pocket that just lets go is not met again at once: none of 32 whirling runs stalls."""
+    cage = replace(
+        TURNING,
+        race_damping=6500.0,
+        ball_cage_friction=0.0348,
+        guidance=Guidance.OUTER,
+        land_clearance=1e-3,
+    )
+    runs = run_ensemble(cage, StabilitySettings(runs=32), kicks=(2.0,), growth_only=True)
+    assert runs.count(RunOutcome.STALLED) == 0
+    assert runs.pocket_impacts.sum() > 10_000

@@ -235,10 +235,13 @@ def top(start, start_slope, last, last_slope, fourth):  # type: ignore[no-untype
 
 @inlined_kernel
 def cubic_zero(start, start_slope, last, last_slope):  # type: ignore[no-untyped-def]
-    """Share of the way between two knots at which the cubic through them is about zero."""
+    """Share of the way between two knots at which the cubic through them last is about zero.
+
+    A function that rises first may begin within rounding of zero: its zero is looked for from behind.
+    """
     square = 3.0 * (last - start) - 2.0 * start_slope - last_slope
     cube = 2.0 * (start - last) + start_slope + last_slope
-    x = start / (start - last)
+    x = 1.0 if start_slope > 0.0 else start / (start - last)
     for _ in range(4):
         f = ((cube * x + square) * x + start_slope) * x + start
         rate = (3.0 * cube * x + 2.0 * square) * x + start_slope
