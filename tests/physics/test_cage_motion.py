@@ -61,7 +61,7 @@ def test_a_blow_keeps_the_impulse_law():
     cage = replace(lone(0.6), ball_cage_friction=0.2)
     run = follow(cage, kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=0.0015, samples=9)
     normal = M * (run.velocity[-1, 1] - 0.5)
-    assert M * run.velocity[-1, 0] == pytest.approx(0.2 * normal, rel=1e-9)
+    assert M * run.velocity[-1, 0] == pytest.approx(0.2 * normal, rel=1e-9)  # as above: the turning
     backward = replace(cage, inner_speed=0.0, outer_speed=1500.0)
     other = follow(
         backward, kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=0.0015, samples=9
@@ -259,6 +259,7 @@ def test_a_history_is_consistent_with_itself():
     np.testing.assert_allclose(run.contact_force, force, atol=1e-6)  # 1e-6 N: rounding of 1e-16 m times k
     energy = run.kinetic_energy + run.spring_energy + run.land_energy
     explained = energy[0] + sum(run.work.values())
+    # what the ledger is asked to close to; it closes to 1e-12
     np.testing.assert_allclose(energy, explained, rtol=1e-9, atol=1e-9 * energy[0])
 
 

@@ -129,7 +129,7 @@ def load_state(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
 
 @inlined_kernel
 def step_length(p, w):  # type: ignore[no-untyped-def]
-    """Time for which the series gives the speeds to the last bit."""
+    """Time for which the last terms of the series stay below `PRECISION` of the speeds."""
     order = w.shape[0] - SPARE
     scale = PRECISION * (abs(w[0, VX]) + abs(w[0, VY]) + abs(w[0, W]) + p.slowest)
     last = max(abs(w[order, VX]), abs(w[order, VY]), abs(w[order, W]))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import fields, replace
-from typing import Any, TypeVar
+from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -53,6 +53,7 @@ from separatrix.stability.map_rule import (
     wrong_side_probability,
 )
 from separatrix.stability.pool import Progress
+from separatrix.stability.whole import joined
 from separatrix.study import StabilitySettings, Study
 from separatrix.units import MetrePerSecond, Ratio
 
@@ -201,7 +202,7 @@ def decided_ensemble(
     if _agree(cage, ensemble):
         return ensemble
     while not settled(now := _tally(cage, ensemble), runs) and now.runs < runs:
-        ensemble = joined(ensemble, run(now.runs, further(now.runs, runs)))
+        ensemble = joined([ensemble, run(now.runs, further(now.runs, runs))])
     return ensemble
 
 
@@ -215,16 +216,6 @@ def _tally(cage: PlanarCage, ensemble: Ensemble) -> Tally:
     grown, by_drive = int(ensemble.count(RunOutcome.GROWS)[0]), int(driven(cage, ensemble).sum())
     dead = int(ensemble.count(RunOutcome.DIES)[0])
     return Tally(runs=ensemble.outcome.shape[1], grown=grown, gained=grown - by_drive, dead=dead)
-
-
-def joined(first: Ensemble, others: Ensemble) -> Ensemble:
-    """One ensemble of the runs of two, from the same kicks."""
-
-    def column(name: str) -> Any:
-        one, other = getattr(first, name), getattr(others, name)
-        return np.concatenate((one, other), axis=1) if np.ndim(one) > 1 else one
-
-    return Ensemble(**{f.name: column(f.name) for f in fields(Ensemble)})
 
 
 def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
