@@ -20,7 +20,7 @@ from separatrix.stability import (
     threshold_points,
 )
 from separatrix.stability.pool import Stopped
-from separatrix.stability.whole import PART, whole_ensemble
+from separatrix.stability.whole import LEDGERS, PART, whole_ensemble
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05
@@ -228,10 +228,13 @@ def test_an_interrupt_ends_a_point_between_its_batches():
 
 
 def test_an_ensemble_in_parts_is_the_whole_one():
-    """Parts of 16 runs give, to the last bit, what all runs at once give."""
+    """Parts of 16 runs give, to the last bit, what all runs at once give; the ledger is that of the first."""
     settings = replace(SETTINGS, kicks=(0.2, 0.5), runs=PART + 5, duration=0.05)
     at_once = run_ensemble(CAGE, settings)
     parts = whole_ensemble(CAGE, settings, threading.Event())
+    assert (parts.energy_imbalance[:, :LEDGERS] == at_once.energy_imbalance[:, :LEDGERS]).all()
+    assert (parts.energy_imbalance[:, LEDGERS:] == 0.0).all()
+    at_once = replace(at_once, energy_imbalance=parts.energy_imbalance)
     assert repr(judge(CAGE, parts)) == repr(judge(CAGE, at_once))  # one field is an array
     assert (parts.energy_growth == at_once.energy_growth).all()
 

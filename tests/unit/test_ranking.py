@@ -2,11 +2,12 @@
 
 from dataclasses import fields, replace
 from enum import Enum
+from threading import Event
 
 import numpy as np
 import pytest
 
-from separatrix.cage import CageMotion, Judgement, Verdict, judge, run_ensemble
+from separatrix.cage import CageMotion, Judgement, Verdict, judge
 from separatrix.chain import cage_state
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
@@ -14,6 +15,7 @@ from separatrix.ranking.friction import measured, overall
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
 from separatrix.stability import RestitutionThreshold
+from separatrix.stability.whole import whole_ensemble
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -127,7 +129,7 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
     study = quick_study(ranking=both)
     a, b = rank(study).environments[0].materials
     cage = cage_state(study, friction=0.1).cage
-    found = judge(cage, run_ensemble(cage, QUICK))
+    found = judge(cage, whole_ensemble(cage, QUICK, Event()))
     names = {f.name for f in fields(Judgement)}
     assert names <= {f.name for f in fields(RankedMaterial)}
     for name in names - {"reason"}:

@@ -7,8 +7,8 @@ import numpy as np
 from separatrix.cage.land import land_geometry
 from separatrix.cage.series import (
     EARLY,
+    FALLS,
     LATE,
-    MAY_FALL,
     ROUNDING,
     SPARE,
     STAYS,
@@ -16,11 +16,11 @@ from separatrix.cage.series import (
     earliest_zero,
     falling,
     first_zero,
+    grip_at,
     knots,
     product,
-    reach,
     top,
-    travel,
+    value,
 )
 from separatrix.cage.slots import (
     BALLS,
@@ -61,6 +61,13 @@ GRAINS = 8.0
 """A pocket lets go of its ball this many roundings of its place after their force is gone: a cage that comes
 to rest would else touch and leave without end, at forces of some 1e-11 N."""
 
+CHANGE, BALL, EARLY_HALF, LATE_HALF, GUESS, NOISE, START, RISE, MIDDLE, TURN, LAST, FALL = range(12)
+"""Columns of a queue: what may happen (0 the ball is left, 1 and -1 met on that side), to which ball, what is
+known of each half of the step, about when, and the knots."""
+
+QUEUE, PATHS = 12, 7
+THIRD = 1.0 / 3.0
+
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
 
@@ -85,15 +92,21 @@ def penetration(p, pockets, w, j, c):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def held(knot, row, q, cos, sin):  # type: ignore[no-untyped-def]
-    """What the penetration of a linear pocket in touch is, or does, at a knot."""
-    return q * knot[row, KEPT] + cos * knot[row, EY] - sin * knot[row, EX] + knot[row, ES]
+def larger(a, b):  # type: ignore[no-untyped-def]
+    """Larger of two numbers, without a branch."""
+    return a if a > b else b
 
 
 @inlined_kernel
-def free(knot, row, gx, gy, cos, sin):  # type: ignore[no-untyped-def]
-    """What the place of a pocket that is not in touch is, or does, at a knot."""
-    return cos * knot[row, gy] - sin * knot[row, gx] + knot[row, S]
+def smaller(a, b):  # type: ignore[no-untyped-def]
+    """Smaller of two numbers, without a branch."""
+    return a if a < b else b
+
+
+@inlined_kernel
+def held(knot, row, q, cos, sin):  # type: ignore[no-untyped-def]
+    """What the penetration of a linear pocket in touch is, or does, at a knot."""
+    return q * knot[row, KEPT] + cos * knot[row, EY] - sin * knot[row, EX] + knot[row, ES]
 
 
 @inlined_kernel
@@ -114,90 +127,96 @@ def fourths(w, a, b, c, most):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def leave_balls(p, pockets, touch, w, count, alike, knot, c):  # type: ignore[no-untyped-def]
-    """Earliest time at which a pocket leaves its ball, what happens, to which ball, and the most depth."""
-    end, kind, ball, deepest = 1.0, NOTHING, -1, 0.0
-    off = late_off = most = 0.0
-    if alike:
-        for column in (EX, EY, ES, KEPT):
-            knots(w, column, knot)
-        for i in range(count):
-            most = max(most, abs(pockets[PENETRATION, touch[LIST, i]]))
-        off, late_off = fourths(w, EX, EY, ES, most)
-    for i in range(count):
-        j = touch[LIST, i]
-        q, cos, sin, sign = (
-            pockets[PENETRATION, j],
-            pockets[COSINE, j],
-            pockets[SINE, j],
-            float(touch[SIDE, j]),
-        )
-        noise = abs(w[0, S]) + abs(w[0, X]) + abs(w[0, Y]) + pockets[PLAY, j]
-        tiny, grip = ROUNDING * noise, GRAINS * ROUNDING * noise - p.onset
-        start, early, late = sign * q + grip, MAY_FALL, MAY_FALL
-        rise = turn = fall = 0.0
-        middle = last = start
-        if alike:
-            rise, middle = sign * held(knot, 0, q, cos, sin), sign * held(knot, 1, q, cos, sin) + grip
-            turn, last = sign * held(knot, 2, q, cos, sin), sign * held(knot, 3, q, cos, sin) + grip
-            fall = sign * held(knot, 4, q, cos, sin)
-            early = falling(start, rise, middle, turn, off, tiny)
-            late = falling(middle, turn, last, fall, late_off, tiny)
-            deepest = max(deepest, top(start, rise, middle, turn, off))
-            deepest = max(deepest, top(middle, turn, last, fall, late_off))
-        if early == STAYS and (late == STAYS or end <= 0.5):
-            continue
-        penetration(p, pockets, w, j, c)
-        t = earliest_zero(c, (start, rise, middle, turn, last, fall), sign, early, late, end, noise)
-        if t < end:
-            end, kind, ball = t, PART, j
-    return end, kind, ball, deepest if alike else np.inf
+def enter(queue, filled, change, ball, at, off, late_off, noise):  # type: ignore[no-untyped-def]
+    """Queue what may fall to zero, by its knots; return how many are queued."""
+    start, rise, middle, turn, last, fall = at
+    tiny = ROUNDING * noise
+    early = falling(start, rise, middle, turn, off, tiny)
+    late = falling(middle, turn, last, fall, late_off, tiny)
+    if early == STAYS and late == STAYS:
+        return filled
+    row = queue[filled]
+    row[CHANGE], row[BALL], row[EARLY_HALF], row[LATE_HALF], row[NOISE] = change, ball, early, late, noise
+    row[START], row[RISE], row[MIDDLE], row[TURN], row[LAST], row[FALL] = at
+    row[GUESS] = 1.0
+    if early == FALLS:
+        row[GUESS] = 0.5 * start / (start - middle)
+    elif early == STAYS and late == FALLS:
+        row[GUESS] = 0.5 + 0.5 * middle / (middle - last)
+    return filled + 1
 
 
 @inlined_kernel
-def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, c, end, kind, ball):  # type: ignore[no-untyped-def]
-    """Earliest change up to a time, if a pocket meets its ball before, what it is, and of which ball."""
-    off = late_off = 0.0
-    most = np.inf
+def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignore[no-untyped-def]
+    """Queue the pockets that may leave their balls; return how many, and the most depth."""
+    filled, deepest = 0, 0.0
+    off = late_off = most = 0.0
     if alike:
-        for column in (gx, gy, S):
-            knots(w, column, knot)
-        off, late_off = fourths(w, gx, gy, S, 0.0)
-        most = reach(w[0, gx], knot, gx) + reach(w[0, gy], knot, gy) + reach(w[0, S], knot, S)
-        most += max(off, late_off) / 384.0
-    for j in range(pockets.shape[1]):
-        cos, sin, play = pockets[COSINE, j], pockets[SINE, j], pockets[PLAY, j] + p.onset
-        u = w[0, gy] * cos - w[0, gx] * sin + w[0, S] - pockets[LEAD, j]
-        if touch[SIDE, j] != 0 or abs(u) + most < play:
+        knots(w, EX, KEPT + 1, knot)
+        for i in range(count):
+            most = larger(most, abs(pockets[PENETRATION, touch[LIST, i]]))
+        off, late_off = fourths(w, EX, EY, ES, most)
+    size = abs(w[0, S]) + abs(w[0, X]) + abs(w[0, Y])
+    for i in range(count):
+        j = touch[LIST, i]
+        q, cos, sin = pockets[PENETRATION, j], pockets[COSINE, j], pockets[SINE, j]
+        sign, noise = float(touch[SIDE, j]), size + pockets[PLAY, j]
+        grip = GRAINS * ROUNDING * noise - p.onset
+        start = sign * q + grip
+        if not alike:
+            filled = enter(queue, filled, 0, j, (start, 0.0, start, 0.0, start, 0.0), np.inf, np.inf, noise)
             continue
-        noise = abs(w[0, S]) + abs(pockets[LEAD, j]) + abs(w[0, gx]) + abs(w[0, gy])
-        tiny, ready = ROUNDING * noise, False
-        rise = turn = fall = 0.0
-        middle, last, high, low = u, u, np.inf, -np.inf
-        if alike:
-            rise, turn = free(knot, 0, gx, gy, cos, sin), free(knot, 2, gx, gy, cos, sin)
-            middle = free(knot, 1, gx, gy, cos, sin) - pockets[LEAD, j]
-            last, fall = free(knot, 3, gx, gy, cos, sin) - pockets[LEAD, j], free(knot, 4, gx, gy, cos, sin)
-            high = max(top(u, rise, middle, turn, off), top(middle, turn, last, fall, late_off))
-            low = -max(top(-u, -rise, -middle, -turn, off), top(-middle, -turn, -last, -fall, late_off))
+        rise, middle = sign * held(knot, 0, q, cos, sin), sign * held(knot, 1, q, cos, sin) + grip
+        turn, last = sign * held(knot, 2, q, cos, sin), sign * held(knot, 3, q, cos, sin) + grip
+        fall = sign * held(knot, 4, q, cos, sin)
+        deepest = larger(deepest, top(start, rise, middle, turn, off))
+        deepest = larger(deepest, top(middle, turn, last, fall, late_off))
+        at = (start, rise, middle, turn, last, fall)
+        filled = enter(queue, filled, 0, j, at, off, late_off, noise)
+    return filled, deepest if alike else np.inf
+
+
+@inlined_kernel
+def follow_places(pockets, w, gx, gy, knot, off, paths):  # type: ignore[no-untyped-def]
+    """Place of every pocket against its ball at the knots, and by how much it may pass its play."""
+    x0, y0, s0 = w[0, gx], w[0, gy], w[0, S]
+    x1, y1, s1 = knot[0, gx], knot[0, gy], knot[0, S]
+    x2, y2, s2 = knot[1, gx], knot[1, gy], knot[1, S]
+    x3, y3, s3 = knot[2, gx], knot[2, gy], knot[2, S]
+    x4, y4, s4 = knot[3, gx], knot[3, gy], knot[3, S]
+    x5, y5, s5 = knot[4, gx], knot[4, gy], knot[4, S]
+    for j in range(pockets.shape[1]):
+        cos, sin, lead = pockets[COSINE, j], pockets[SINE, j], pockets[LEAD, j]
+        start, rise = cos * y0 - sin * x0 + s0 - lead, cos * y1 - sin * x1 + s1
+        middle, turn = cos * y2 - sin * x2 + s2 - lead, cos * y3 - sin * x3 + s3
+        last, fall = cos * y4 - sin * x4 + s4 - lead, cos * y5 - sin * x5 + s5
+        paths[0, j], paths[1, j], paths[2, j] = start, rise, middle
+        paths[3, j], paths[4, j], paths[5, j] = turn, last, fall
+        one, two = start + THIRD * rise, middle - THIRD * turn
+        three, four = middle + THIRD * turn, last - THIRD * fall
+        high = larger(larger(larger(start, one), larger(two, three)), larger(four, last))
+        low = smaller(smaller(smaller(start, one), smaller(two, three)), smaller(four, last))
+        paths[6, j] = larger(high, -low) + off - pockets[PLAY, j]
+
+
+@inlined_kernel
+def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, paths, queue, filled):  # type: ignore[no-untyped-def]
+    """Queue the pockets that may meet their balls; return how many are queued."""
+    follow_places(pockets, w, gx, gy, knot, larger(off, late_off) / 384.0 if alike else np.inf, paths)
+    size = abs(w[0, S]) + abs(w[0, gx]) + abs(w[0, gy])
+    for j in range(pockets.shape[1]):
+        if touch[SIDE, j] != 0 or paths[6, j] < p.onset:
+            continue
+        noise, play = size + abs(pockets[LEAD, j]), pockets[PLAY, j] + p.onset
         for sign in (1.0, -1.0):
-            if high < play if sign > 0.0 else low > -play:
-                continue
-            early = late = MAY_FALL
-            start, half, whole = play - sign * u, play - sign * middle, play - sign * last
+            start, rise, middle = play - sign * paths[0, j], -sign * paths[1, j], play - sign * paths[2, j]
+            turn, last, fall = -sign * paths[3, j], play - sign * paths[4, j], -sign * paths[5, j]
+            at = (start, rise, middle, turn, last, fall)
             if alike:
-                early = falling(start, -sign * rise, half, -sign * turn, off, tiny)
-                late = falling(half, -sign * turn, whole, -sign * fall, late_off, tiny)
-            if early == STAYS and (late == STAYS or end <= 0.5):
-                continue
-            if not ready:
-                way(p, pockets, w, gx, gy, j, c)
-                ready = True
-            at = (start, -sign * rise, half, -sign * turn, whole, -sign * fall)
-            t = earliest_zero(c, at, -sign, early, late, end, noise)
-            if t < end:
-                end, kind, ball = t, TOUCH, (j if sign > 0.0 else j + pockets.shape[1])
-    return end, kind, ball
+                filled = enter(queue, filled, sign, j, at, off, late_off, noise)
+            else:
+                filled = enter(queue, filled, sign, j, at, np.inf, np.inf, noise)
+    return filled
 
 
 @inner_kernel
@@ -211,28 +230,73 @@ def way(p, pockets, w, gx, gy, j, c):  # type: ignore[no-untyped-def]
             c[n] -= pockets[DRIVE + k, j] * w[n, GONE + k]
 
 
+@inner_kernel
+def first_change(p, pockets, touch, w, gx, gy, queue, filled, c):  # type: ignore[no-untyped-def]
+    """Earliest of what is queued: its time, what happens, and to which ball."""
+    end, kind, ball = 1.0, NOTHING, -1
+    first, known = 0, False
+    x = y = s = ex = ey = es = kept = 0.0
+    for i in range(1, filled):
+        if queue[i, GUESS] < queue[first, GUESS]:
+            first = i
+    for n in range(filled):
+        row = queue[first if n == 0 else n - 1 if n <= first else n]
+        early, late, j, noise = int(row[EARLY_HALF]), int(row[LATE_HALF]), int(row[BALL]), row[NOISE]
+        if early == STAYS and end <= 0.5:
+            continue
+        side = row[CHANGE]
+        sign = float(touch[SIDE, j]) if side == 0.0 else -side
+        if kind != NOTHING and ((early == FALLS and end <= 0.5) or (early == STAYS and late == FALLS)):
+            if not known:
+                known = True
+                x, y, s = value(w, gx, end), value(w, gy, end), value(w, S, end)
+                ex, ey, es, kept = grip_at(w, end)
+            cos, sin = pockets[COSINE, j], pockets[SINE, j]
+            if side == 0.0:
+                q = pockets[PENETRATION, j]
+                left = row[START] + sign * (q * (kept - 1.0) + cos * ey - sin * ex + es)
+            else:
+                left = pockets[PLAY, j] + p.onset + sign * (cos * y - sin * x + s - pockets[LEAD, j])
+            if left > 2.0 * ROUNDING * noise:
+                continue
+        if side == 0.0:
+            penetration(p, pockets, w, j, c)
+        else:
+            way(p, pockets, w, gx, gy, j, c)
+        at = (row[START], row[RISE], row[MIDDLE], row[TURN], row[LAST], row[FALL])
+        t = earliest_zero(c, at, sign, early, late, end, noise)
+        if t < end:
+            end, kind, ball, known = t, PART if side == 0.0 else TOUCH, j, False
+            if side < 0.0:
+                ball = j + pockets.shape[1]
+    return end, kind, ball
+
+
 @inlined_kernel
-def pocket_change(p, pockets, touch, w, count, knot, c):  # type: ignore[no-untyped-def]
+def pocket_change(p, pockets, touch, w, count, knot, off, late_off, paths, queue, c):  # type: ignore[no-untyped-def]
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
         return 1.0, NOTHING, -1, np.inf
     alike = p.hertz == 0.0 and p.harmonics == 0
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
-    end, kind, ball, deepest = 1.0, NOTHING, -1, 0.0
+    filled, deepest = 0, 0.0
     if count > 0:
-        end, kind, ball, deepest = leave_balls(p, pockets, touch, w, count, alike, knot, c)
+        filled, deepest = leave_balls(p, pockets, touch, w, count, alike, knot, queue)
     if count < pockets.shape[1]:
-        end, kind, ball = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, c, end, kind, ball)
+        filled = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, paths, queue, filled)
+    if filled == 0:
+        return 1.0, NOTHING, -1, deepest
+    end, kind, ball = first_change(p, pockets, touch, w, gx, gy, queue, filled, c)
     return end, kind, ball, deepest
 
 
 @inner_kernel
-def land_change(p, w, land, h, end, kind, c):  # type: ignore[no-untyped-def]
+def land_change(p, w, land, h, end, kind, knot, off, c):  # type: ignore[no-untyped-def]
     """Earliest change up to a time, if the land's comes first, and what it is."""
     order = w.shape[0] - SPARE
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
     if land == CLEAR:
-        return meet_land(p, w, gx, gy, end, kind, c)
+        return meet_land(p, w, gx, gy, end, kind, knot, off, c)
     if land == RELEASED:
         return return_land(p, w, gx, gy, h, end, kind, c)
     copy_column(w, NORMAL, c)
@@ -255,11 +319,24 @@ def land_change(p, w, land, h, end, kind, c):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def meet_land(p, w, gx, gy, end, kind, c):  # type: ignore[no-untyped-def]
+def farthest(w, gx, gy, knot):  # type: ignore[no-untyped-def]
+    """Bound on the distance of the centre by its knots, without what lies off the cubics between them."""
+    x, y = w[0, gx], w[0, gy]
+    square = x * x + y * y
+    x, y = x + THIRD * knot[0, gx], y + THIRD * knot[0, gy]
+    square = larger(square, x * x + y * y)
+    for row, side in ((1, -THIRD), (1, THIRD), (3, -THIRD), (3, 0.0)):
+        x, y = knot[row, gx] + side * knot[row + 1, gx], knot[row, gy] + side * knot[row + 1, gy]
+        square = larger(square, x * x + y * y)
+    return np.sqrt(square)
+
+
+@inlined_kernel
+def meet_land(p, w, gx, gy, end, kind, knot, off, c):  # type: ignore[no-untyped-def]
     """Earliest change up to a time, if the cage meets its land before, and what it is."""
     order = w.shape[0] - SPARE
     near = np.sqrt(w[0, gx] ** 2 + w[0, gy] ** 2)
-    if near + travel(w, gx) + travel(w, gy) < p.land_gap - abs(p.roundness):
+    if farthest(w, gx, gy, knot) < (p.land_gap - abs(p.roundness) - off / 384.0):
         return end, kind
     if p.roundness == 0.0:
         for n in range(order + 1):

@@ -74,8 +74,8 @@ def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
 FEW_NODES, FEW_WEIGHTS = _gauss(4)
 """For means over a window: exact to the 7th power of the time in a step."""
 
-NODES, WEIGHTS = _gauss(10)
-"""For the ledger: exact to the 19th power, as the series themselves."""
+NODES, WEIGHTS = _gauss(7)
+"""For the ledger: exact to the 13th power, beyond that of the series."""
 
 
 @inlined_kernel

@@ -137,6 +137,7 @@ def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-unt
         after = AFTER[n]
         dx, dy, ds = vx * after, vy * after, vs * after
         w[n + 1, X], w[n + 1, Y], w[n + 1, S] = dx, dy, ds
+        next_x, next_y = dx, dy
         if rotating:
             rotate(w, radius, n + 1)
             if leaning:
@@ -183,7 +184,8 @@ def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-unt
         if heavy:
             ax += p.gravity * w[n, FRAME]
             ay -= p.gravity * w[n, FRAME + 1]
-        w[n, FX], w[n, FY], w[n, TORQUE] = fx, fy, torque
+        if pressed or leaning:
+            w[n, FX], w[n, FY], w[n, TORQUE] = fx, fy, torque
         if pressed:
             w[n, FRAME_X], w[n, FRAME_Y], w[n, FRAME_S] = ax, ay, twist
             land_geometry(p, w, gx, gy, n + 1)
@@ -191,7 +193,7 @@ def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-unt
             fx, fy, torque = w[n, FX], w[n, FY], w[n, TORQUE]
         if leaning:
             torque += centre_torque(w, p.eccentricity, radius, n)
-        x, y = w[n + 1, X], w[n + 1, Y]
+        x, y = next_x, next_y
         vx, vy, vs = (fx + ax) * after, (fy + ay) * after, (torque * swiftness + twist) * after
         w[n + 1, VX], w[n + 1, VY], w[n + 1, W] = vx, vy, vs
 

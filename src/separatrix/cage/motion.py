@@ -11,8 +11,11 @@ from separatrix.cage.events import (
     LAND_TOUCH,
     NOTHING,
     PART,
+    PATHS,
+    QUEUE,
     SLIDE_START,
     TOUCH,
+    fourths,
     land_change,
     pocket_change,
 )
@@ -20,12 +23,12 @@ from separatrix.cage.evidence import enter_step, enter_work, record
 from separatrix.cage.expand import expand
 from separatrix.cage.land import land_geometry, slide_speed
 from separatrix.cage.series import (
-    BRIEF_ORDER,
     KNOT_ROWS,
     ORDER,
     ROUNDING,
     SPARE,
     grip_at,
+    knots,
     motion_at,
     stretch,
     value,
@@ -74,13 +77,10 @@ from separatrix.cage.slots import (
 )
 from separatrix.compiled import inlined_kernel, inner_kernel, kernel
 
-PRECISION = 2.0**-46
+PRECISION = 2.0**-34
 LONGEST = 1e6
 HOLD = 1e-9
 """Share by which the friction asked of a sticking land may pass what it can hold, by rounding."""
-
-SOON = 0.4
-"""Time after which an event came that makes the next step a brief one."""
 
 MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
 """Steps in the time of a radian of the fastest motion: a run that asks for more stands still in time."""
@@ -288,13 +288,15 @@ def longest_step(p, w, s, land, left):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def make_room():  # type: ignore[no-untyped-def]
+def make_room(balls):  # type: ignore[no-untyped-def]
     """Arrays that `advance` works in."""
     return (
         np.zeros(8 + 6 * HARMONICS),
         np.zeros(ORDER + 1),
         np.zeros(WORKS),
         np.zeros((KNOT_ROWS, BODY)),
+        np.zeros((PATHS, balls)),
+        np.zeros((2 * balls, QUEUE)),
     )
 
 
@@ -328,16 +330,13 @@ def advance(  # type: ignore[no-untyped-def]
     """
     done, taken = 0.0, 0
     most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if p.hertz != 0.0 else 1.0)
-    sums, c, work, knot = room
+    sums, c, work, knot, paths, queue = room
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
-    long, long_c, brief = w, c, False
     while done < length and kinetic(p, s) < ceiling:
         taken += 1
         if taken > most:
             return False
         now = speed_share(p, s[CLOCK])
-        w = long[: BRIEF_ORDER + SPARE] if brief else long[: ORDER + SPARE]
-        c = long_c[: BRIEF_ORDER + 1] if brief else long_c[: ORDER + 1]
         count, land = mode[0], mode[1]
         pressed = land != CLEAR and land != RELEASED
         load_state(p, pockets, touch, s, w, count)
@@ -347,9 +346,15 @@ def advance(  # type: ignore[no-untyped-def]
                 w[n, SLIDING] = slide_speed(p, w, gx, gy, now, n)
         h = longest_step(p, w, s, land, length - done)
         rescale(p, w, pockets.shape[1], count, h, pressed)
-        end, kind, ball, deepest = pocket_change(p, pockets, touch, w, count, knot, c)
+        knots(w, X, S + 1, knot)
+        if p.eccentricity != 0.0:
+            knots(w, GX, GY + 1, knot)
+        off, late_off = fourths(w, gx, gy, S, 0.0)
+        end, kind, ball, deepest = pocket_change(
+            p, pockets, touch, w, count, knot, off, late_off, paths, queue, c
+        )
         if p.land_side != 0.0:
-            end, kind = land_change(p, w, land, h, end, kind, c)
+            end, kind = land_change(p, w, land, h, end, kind, knot, max(off, late_off), c)
         if rows.shape[0] > mode[2]:
             mode[2] = record(
                 p, pockets, touch, w, s, count, land, now, h, end, sums, ledger, rows, mode[2], work
@@ -359,7 +364,6 @@ def advance(  # type: ignore[no-untyped-def]
         after = motion_at(w, end)
         enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tally, c)
         finish_step(p, pockets, touch, w, s, count, h, end, after)
-        brief = kind != NOTHING and end * h < SOON
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind in (PART, TOUCH):
             change_pocket(p, pockets, touch, s, mode, hits, kind, ball)

@@ -199,7 +199,21 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
     start = kinetic(p, s)
     outcome, window, length = watch(
-        p, pockets, touch, s, w, mode, ledger, tally, hits, fifth, start, limits, rows, books, make_room()
+        p,
+        pockets,
+        touch,
+        s,
+        w,
+        mode,
+        ledger,
+        tally,
+        hits,
+        fifth,
+        start,
+        limits,
+        rows,
+        books,
+        make_room(balls),
     )
     end = tally[window]
     out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))

@@ -7,9 +7,8 @@ import numpy as np
 from separatrix.cage.slots import ES, EX, EY, KEPT, VX, VY, S, W, X, Y
 from separatrix.compiled import inlined_kernel, inner_kernel
 
-ORDER, BRIEF_ORDER = 24, 16
-"""Terms of a series beyond the first; the fewer in a step that an event is likely to end soon. The step is so
-long that the last ones are near rounding."""
+ORDER = 14
+"""Terms of a series beyond the first; the step is so long that the last ones are small beside the speeds."""
 
 SPARE = 3
 """Rows of a series of order n are n + 3: the first, n terms, and two that a mode in between needs."""
@@ -28,6 +27,7 @@ MOST_ZEROS = 3
 STAYS, FALLS, MAY_FALL = range(3)
 """Above zero between two knots; falls through zero once; or neither is known."""
 
+THIRD = 1.0 / 3.0
 SLOPE_OFF = np.sqrt(3.0) / 216.0
 _POWER = np.arange(ORDER + 1.0)
 _FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
@@ -99,13 +99,21 @@ def stretch(w, first, last, factor):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def travel(w, column):  # type: ignore[no-untyped-def]
-    """Bound on how far a column moves from its start within the step."""
-    order = w.shape[0] - SPARE
-    total = 0.0
-    for n in range(1, order + 1):
-        total += abs(w[n, column])
-    return total
+def tail_at(c, first, t):  # type: ignore[no-untyped-def]
+    r"""Value and slope at a time of :math:`\sum_m c_{first + m} t^m`; even and odd powers side by side."""
+    m = c.size - 1 - first
+    square = t * t
+    even = odd = even_slope = odd_slope = 0.0
+    if m % 2 == 0:
+        even, even_slope = c[first + m], m * c[first + m]
+        m -= 1
+    while m > 1:
+        odd, odd_slope = odd * square + c[first + m], odd_slope * square + m * c[first + m]
+        even = even * square + c[first + m - 1]
+        even_slope = even_slope * square + (m - 1) * c[first + m - 1]
+        m -= 2
+    odd, odd_slope = odd * square + c[first + 1], odd_slope * square + c[first + 1]
+    return even * square + c[first] + t * odd, odd_slope + t * even_slope
 
 
 @inner_kernel
@@ -155,10 +163,7 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
         power *= end
     t = 0.0
     for _ in range(MOST_MARCHES):
-        g = d = 0.0
-        for n in range(order, out, -1):
-            d = d * t + g
-            g = g * t + c[n]
+        g, d = tail_at(c, out + 1, t)
         d = sign * (d * t + g)
         g = lead + sign * g * t
         if g <= tiny:
@@ -173,34 +178,24 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def knots(w, column, knot):  # type: ignore[no-untyped-def]
-    """Slope of a column at the start; value and slope in the middle; both at the end: into its column.
+def knots(w, first, last, knot):  # type: ignore[no-untyped-def]
+    """Slope of columns at the start; value and slope in the middle; both at the end: into their columns.
 
     The slopes are times half the step.
     """
     order = w.shape[0] - SPARE
-    middle = middle_slope = last = last_slope = 0.0
-    for n in range(order + 1):
-        c = w[n, column]
-        middle += HALVES[n] * c
-        middle_slope += HALF_SLOPES[n] * c
-        last += c
-        last_slope += 0.5 * n * c
-    knot[0, column] = 0.5 * w[1, column]
-    knot[1, column], knot[2, column] = middle, middle_slope
-    knot[3, column], knot[4, column] = last, last_slope
-
-
-@inlined_kernel
-def reach(start, knot, column):  # type: ignore[no-untyped-def]
-    """How far from its start a column comes by its knots, without what lies off the cubics between them."""
-    return max(
-        abs(knot[0, column]) / 3.0,
-        abs(knot[1, column] - knot[2, column] / 3.0 - start),
-        abs(knot[1, column] + knot[2, column] / 3.0 - start),
-        abs(knot[3, column] - knot[4, column] / 3.0 - start),
-        abs(knot[3, column] - start),
-    )
+    for k in range(first, last):
+        knot[0, k] = 0.5 * w[1, k]
+        knot[1, k] = knot[3, k] = w[0, k]
+        knot[2, k] = knot[4, k] = 0.0
+    for n in range(1, order + 1):
+        half, half_slope, whole_slope = HALVES[n], HALF_SLOPES[n], 0.5 * n
+        for k in range(first, last):
+            c = w[n, k]
+            knot[1, k] += half * c
+            knot[2, k] += half_slope * c
+            knot[3, k] += c
+            knot[4, k] += whole_slope * c
 
 
 @inlined_kernel
@@ -215,14 +210,14 @@ def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore
     it has one zero. At a share t of the way it lies off by no more than
     fourth t^2 (1 - t)^2 / 24, less than 1/144 of it in both inner corners make up for.
     """
-    one, two = start + start_slope / 3.0, last - last_slope / 3.0
+    one, two = start + THIRD * start_slope, last - THIRD * last_slope
     inner, outer = min(one, two), min(start, last)
-    if min(inner, outer) > fourth / 384.0 or (outer > 0.0 and inner > fourth / 144.0):
+    if min(inner, outer) > fourth * (1.0 / 384.0) or (outer > 0.0 and inner > fourth * (1.0 / 144.0)):
         return STAYS
     if start > 0.0 and last < -tiny:
-        if max(one - start, two - one, last - two) < -SLOPE_OFF / 3.0 * fourth:
+        if max(one - start, two - one, last - two) < -THIRD * SLOPE_OFF * fourth:
             return FALLS
-        if max(start - 2.0 * one + two, one - 2.0 * two + last) < -fourth / 72.0:
+        if max(start - 2.0 * one + two, one - 2.0 * two + last) < -fourth * (1.0 / 72.0):
             return FALLS
     return MAY_FALL
 
@@ -230,7 +225,7 @@ def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore
 @inlined_kernel
 def top(start, start_slope, last, last_slope, fourth):  # type: ignore[no-untyped-def]
     """Bound from above of a function between two knots, as in `falling`."""
-    return max(start, last, start + start_slope / 3.0, last - last_slope / 3.0) + fourth / 384.0
+    return max(start, last, start + THIRD * start_slope, last - THIRD * last_slope) + fourth * (1.0 / 384.0)
 
 
 @inlined_kernel
@@ -280,10 +275,7 @@ def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-unt
     limit = high
     t = min(guess, limit)
     for _ in range(MOST_MARCHES):
-        g = d = 0.0
-        for n in range(order, 0, -1):
-            d = d * t + g
-            g = g * t + c[n]
+        g, d = tail_at(c, 1, t)
         d = sign * (d * t + g)
         g = start + sign * g * t
         if abs(g) <= tiny:

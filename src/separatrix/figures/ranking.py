@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.stability import ETA_LABEL, chain_lines, frame
+from separatrix.figures.stability import ETA_LABEL, chain_lines, frame, mark_here
 from separatrix.figures.style import (
     BLACK,
     CYCLE,
@@ -46,6 +46,7 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     measured = data.isel(material=np.isfinite(data["material_friction"].values))
     frame(axes, data, top)
     chain_lines(axes, data)
+    mark_here(axes, data)
     _paper_line(axes, data)
     for i in range(measured.sizes["material"]):
         _candidate(axes, measured.isel(material=i))

@@ -42,9 +42,10 @@ def stability(data: xr.Dataset) -> Figure:
         figure, axes = canvas(PAGE, 4.1)
     frame(axes, data, highest(data, candidates=candidates))
     chain_lines(axes, data)
-    _here(axes, data)
+    mark_here(axes, data)
     _ends(axes, data)
-    axes.set_title(f"{'a  ' if candidates else ''}Critical friction and its band")
+    band = " and its band" if has_band(data) else ""
+    axes.set_title(f"{'a  ' if candidates else ''}Critical friction{band}")
     if candidates:
         _candidates(beside, data)
     legend_below(figure)
@@ -53,8 +54,11 @@ def stability(data: xr.Dataset) -> Figure:
 
 def highest(data: xr.Dataset, *, candidates: bool = False) -> float:
     """Friction at the top of the picture: the band, and the candidates if they are drawn, up to a limit."""
-    names = ("critical_friction_high", "scatter_high", *(["material_friction"] if candidates else []))
-    found = np.concatenate([[0.0], *(data[name].values.ravel() for name in names if name in data)])
+    names = ["critical_friction_high", "scatter_high", "here_critical_friction_high"]
+    names += ["material_friction"] if candidates else []
+    found = np.concatenate(
+        [[0.0], *(data[name].values.ravel().astype(float) for name in names if name in data)]
+    )
     top = 1.25 * float(np.nanmax(found))
     return min(HIGHEST, top) if top > 0.0 else HIGHEST
 
@@ -67,9 +71,15 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
     axes.plot(eta, data["critical_friction"].values, color=BLUE, marker=".", ms=4, label=label)
     scatter = data["scatter_low"].values, data["scatter_high"].values
     axes.fill_between(eta, *scatter, color=BLUE, alpha=0.35, lw=0, label="its 95 % interval")
-    _band(axes, eta, data, top)
-    _other_kicks(axes, data)
+    if has_band(data):
+        _band(axes, eta, data, top)
+        _other_kicks(axes, data)
     _limits(axes, data)
+
+
+def has_band(data: xr.Dataset) -> bool:
+    """Whether the points of the curve were asked for their band."""
+    return bool(data["band"]) if "band" in data else True
 
 
 def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
@@ -147,7 +157,7 @@ def _other_kicks(axes: Axes, data: xr.Dataset) -> None:
             axes.plot(data["restitution_factor"].values, found.values[:, place], **look)
 
 
-def _here(axes: Axes, data: xr.Dataset) -> None:
+def mark_here(axes: Axes, data: xr.Dataset) -> None:
     """Mark the critical friction at the bearing's own restitution factor, with its interval."""
     names = [
         f"here_{name}" for name in ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
@@ -158,6 +168,22 @@ def _here(axes: Axes, data: xr.Dataset) -> None:
         label = rf"this bearing's critical friction, {middle:.2g} ({low:.2g} to {high:.2g})"
         axes.vlines(eta, low, high, color=BLACK, lw=2.5, zorder=3)
         axes.plot(eta, middle, "D", mfc="white", mec=BLACK, ms=4.5, ls="", zorder=4, label=label)
+        if not has_band(data):
+            _here_band(axes, eta, data)
+
+
+def _here_band(axes: Axes, eta: float, data: xr.Dataset) -> None:
+    """Draw the band at the bearing's own restitution factor, where the curve has none."""
+    low, high = here_band(data, axes.get_ylim()[1])
+    kicks = data["kicks"].values
+    label = f"its band over kicks of {kicks.min():g} to {kicks.max():g} m/s"
+    axes.vlines(eta, low, high, color=BLUE, alpha=0.25, lw=9, zorder=1, label=label)
+
+
+def here_band(data: xr.Dataset, top: float) -> tuple[float, float]:
+    """Return both ends of the band at the bearing's own restitution factor, as `band_ends` does."""
+    low, high = (float(data[f"here_critical_friction_{end}"]) for end in ("low", "high"))
+    return (low if np.isfinite(low) else 0.0), (high if np.isfinite(high) else 2 * top)
 
 
 CHAIN_LINES = {
@@ -178,7 +204,8 @@ def _ends(axes: Axes, data: xr.Dataset) -> None:
     lines = np.array([float(data[name]) for name in CHAIN_LINES])
     free = max(np.linspace(0.15, 0.6, 10), key=lambda eta: float(np.abs(lines - eta).min()))
     look: Any = {"transform": axes.transAxes, "color": GREY, "style": "italic"}
-    axes.text(free, 0.035, "stable", ha="center", **look)
+    plate: Any = {"fc": "white", "ec": "none", "pad": 1.0}
+    axes.text(free, 0.035, "stable", ha="center", bbox=plate, **look)
     axes.text(0.98, 0.95, "unstable", ha="right", **look)
     axes.vlines(data["restitution_factor"].values, 0, RUG * axes.get_ylim()[1], color=BLUE, lw=0.6)
 
@@ -231,6 +258,9 @@ def _errors(data: xr.Dataset) -> Array:
 def _own_bands(axes: Axes, data: xr.Dataset) -> None:
     """Shade the band at each candidate's restitution factor, with a line where half the runs grow."""
     eta, top = data["restitution_factor"].values, axes.get_ylim()[1]
+    if not has_band(data):
+        _shared_band(axes, data, top)
+        return
     low, high = band_ends(data, top)
     middle = data["critical_friction"].values
     own = data["material_restitution_factor"].transpose("environment", "material").values.astype(float)
@@ -240,3 +270,14 @@ def _own_bands(axes: Axes, data: xr.Dataset) -> None:
             ends = np.interp(at, eta, low), np.interp(at, eta, high)
             axes.fill_between([place - 0.4, place + 0.4], *ends, color=BLUE, alpha=0.15, lw=0)
             axes.hlines(np.interp(at, eta, middle), place - 0.4, place + 0.4, color=BLUE, lw=1.3)
+
+
+def _shared_band(axes: Axes, data: xr.Dataset, top: float) -> None:
+    """Shade the band of this bearing beside the candidates that have its restitution factor."""
+    if "here_restitution_factor" not in data or not np.isfinite(float(data["here_critical_friction"])):
+        return
+    own = data["material_restitution_factor"].transpose("environment", "material").values.astype(float)
+    for place, at in enumerate(_measured_mean(own)):
+        if np.isclose(at, float(data["here_restitution_factor"]), rtol=1e-9):
+            axes.fill_between([place - 0.4, place + 0.4], *here_band(data, top), color=BLUE, alpha=0.15, lw=0)
+            axes.hlines(float(data["here_critical_friction"]), place - 0.4, place + 0.4, color=BLUE, lw=1.3)

@@ -24,7 +24,7 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import Node
+from separatrix.stability.curve import HERE, Node
 from separatrix.stability.pool import Progress, work_out
 from separatrix.stability.threshold import rising
 from separatrix.stability.whole import whole_ensemble
@@ -60,6 +60,7 @@ class _Findings:
     """What was computed, by pocket stiffness; an interrupt leaves entries out."""
 
     points: Mapping[NewtonPerMetre, Sequence[CriticalFriction]]
+    here: CriticalFriction | None
     judgements: Mapping[Key, Judgement]
     traced: Mapping[NewtonPerMetre, bool]
     complete: bool
@@ -90,7 +91,8 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     Notes
     -----
     Ranked by restitution threshold, as the paper does (its section 5, Figs 9-12); the verdict is the
-    ensemble's at the chain's own restitution factor (docs/theory/ranking.md).
+    ensemble's at the chain's own restitution factor (docs/theory/ranking.md). Only there the critical
+    friction has its band over the kicks.
     """
     asked = ranking_question(study)
     question = _question(study, asked)
@@ -154,7 +156,7 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
         settings=study.stability,
         cages=cages,
         tracers={
-            k: Tracer(GrowthCounter(state.cage, study.stability, stop), factors, band=k == reference)
+            k: Tracer(GrowthCounter(state.cage, study.stability, stop), factors, band=False)
             for k, state in cages.items()
         },
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
@@ -172,20 +174,22 @@ def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: P
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
     results = work_out(
         lambda piece: _computed(question, piece),
-        [*nodes, *keys],
+        [(question.reference, (HERE, None)), *nodes, *keys],
         more=lambda piece, results: _more(question, piece, results),
         jobs=jobs,
         progress=progress,
         stop=question.stop,
     )
     points = {k: _points_of(results, k) for k in question.cages}
+    here = points[question.reference].pop((HERE, None), None)
     judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
     traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
     return _Findings(
         points={k: rising(found.values()) for k, found in points.items()},
+        here=here,
         judgements=judged,
         traced=traced,
-        complete=all(traced.values()) and len(judged) == len(keys),
+        complete=here is not None and all(traced.values()) and len(judged) == len(keys),
     )
 
 
@@ -226,7 +230,7 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     if not points:
         return None
     cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
-    return curve_of_points(cage, question.settings, points, complete=complete)
+    return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
 
 
 def _ranked(

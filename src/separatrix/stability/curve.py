@@ -42,6 +42,8 @@ class StabilityCurve:
         Where dead hard impacts begin to whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even [-].
     band_few, band_most : float
         Shares of growing runs at the ends of the band [-].
+    band : bool
+        Whether the points of `curve` have their band; `here` always has.
     kicks, middle_kick, runs, duration, ball_scatter
         The ensemble.
     searched_friction : float
@@ -64,6 +66,7 @@ class StabilityCurve:
     hard_limit_closed: Ratio | None = None
     band_few: Ratio
     band_most: Ratio
+    band: bool
     kicks: tuple[MetrePerSecond, ...]
     middle_kick: MetrePerSecond
     runs: int
@@ -149,12 +152,10 @@ class Tracer:
         return [(eta, None) for eta in self.given or COARSE]
 
     def point(self, node: Node) -> CriticalFriction:
-        """Critical friction at a node."""
-        counts = self.counter
+        """Critical friction at a node; at the cage's own race damping always with its band."""
+        counts, band = self.counter, self.band or node[0] == HERE
         eta = None if node[0] == HERE else node[0]
-        return critical_friction(
-            counts.cage, eta, counts.settings, counter=counts, band=self.band, guess=node[1]
-        )
+        return critical_friction(counts.cage, eta, counts.settings, counter=counts, band=band, guess=node[1])
 
     def more(self, node: Node, found: Mapping[Node, CriticalFriction]) -> list[Node]:
         """Nodes that are wanted once this one is known."""
@@ -225,6 +226,7 @@ def curve_of_points(
     settings: StabilitySettings,
     points: Iterable[CriticalFriction],
     *,
+    band: bool = True,
     here: CriticalFriction | None = None,
     complete: bool = True,
 ) -> StabilityCurve:
@@ -240,6 +242,7 @@ def curve_of_points(
         hard_limit_closed=closed_hard_limit(cage.ball_count),
         band_few=BAND_FEW,
         band_most=BAND_MOST,
+        band=band,
         kicks=settings.kicks,
         middle_kick=settings.middle_kick,
         runs=settings.runs,

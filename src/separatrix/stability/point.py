@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -17,8 +18,9 @@ from separatrix.units import MetrePerSecond, Ratio
 BAND_FEW, BAND_MOST = 0.1, 0.9
 """Shares of growing runs at which a kick is said to die, and to grow."""
 
-MIDDLE_RUNS, OTHER_RUNS = 1.5, 0.75
-"""Runs spent near a crossing, in parts of those of the settings: on the critical friction, on the others."""
+MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
+"""Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
+band, for kicks that may set it; on a first look at where each kick's crossings are."""
 
 APART = 1.4
 """A guess of the ratio between two crossings of one kick; it costs or saves time only."""
@@ -45,7 +47,7 @@ class CriticalFriction:
         The same of the ends of the band [-].
     kick_low, kick_critical_friction, kick_high : tuple
         Frictions at which a tenth, half, nine tenths of the runs grow, for each kick by itself; None where
-        there is none, empty if the band was not asked for [-].
+        there is none, or the band was not asked for [-].
     side : Side or None
         Where `critical_friction` is None: whether P(grow) lies above one half throughout, or below.
     reason : str or None
@@ -106,10 +108,14 @@ def critical_friction(
     if not band:
         return _point(eta, settings, found, {})
     start = found.value if isinstance(found, Crossing) else start
-    few = max(1, round(OTHER_RUNS * settings.runs))
+    few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
     each = {kick: _crossings(response, few, start) for kick, response in responses.items()}
-    each[settings.middle_kick] = (each[settings.middle_kick][0], found, each[settings.middle_kick][2])
-    return _point(eta, settings, found, each)
+    middles = {kick: three[1] for kick, three in each.items()} | {settings.middle_kick: found}
+    lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
+    highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
+    return _point(
+        eta, settings, found, {kick: (lows[kick], middles[kick], highs[kick]) for kick in responses}
+    )
 
 
 def own_restitution_factor(cage: PlanarCage) -> Ratio:
@@ -134,11 +140,34 @@ def _look(counts: GrowthCounter, eta: Ratio | None, kick: MetrePerSecond) -> Loo
 
 def _crossings(response: Response, runs: int, start: Ratio) -> tuple[Found, Found, Found]:
     """Crossings of a tenth, one half and nine tenths, from one kick; the runs go to the ends."""
-    middle = response.crossing(0.5, runs // 3, start)
+    middle = response.crossing(0.5, runs, start)
     near = middle.value if isinstance(middle, Crossing) else start
     low = response.crossing(BAND_FEW, runs, near / APART)
     high = response.crossing(BAND_MOST, runs, near * APART)
     return low, response.crossing(0.5, 0, near), high
+
+
+def _first_settled(
+    responses: Mapping[MetrePerSecond, Response],
+    target: Ratio,
+    runs: int,
+    found: Mapping[MetrePerSecond, Found],
+    way: int,
+) -> dict[MetrePerSecond, Found]:
+    """Spend runs on the kicks whose crossing may come first, going up (`way` 1) or down (-1) in friction."""
+    settled = dict(found)
+    crossings = {kick: end for kick, end in found.items() if isinstance(end, Crossing)}
+    if len(crossings) < len(found) and (Side.ABOVE if way > 0 else Side.BELOW) in found.values():
+        return settled
+    farthest = math.inf
+    for kick, end in sorted(crossings.items(), key=lambda item: way * item[1].value):
+        if min(way * end.low, way * end.high) > farthest:
+            continue
+        again = responses[kick].crossing(target, runs, end.value)
+        settled[kick] = again
+        if isinstance(again, Crossing):
+            farthest = min(farthest, max(way * again.low, way * again.high))
+    return settled
 
 
 def _point(
@@ -148,6 +177,7 @@ def _point(
     each: Mapping[MetrePerSecond, tuple[Found, Found, Found]],
 ) -> CriticalFriction:
     """Record of the crossings, with the reasons of those that are missing."""
+    none: tuple[Ratio | None, ...] = () if each else (None,) * len(settings.kicks)
     lows = {kick: three[0] for kick, three in each.items()}
     highs = {kick: three[2] for kick, three in each.items()}
     low, high = _first(lows), _last(highs)
@@ -164,9 +194,9 @@ def _point(
         low_scatter_high=_high(low[0]),
         high_scatter_low=_low(high[0]),
         high_scatter_high=_high(high[0]),
-        kick_low=tuple(_value(three[0]) for three in each.values()),
-        kick_critical_friction=tuple(_value(three[1]) for three in each.values()),
-        kick_high=tuple(_value(three[2]) for three in each.values()),
+        kick_low=none or tuple(_value(three[0]) for three in each.values()),
+        kick_critical_friction=none or tuple(_value(three[1]) for three in each.values()),
+        kick_high=none or tuple(_value(three[2]) for three in each.values()),
         side=found if isinstance(found, Side) else None,
         reason=_reason([middle, *band]),
     )

@@ -16,15 +16,17 @@ from separatrix.study import StabilitySettings
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
-FOLLOWED = 8
-"""Runs from each kick that are followed to their end also where it is known to be rest on the land."""
+LEDGERS, FOLLOWED = 2, 8
+"""Runs from each kick whose ledger of work is kept, and those that are followed to their end also where it is
+known to be rest on the land."""
 
 
 def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -> Ensemble:
     """Every run of the settings from every kick.
 
-    The first `FOLLOWED` are followed to their end. Where a land holds the cage, which cannot drift then, the
-    others that die end as soon as that is known (`Ensemble.cut`); no outcome depends on it.
+    The first `LEDGERS` have their ledger, the first `FOLLOWED` are followed to their end. Where a land holds
+    the cage, which cannot drift then, the others that die end as soon as that is known (`Ensemble.cut`); no
+    outcome depends on it.
 
     Raises
     ------
@@ -32,13 +34,17 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
         `stop` was set before the last part.
     """
     parts: list[Ensemble] = []
-    first, size = 0, FOLLOWED
+    first, size = 0, LEDGERS
     while first < settings.runs:
         if stop.is_set():
             raise Stopped
-        runs, cut = min(size, settings.runs - first), first > 0 and isfinite(cage.land_gap)
-        parts.append(run_ensemble(cage, settings, runs=runs, first_run=first, growth_only=cut))
-        first, size = first + runs, PART
+        runs, cut = min(size, settings.runs - first), first >= FOLLOWED and isfinite(cage.land_gap)
+        found = run_ensemble(
+            cage, settings, runs=runs, first_run=first, growth_only=cut, ledger=first < LEDGERS
+        )
+        parts.append(found)
+        first += runs
+        size = FOLLOWED - first if first < FOLLOWED else PART
     return joined(parts)
 
 
