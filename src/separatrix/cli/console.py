@@ -41,25 +41,30 @@ def interrupted(what: str) -> int:
 class Interruptible:
     """Let Ctrl-C end the work inside, also where the compiler's callbacks swallow it.
 
-    A swallowed interrupt is sent again a little later; an error that it left behind counts as the interrupt.
+    A swallowed interrupt is sent again a little later, unless the work has ended by then; an error that it
+    left behind counts as the interrupt.
     """
 
     def __enter__(self) -> None:
-        self._swallowed, self._usual = False, sys.unraisablehook
+        self._again: list[threading.Timer] = []
+        self._usual = sys.unraisablehook
         sys.unraisablehook = self._note
 
     def _note(self, unraisable: sys.UnraisableHookArgs) -> None:
         if unraisable.exc_type is not KeyboardInterrupt:
             self._usual(unraisable)
             return
-        self._swallowed = True
-        threading.Timer(RETRY, _thread.interrupt_main).start()
+        self._again.append(threading.Timer(RETRY, _thread.interrupt_main))
+        self._again[-1].start()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         sys.unraisablehook = self._usual
-        if self._swallowed and error is not None:
+        for timer in self._again:
+            timer.cancel()
+            timer.join()
+        if self._again and error is not None:
             raise KeyboardInterrupt from error
 
 
