@@ -231,7 +231,7 @@ def test_a_swallowed_interrupt_is_sent_again():
 
 
 def test_what_a_swallowed_interrupt_leaves_broken_counts_as_the_interrupt():
-    """The compiler fails for lack of what the interrupted step should have made; no second interrupt follows."""
+    """The compiler fails, as the interrupted step made nothing for it; no second interrupt follows."""
     usual = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def fail() -> None:
