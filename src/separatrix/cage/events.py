@@ -12,6 +12,7 @@ from separatrix.cage.series import (
     ROUNDING,
     SPARE,
     STAYS,
+    THIRD,
     copy_column,
     earliest_zero,
     falling,
@@ -66,7 +67,8 @@ CHANGE, BALL, EARLY_HALF, LATE_HALF, GUESS, NOISE, START, RISE, MIDDLE, TURN, LA
 known of each half of the step, about when, and the knots."""
 
 QUEUE, PATHS = 12, 7
-THIRD = 1.0 / 3.0
+"""Columns of a queue; rows of the places: their six knots, and by how much they may pass their play."""
+
 
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
@@ -127,7 +129,7 @@ def fourths(w, a, b, c, most):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def enter(queue, filled, change, ball, at, off, late_off, noise):  # type: ignore[no-untyped-def]
+def enqueue(queue, filled, change, ball, at, off, late_off, noise):  # type: ignore[no-untyped-def]
     """Queue what may fall to zero, by its knots; return how many are queued."""
     start, rise, middle, turn, last, fall = at
     tiny = ROUNDING * noise
@@ -164,7 +166,7 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignor
         grip = GRAINS * ROUNDING * noise - p.onset
         start = sign * q + grip
         if not alike:
-            filled = enter(queue, filled, 0, j, (start, 0.0, start, 0.0, start, 0.0), np.inf, np.inf, noise)
+            filled = enqueue(queue, filled, 0, j, (start, 0.0, start, 0.0, start, 0.0), np.inf, np.inf, noise)
             continue
         rise, middle = sign * held(knot, 0, q, cos, sin), sign * held(knot, 1, q, cos, sin) + grip
         turn, last = sign * held(knot, 2, q, cos, sin), sign * held(knot, 3, q, cos, sin) + grip
@@ -172,7 +174,7 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignor
         deepest = larger(deepest, top(start, rise, middle, turn, off))
         deepest = larger(deepest, top(middle, turn, last, fall, late_off))
         at = (start, rise, middle, turn, last, fall)
-        filled = enter(queue, filled, 0, j, at, off, late_off, noise)
+        filled = enqueue(queue, filled, 0, j, at, off, late_off, noise)
     return filled, deepest if alike else np.inf
 
 
@@ -213,9 +215,9 @@ def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, paths, 
             turn, last, fall = -sign * paths[3, j], play - sign * paths[4, j], -sign * paths[5, j]
             at = (start, rise, middle, turn, last, fall)
             if alike:
-                filled = enter(queue, filled, sign, j, at, off, late_off, noise)
+                filled = enqueue(queue, filled, sign, j, at, off, late_off, noise)
             else:
-                filled = enter(queue, filled, sign, j, at, np.inf, np.inf, noise)
+                filled = enqueue(queue, filled, sign, j, at, np.inf, np.inf, noise)
     return filled
 
 

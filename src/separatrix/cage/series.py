@@ -250,9 +250,7 @@ def earliest_zero(c, knots, sign, early, late, end, noise):  # type: ignore[no-u
     start, rise, middle, turn, last, fall = knots
     if early == FALLS:
         guess = 0.5 * cubic_zero(start, rise, middle, turn)
-        return single_zero(
-            c, start, sign, 0.0, min(0.5, end), 0.5 * cubic_zero(start, rise, middle, turn), noise
-        )
+        return single_zero(c, start, sign, 0.0, min(0.5, end), guess, noise)
     if early == MAY_FALL:
         t = first_zero(c, start, sign, min(end, 0.5), noise)
         if t < NEVER:
