@@ -139,6 +139,14 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
         assert getattr(b, name) is None
 
 
+def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
+    """Thresholds need the critical friction; the kicks' own frictions are those of the point in hand."""
+    curve = rank(quick_study(ranking=asked(("A", Friction(mean=0.1))))).stability
+    assert curve.band is False
+    assert {value for point in curve.curve for value in point.kick_low} == {None}
+    assert any(value is not None for value in (*curve.here.kick_low, *curve.here.kick_high))
+
+
 def test_equal_frictions_tie_with_equal_numbers():
     """Two materials with the same friction cannot be told apart."""
     found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))), jobs=2)

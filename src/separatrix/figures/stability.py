@@ -176,7 +176,8 @@ def _here_band(axes: Axes, eta: float, data: xr.Dataset) -> None:
     """Draw the band at the bearing's own restitution factor, where the curve has none."""
     low, high = here_band(data, axes.get_ylim()[1])
     kicks = data["kicks"].values
-    label = f"its band over kicks of {kicks.min():g} to {kicks.max():g} m/s"
+    span = f"kicks of {kicks.min():g} to {kicks.max():g} m/s" if kicks.size > 1 else f"kick {kicks[0]:g} m/s"
+    label = f"band at this bearing's $\\eta$, {span}"
     axes.vlines(eta, low, high, color=BLUE, alpha=0.25, lw=9, zorder=1, label=label)
 
 
