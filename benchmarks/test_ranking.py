@@ -32,5 +32,5 @@ def test_one_point_of_the_stability_curve(benchmark, study):
 
 
 def test_rank(benchmark, study):
-    """The whole ranking of the shipped study, its whole ensemble, on two threads; aim: under 30 s."""
+    """The whole ranking of the shipped study, its whole ensemble, on two threads; aim: under 5 s."""
     benchmark.pedantic(rank, args=(study,), kwargs={"jobs": 2}, rounds=1, warmup_rounds=0)

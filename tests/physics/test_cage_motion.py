@@ -52,8 +52,8 @@ def test_one_blow_returns_the_restitution_factor(eta):
     run = follow(
         lone(eta), kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=duration, samples=9
     )
-    # the inertia of 1e6 kg m2 leaves 5e-11 of turning; a run that rests is ended at 1e-4 of its energy
-    assert -run.velocity[-1, 1] / 0.5 == pytest.approx(eta, abs=1e-9 if eta > 0 else 0.0101)
+    # the inertia of 1e6 kg m2 leaves 1e-10 of turning; a run that rests is ended at 1e-4 of its energy
+    assert -run.velocity[-1, 1] / 0.5 == pytest.approx(eta, abs=3e-10 if eta > 0 else 0.0101)
 
 
 def test_a_blow_keeps_the_impulse_law():
@@ -61,7 +61,7 @@ def test_a_blow_keeps_the_impulse_law():
     cage = replace(lone(0.6), ball_cage_friction=0.2)
     run = follow(cage, kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=0.0015, samples=9)
     normal = M * (run.velocity[-1, 1] - 0.5)
-    assert M * run.velocity[-1, 0] == pytest.approx(0.2 * normal, rel=1e-9)  # as above: the turning
+    assert M * run.velocity[-1, 0] == pytest.approx(0.2 * normal, rel=1e-14)  # 50 roundings; seen: 0
     backward = replace(cage, inner_speed=0.0, outer_speed=1500.0)
     other = follow(
         backward, kick=0.5, direction=math.pi / 2, ball_lead=np.zeros(1), duration=0.0015, samples=9

@@ -75,7 +75,7 @@ FEW_NODES, FEW_WEIGHTS = _gauss(4)
 """For means over a window: exact to the 7th power of the time in a step."""
 
 NODES, WEIGHTS = _gauss(7)
-"""For the ledger: exact to the 13th power, beyond that of the series."""
+"""For the ledger: exact to the 13th power of the time; it closes to 1e-12 with them."""
 
 
 @inlined_kernel

@@ -67,7 +67,7 @@ class Judgement:
     drive_energy : float
         Kinetic energy that frame and loads can give the cage without a kick [J].
     energy_growth, energy_imbalance : float
-        Median of the first over all runs, and the worst of the second [-].
+        Median of the first over all runs, and the worst of the second over those whose ledger was kept [-].
     duration : float
         Of a run [s].
     runs : int

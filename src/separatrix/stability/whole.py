@@ -25,8 +25,8 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
     """Every run of the settings from every kick.
 
     The first `LEDGERS` have their ledger, the first `FOLLOWED` are followed to their end. Where a land holds
-    the cage, which cannot drift then, the others that die end as soon as that is known (`Ensemble.cut`); no
-    outcome depends on it.
+    the cage, which cannot drift then, the others that die end as soon as that is known (`Ensemble.cut`),
+    which changed 2 outcomes of 6912 (`ensemble.DIES_OUT`).
 
     Raises
     ------
