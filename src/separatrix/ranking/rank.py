@@ -119,7 +119,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
             for name, table in frictions.items()
         ),
         overall=_ranked(question, found, means, ""),
-        stability=_curve(question, found),
+        stability=_curve(question, found, jobs),
         kicks=study.stability.kicks,
         runs=study.stability.runs,
         duration=study.stability.duration,
@@ -223,14 +223,16 @@ def _points_of(
     }
 
 
-def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
+def _curve(question: _Question, found: _Findings, jobs: int) -> StabilityCurve | None:
     """Stability curve of the reference cage; None if an interrupt left no point of it."""
     points, shown = found.points[question.reference], question.settings.restitution_factors
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
     cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
-    return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
+    return curve_of_points(
+        cage, question.settings, points, band=False, here=found.here, complete=complete, jobs=jobs
+    )
 
 
 def _ranked(

@@ -11,7 +11,7 @@ from separatrix.cage.drive import drift_rate_law, drifts
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
-from separatrix.stability.pool import Progress, work_out
+from separatrix.stability.pool import Progress, work_out, work_through
 from separatrix.stability.response import SEARCHED_FRICTION, Side
 from separatrix.stability.tracing import COARSE, finer
 from separatrix.study import StabilitySettings
@@ -121,7 +121,12 @@ def stability_curve(
         raise KeyboardInterrupt
     here = found.pop((HERE, None), None)
     return curve_of_points(
-        cage, settings, list(found.values()), here=here, complete=here is not None and tracer.complete(found)
+        cage,
+        settings,
+        list(found.values()),
+        here=here,
+        complete=here is not None and tracer.complete(found),
+        jobs=jobs,
     )
 
 
@@ -229,11 +234,12 @@ def curve_of_points(
     band: bool = True,
     here: CriticalFriction | None = None,
     complete: bool = True,
+    jobs: int = 1,
 ) -> StabilityCurve:
-    """Return the curve of the points that were finished, rising restitution factors first."""
+    """Return the curve of the points that were finished, rising restitution factors first, with its limits."""
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
-    hard = [hard_limit(cage, eta, settings) for eta in etas]
+    hard = work_through(lambda eta: hard_limit(cage, eta, settings), etas, jobs=jobs)
     return StabilityCurve(
         curve=tuple(rising),
         here=here,
