@@ -1,0 +1,1 @@
+"""From raw tribometer logs to friction with its scatter."""
