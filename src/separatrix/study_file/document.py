@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -10,7 +9,8 @@ from typing import Any
 
 from separatrix.errors import InputError
 from separatrix.study_file.shipped import shipped_studies
-from separatrix.study_file.text import label_of, path_text, read_toml
+from separatrix.toml_text import label_of, path_text, read_toml
+from separatrix.toml_values import nearest
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
@@ -101,17 +101,6 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     if len(chain) > MOST_BASES:
         raise InputError(where, f"makes a chain of more than {MOST_BASES} files", "", shown(base.value))
     return _merged(load(target, chain), document)
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
-    choices = list(known)
-    near = get_close_matches(name[:80].casefold(), {c.casefold(): c for c in choices}, 1, 0.6)
-    listed = f"Known: {', '.join(choices)}."
-    if len(listed) > 200:
-        listed = listed[: listed.rindex(",", 0, 200)] + ", ..."
-    by_case = {c.casefold(): c for c in choices}
-    return f"Did you mean {by_case[near[0]]}?" if near else listed
 
 
 def _own(path: Path) -> Document:

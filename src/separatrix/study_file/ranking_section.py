@@ -8,9 +8,10 @@ from separatrix import library
 from separatrix.errors import InputError, together
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
-from separatrix.study_file.document import Document, nearest
+from separatrix.study_file.document import Document
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, where
 from separatrix.study_file.values import Reader
+from separatrix.toml_values import nearest
 from separatrix.units import shown
 
 MOST_CANDIDATES = 1000

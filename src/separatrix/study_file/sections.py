@@ -23,10 +23,11 @@ from separatrix.study import (
     Study,
 )
 from separatrix.study_file import values
-from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry, nearest
+from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry
 from separatrix.study_file.ranking_section import ranking
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, relocated, where
 from separatrix.study_file.values import Reader
+from separatrix.toml_values import nearest
 from separatrix.units import format_quantity, shown, unit_of
 
 _REQUIRED_SECTIONS = ("bearing", "operation", "film")

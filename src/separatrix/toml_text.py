@@ -1,4 +1,7 @@
-"""A study file as text: read with care, checked before it is parsed, and every key traced to its line."""
+"""A TOML file as text: read with care, checked before it is parsed, and every key traced to its line.
+
+Shared by the files that people write: studies, materials, friction.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import os
 import re
 import stat
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +20,19 @@ MOST_BYTES = 256 * 1024
 LONGEST_LINE = 4000
 DEEPEST = 16
 """How deep brackets may nest; a study needs 3."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """What a file is, for its refusals, and how large it may be."""
+
+    noun: str = "a study"
+    most_bytes: int = MOST_BYTES
+    empty: str = "`separatrix new PATH` writes a study to fill in."
+    """What helps who has an empty one."""
+
+
+STUDY = Kind()
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
 _KEY_LINE = re.compile(rf"\s*({_KEY}(?:[ \t]*\.[ \t]*{_KEY})*)[ \t]*=")
@@ -41,23 +58,26 @@ def path_text(path: Path) -> str:
     return text if len(text) <= 80 else label_of(path)
 
 
-def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
+def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str, int]]:
     """Content of a TOML file, and the line of each key as a dotted path.
 
     Raises
     ------
     InputError
-        No regular file of at most `MOST_BYTES` of UTF-8 with valid TOML in it.
+        No regular file, small enough for its kind, of UTF-8 with valid TOML in it.
     """
-    label = label_of(path)
-    text = _text(path, label)
+    return parsed(read_text(path, kind), label_of(path), kind)
+
+
+def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str, int]]:
+    """Content of TOML text, and the line of each key as a dotted path."""
     _refuse_deep_nesting(text, label)
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise _invalid_toml(error, text, label) from None
     if not data:
-        raise InputError(label, "is empty", cure="`separatrix new PATH` writes a study to fill in.")
+        raise InputError(label, "is empty", cure=kind.empty)
     return data, lines_of_keys(text)
 
 
@@ -85,24 +105,28 @@ def _plain(key: str) -> str:
     return ".".join(part.strip("\"'") for part in re.findall(_KEY, key))
 
 
-def _text(path: Path, label: str) -> str:
+def read_text(path: Path, kind: Kind = STUDY) -> str:
+    """Text of a file: a regular one, small enough for its kind, UTF-8, without NUL or endless lines."""
+    label = label_of(path)
     try:
         mode = path.stat().st_mode
-        raw = _bytes(path) if stat.S_ISREG(mode) else None  # a pipe or a device may never end
+        raw = (
+            _bytes(path, kind.most_bytes) if stat.S_ISREG(mode) else None
+        )  # a pipe or a device may never end
     except (OSError, ValueError) as error:
         reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
         raise InputError(path_text(path), f"cannot be read: {reason[:1].lower()}{reason[1:]}") from None
     if raw is None:
         rule = "is a folder, not a file" if stat.S_ISDIR(mode) else "is not a regular file"
         raise InputError(path_text(path), rule)
-    if len(raw) > MOST_BYTES:
-        raise InputError(label, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
+    if len(raw) > kind.most_bytes:
+        raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
     return _decoded(raw, label)
 
 
-def _bytes(path: Path) -> bytes:
+def _bytes(path: Path, most: int) -> bytes:
     with path.open("rb") as file:
-        return file.read(MOST_BYTES + 1)
+        return file.read(most + 1)
 
 
 def _decoded(raw: bytes, label: str) -> str:

@@ -1,0 +1,123 @@
+"""Readers of single values of a TOML file: from what it holds to what a record holds, or a refusal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from enum import Enum
+from typing import Any, TypeVar
+
+from separatrix.errors import InputError, together
+from separatrix.units import parse, printable, shown
+
+Record = TypeVar("Record")
+Reader = Callable[[Any, str], Any]
+"""From a value and the name of its place to the converted value; raises InputError."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
+    choices = list(known)
+    near = get_close_matches(name[:80].casefold(), {c.casefold(): c for c in choices}, 1, 0.6)
+    listed = f"Known: {', '.join(choices)}."
+    if len(listed) > 200:
+        listed = listed[: listed.rindex(",", 0, 200)] + ", ..."
+    by_case = {c.casefold(): c for c in choices}
+    return f"Did you mean {by_case[near[0]]}?" if near else listed
+
+
+def as_is(value: Any, where: str) -> Any:  # noqa: ARG001 - the signature of every reader
+    """Read nothing yet."""
+    return value
+
+
+def quantity(unit: str) -> Reader:
+    """Read a number with a unit, as text."""
+    return lambda value, where: parse(value, unit, where)
+
+
+def ratio(value: Any, where: str) -> float:
+    """Read a plain number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        cure = "Write it without quotes." if isinstance(value, str) and _is_plain_number(value) else ""
+        if isinstance(value, str) and "," in value:
+            cure = "Write a decimal point, without quotes."
+        raise InputError(where, "must be a plain number, without a unit", "", shown(value), cure)
+    if not -1e300 < value < 1e300:  # an integer may be too long for a float
+        raise InputError(where, "must be a finite number", "", shown(value))
+    return float(value)
+
+
+def whole(value: Any, where: str) -> int:
+    """Read an integer."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        near = isinstance(value, float) and -1e15 < value < 1e15 and value == int(value)
+        cure = f"Write {int(value)}." if near else ""
+        raise InputError(where, "must be a whole number", "", shown(value), cure)
+    return value
+
+
+def text(value: Any, where: str) -> str:
+    """Read a line of printable text."""
+    if not isinstance(value, str):
+        raise InputError(where, "must be text in quotes", "", shown(value))
+    if not 0 < len(value.strip()) <= 200 or not value.isprintable():
+        raise InputError(where, "must be one line of 1 to 200 printable characters", "", shown(value))
+    return value
+
+
+def choice(options: type[Enum]) -> Reader:
+    """Read one of the values of an Enum."""
+
+    def read(value: Any, where: str) -> Enum:
+        names = [option.value for option in options]
+        if value not in names or not isinstance(value, str):
+            rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
+            raise InputError(where, rule, "", shown(value))
+        return options(value)
+
+    return read
+
+
+def list_of(reader: Reader) -> Reader:
+    """Read a list, each item with one reader."""
+
+    def read(value: Any, where: str) -> tuple[Any, ...]:
+        if not isinstance(value, list):
+            raise InputError(where, "must be a list in [brackets]", "", shown(value))
+        return tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(value, 1))
+
+    return read
+
+
+def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[str, ...]) -> dict[str, Any]:
+    """Read a table in place: every key known, every required key there."""
+    if not isinstance(value, dict):
+        raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", "", shown(value))
+    for key in value:
+        if key not in readers:
+            at = f"{where}.{printable(key)}"
+            raise InputError(at, "is no key of this table", cure=nearest(key, readers))
+    if missing := [key for key in required if key not in value]:
+        raise InputError(where, f"lacks: {', '.join(missing)}")
+    return {key: readers[key](item, f"{where}.{key}") for key, item in value.items()}
+
+
+def build(record: type[Record], values: dict[str, Any], where: str) -> Record:
+    """Build a record from a table; its refusals are given the place of the table."""
+    try:
+        return record(**values)
+    except InputError as error:
+        found = [
+            InputError(f"{where}.{p.where.partition('.')[2]}", p.rule, p.unit, p.value, p.cure)
+            for p in error.problems or (error,)
+        ]
+        raise together(found) from None
+
+
+def _is_plain_number(value: str) -> bool:
+    try:
+        return math.isfinite(float(value))
+    except ValueError:
+        return False
