@@ -1,0 +1,399 @@
+"""What is asked of a model, and what sensitivity, next test and inverse questions answer.
+
+A model is a function of uncertain inputs: `evaluate(values)` with values of shape (sample, input), in SI units,
+answers for every case, a candidate in one environment. It knows nothing of how it is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix import _check
+from separatrix.errors import InputError
+from separatrix.units import Array, Ratio
+
+STABLE = 1
+"""Verdict of a sample that is stable; every other number is not."""
+
+SETTLED_LOW: Ratio = 0.05
+SETTLED_HIGH: Ratio = 0.95
+"""A case is undecided while its probability of STABLE lies strictly between these two."""
+
+Verdicts = NDArray[np.int_]
+
+
+class Evaluated(Protocol):
+    """What a model answers, each of shape (sample, case): margin and threshold [-], verdict (`STABLE` or not)."""
+
+    @property
+    def margin(self) -> Array:
+        """Restitution threshold less the restitution factor [-]."""
+
+    @property
+    def threshold(self) -> Array:
+        """Restitution threshold [-]."""
+
+    @property
+    def verdict(self) -> Verdicts:
+        """`STABLE`, or another number."""
+
+
+class Distribution(Protocol):
+    """Distribution of an input, as `separatrix.distribution` has them."""
+
+    @property
+    def mean(self) -> float:
+        """Mean, SI."""
+
+    @property
+    def standard_deviation(self) -> float:
+        """Standard deviation, SI."""
+
+    def quantile(self, u: Array) -> Array:
+        """Value below which lies the share `u`, 0 < u < 1."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Input:
+    """An uncertain input.
+
+    Attributes
+    ----------
+    name : str
+        Key in the study: ``"film.thickness"``, ``"ranking.Armalon.liquid nitrogen, 440C"``.
+    words : str
+        As it stands in a sentence: ``"the film's thickness"``.
+    unit : str
+        SI unit of its values, ``"-"`` for a ratio.
+    distribution : Distribution
+        What is known of it.
+    """
+
+    name: str
+    words: str
+    unit: str
+    distribution: Distribution
+
+    def __post_init__(self) -> None:
+        _check.settle(_check.printable_text(self, "name"), _check.printable_text(self, "words"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A candidate in an environment: one column of what the model answers.
+
+    Attributes
+    ----------
+    candidate, environment : str
+        Names; the environment is empty over all of them.
+    inputs : tuple of int, optional
+        Places of the inputs that enter it; None if any may. Inputs that share no case are varied together.
+    friction : int, optional
+        Place of its pocket friction among the inputs.
+    """
+
+    candidate: str
+    environment: str
+    inputs: tuple[int, ...] | None = None
+    friction: int | None = None
+
+    def __post_init__(self) -> None:
+        _check.settle(_check.printable_text(self, "candidate"))
+
+
+Evaluate = Callable[[Array], Evaluated]
+Judge = Callable[[Array, Array], Evaluated]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Question:
+    """A model, its uncertain inputs (independent of each other), and its cases.
+
+    Attributes
+    ----------
+    inputs : tuple of Input
+        In the order of the columns of values.
+    cases : tuple of Case
+        In the order of the columns of the answers.
+    evaluate : callable
+        evaluate(values (sample, input)) -> Evaluated.
+    judge : callable, optional
+        judge(values (sample, input), restitution_factor (sample, case)) -> Evaluated: the same with the
+        restitution factor given. Cheap; where it is there, the dear part of `evaluate` can be fitted instead.
+    """
+
+    inputs: tuple[Input, ...]
+    cases: tuple[Case, ...]
+    evaluate: Evaluate
+    judge: Judge | None = None
+
+    def __post_init__(self) -> None:
+        _check.settle(_something(self, "inputs"), _something(self, "cases"), _places(self))
+
+    def entering(self) -> NDArray[np.bool_]:
+        """Whether an input enters a case, shape (input, case)."""
+        enters = np.zeros((len(self.inputs), len(self.cases)), bool)
+        for c, case in enumerate(self.cases):
+            enters[slice(None) if case.inputs is None else list(case.inputs), c] = True
+        return enters
+
+    def place(self, name: str) -> int:
+        """Column of the input of this name.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        names = [one.name for one in self.inputs]
+        if name not in names:
+            raise InputError(name, "is no uncertain input", cure=f"There are: {', '.join(names)}.")
+        return names.index(name)
+
+
+def _something(record: object, field: str) -> _check.Problems:
+    if not getattr(record, field):
+        yield InputError(f"{type(record).__name__}.{field}", "must hold at least one")
+
+
+def _places(question: Question) -> _check.Problems:
+    count = len(question.inputs)
+    for case in question.cases:
+        given: Sequence[int | None] = (*(case.inputs or ()), case.friction)
+        wrong = [i for i in given if i is not None and not 0 <= i < count]
+        if wrong:
+            where = f"Case {case.candidate}"
+            yield InputError(where, f"must name inputs by their places, 0 to {count - 1}", "", str(wrong[0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """A number with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Factor:
+    """Inputs that are varied as one: usually a single one."""
+
+    name: str
+    words: str
+    inputs: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SobolIndex:
+    """Share of a variance that goes with one factor.
+
+    `first` is the share that falls away on average once the factor is known, `total` what remains while all
+    but the factor is known [-].
+    """
+
+    factor: str
+    words: str
+    first: Estimate
+    total: Estimate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaseSobol:
+    """Sobol indices of one case.
+
+    `margin` and `verdict` hold one index a factor, the largest total first; empty if the quantity never
+    changes, as `margin_reason` or `verdict_reason` then says. Factors that do not enter the case are left out.
+    `probability_stable` is the share of STABLE samples among them.
+    """
+
+    candidate: str
+    environment: str
+    probability_stable: Estimate
+    margin_mean: Estimate
+    margin_deviation: Ratio
+    margin: tuple[SobolIndex, ...]
+    verdict: tuple[SobolIndex, ...]
+    margin_reason: str = ""
+    verdict_reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SobolAnswer:
+    """Sobol indices of all cases, and what they cost.
+
+    `samples` is n, `evaluations` the number of rows the model was asked for, `blocks` the independent
+    randomisations behind the intervals; `fit_error` the share of the restitution factor's variance that the
+    fitted stage misses in cross-validation, None where nothing was fitted.
+    """
+
+    cases: tuple[CaseSobol, ...]
+    samples: int
+    evaluations: int
+    blocks: int
+    seed: int
+    fit_error: Ratio | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measurement:
+    """A test that might be made: one input, and how well it would be measured.
+
+    Attributes
+    ----------
+    input : int
+        Place of the input.
+    error : float
+        Standard deviation of the measured value about the true one [-], as a share of the true value.
+    repeats : int, optional
+        Tests of that error whose mean is taken.
+    reducible : float
+        Share of the input's variance that is lack of knowledge. The rest, from one cage to the next, no
+        measurement removes [-].
+    """
+
+    input: int
+    error: Ratio = 0.1
+    repeats: int = 1
+    reducible: Ratio = 1.0
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.whole(self, "input", 0, 100_000),
+            _check.positive(self, "error", 1e-6, 10.0, hint="10 % is 0.1."),
+            _check.whole(self, "repeats", 1, 1000),
+            _check.between(self, "reducible", 0.0, 1.0),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaseGain:
+    """Probability that a test settles one undecided case, as stable or as not [-]."""
+
+    candidate: str
+    environment: str
+    settles: Ratio
+    settles_stable: Ratio
+    settles_unstable: Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestGain:
+    """What one test is expected to bring.
+
+    `settled` is the expected number of undecided cases that it would settle; `unsettled` that of decided ones
+    which it would open again. `choice` is the expected rise of the margin of the material chosen by mean
+    margin, summed over the environments [-]; `choice_perfect` the same if the input were known exactly.
+    """
+
+    __test__ = False  # pytest must not collect it
+
+    name: str
+    words: str
+    measurement: Measurement
+    settled: Estimate
+    unsettled: Estimate
+    choice: Estimate
+    choice_perfect: Estimate
+    cases: tuple[CaseGain, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NextTest:
+    """Tests ranked by the number of undecided cases they are expected to settle."""
+
+    undecided: tuple[tuple[str, str], ...]
+    cases: int
+    environments: int
+    tests: tuple[TestGain, ...]
+    samples: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Span:
+    """Values of one quantity between two ends; `from_edge` and `to_edge` mark ends of what was searched."""
+
+    low: float
+    high: float
+    from_edge: bool
+    to_edge: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AllowedFriction:
+    """Which pocket friction a new material may have at most, in one environment.
+
+    `most` is the largest friction with a probability of STABLE of `probability` or more, with its interval;
+    `most_nominal` the largest that is stable with every input at its central value. Either is None if there
+    is none, as the reason says. `spans` and `spans_nominal` are all stretches of friction that are allowed.
+    """
+
+    like: str
+    environment: str
+    probability: Ratio
+    scatter: Ratio
+    searched: Ratio
+    most: Estimate | None
+    reason: str
+    spans: tuple[Span, ...]
+    most_nominal: Ratio | None
+    reason_nominal: str
+    spans_nominal: tuple[Span, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionGrid:
+    """Restitution factor over two quantities of the film.
+
+    Attributes
+    ----------
+    x, y : ndarray
+        Shape (x,) and (y,), each rising, in SI units `x_unit` and `y_unit`.
+    x_words, y_words : str
+        ``"film thickness"``, ``"race friction"``.
+    restitution_factor : ndarray
+        Shape (y, x) [-].
+    """
+
+    x: Array
+    y: Array
+    x_words: str
+    y_words: str
+    x_unit: str
+    y_unit: str
+    restitution_factor: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegionRow:
+    """Stretches of x that keep a case stable at one value of y: nominally, and with the probability asked."""
+
+    y: float
+    nominal: tuple[Span, ...]
+    probable: tuple[Span, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StableRegion:
+    """Where in the plane of two film quantities a case is stable.
+
+    Attributes
+    ----------
+    margin, probability_stable : ndarray
+        Shape (y, x): margin with the other inputs at their centres, and share of samples that are STABLE [-].
+    rows : tuple of RegionRow
+        One for each y.
+    """
+
+    candidate: str
+    environment: str
+    probability: Ratio
+    grid: RestitutionGrid
+    margin: Array
+    probability_stable: Array
+    rows: tuple[RegionRow, ...]
