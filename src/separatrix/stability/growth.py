@@ -106,3 +106,11 @@ class GrowthCounter:
                 warnings.warn(STALLS.format(stalled, runs, kick, friction), ValidityWarning, stacklevel=2)
             self._counts[key] = Count(int(found.count(RunOutcome.GROWS)[0]), runs)
         return self._counts[key]
+
+    def counts(self, restitution_factor: Ratio | None, kick: MetrePerSecond) -> dict[Ratio, Count]:
+        """Everything that was counted at a restitution factor from a kick, by friction."""
+        found: dict[Ratio, Count] = {}
+        for (eta, friction, at, _, _), count in sorted(self._counts.items(), key=lambda item: item[0][1:]):
+            if (eta, at) == (restitution_factor, kick):
+                found[friction] = found.get(friction, Count(0, 0)) + count
+        return found
