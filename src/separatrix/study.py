@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
 from separatrix import _cage_rules, _check, _rules
 from separatrix.errors import InputError
@@ -89,6 +90,11 @@ class Material:
     density: KilogramPerMetre3 | None = None
     source: str = "given in the study"
     confidence: str = "given in the study"
+    record: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The whole record of the library behind it, as plain data: it goes into every result."""
+
+    cautions: tuple[str, ...] = field(default=(), compare=False)
+    """What must be said of its numbers at the study's temperature."""
 
     def __post_init__(self) -> None:
         _check.settle(
@@ -327,6 +333,9 @@ class Study:
     ranking: RankingQuestion | None = None
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
+
+    records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    """Whole records of the library that are no material: "operation.fluid", "ranking.friction"."""
 
     def __post_init__(self) -> None:
         _check.settle(

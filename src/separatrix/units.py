@@ -70,6 +70,8 @@ QUANTITIES = {
     "m/s": "speed",
     "m/s2": "acceleration",
     "K": "temperature",
+    "Pa s": "viscosity",
+    "J/kg/K": "heat capacity",
     "kg m": "unbalance",
     "kg m2": "moment of inertia",
 }
@@ -132,6 +134,8 @@ UNITS: dict[str, dict[str, str]] = {
     "m/s": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": "1/3.6"},
     "m/s2": {"m/s2": "1", "mm/s2": "1e-3", "g0": "9.80665"},
     "K": {"K": "1", "degC": "1 + 273.15", "°C": "1 + 273.15", "degF": "5/9 + 459.67"},
+    "Pa s": {"Pa s": "1", "mPa s": "1e-3", "uPa s": "1e-6"},
+    "J/kg/K": {"J/kg/K": "1", "kJ/kg/K": "1e3"},
     "kg m": {"kg m": "1", "kg mm": "1e-3", "g m": "1e-3", "g cm": "1e-5", "g mm": "1e-6", "mg mm": "1e-9"},
     "kg m2": {
         "kg m2": "1",
@@ -300,6 +304,8 @@ _HABITS = {
     "m/s": "m/s",
     "m/s2": "m/s2",
     "K": "K",
+    "Pa s": "uPa s",
+    "J/kg/K": "J/kg/K",
     "kg m": "g mm",
     "kg m2": "kg mm2",
 }
@@ -314,6 +320,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "N": ((1e-3, "mN"), (1.0, "N"), (1e4, "kN")),
     "N/m": ((1.0, "N/m"), (1e3, "kN/m"), (1e6, "MN/m")),
     "Pa": ((1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa")),
+    "Pa s": ((1e-6, "uPa s"), (1e-3, "mPa s"), (1.0, "Pa s")),
     "kg m": ((1e-6, "g mm"),),
     "kg m2": ((1e-6, "kg mm2"),),
     "J": ((1e-6, "uJ"), (1e-3, "mJ"), (1.0, "J")),
