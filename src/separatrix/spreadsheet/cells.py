@@ -1,0 +1,53 @@
+"""One cell of a sheet, and how cells are named."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One cell that is not empty.
+
+    `value` is a number, a text or a truth value; None where a formula was saved without a value. `error` is
+    what it shows instead (``#REF!``), `formula` its formula, `is_date` whether its number is formatted as a
+    date or a time of day.
+    """
+
+    value: float | str | bool | None
+    formula: str = ""
+    error: str = ""
+    is_date: bool = False
+
+
+Row = tuple[int, dict[int, Cell]]
+"""Number of a row, from 1, and its cells by the number of their column, from 1."""
+
+
+def column_name(number: int) -> str:
+    """Letters of a column by its number from 1: ``column_name(28) == "AB"``."""
+    letters = ""
+    while number > 0:
+        number, last = divmod(number - 1, 26)
+        letters = chr(65 + last) + letters
+    return letters
+
+
+def cell_name(row: int, column: int) -> str:
+    """Name of a cell: ``cell_name(5, 3) == "C5"``."""
+    return f"{column_name(column)}{row}"
+
+
+def column_number(letters: str) -> int:
+    """Return the number of a column from its letters: ``column_number("AB") == 28``."""
+    number = 0
+    for letter in letters:
+        number = 26 * number + ord(letter) - 64
+    return number
+
+
+def is_date_format(code: str) -> bool:
+    """Whether a number format shows a date or a time of day: ``is_date_format("hh:mm:ss")``."""
+    plain = re.sub(r'"[^"]*"|\\.|_.|\*.|\[(?![hms]+\])[^\]]*\]', "", code.casefold())
+    return re.search(r"[dmyhs]", plain.replace("general", "")) is not None
