@@ -1,0 +1,101 @@
+"""On which conditions the friction of a group of tests can be seen to depend."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import log
+
+from separatrix.friction_fit.records import WORDS, FrictionTest
+from separatrix.units import format_quantity
+
+LEAST_SPAN = 1.2
+"""Ratio of the largest to the smallest value from which tests are said to span a condition."""
+
+TOGETHER = 0.95
+"""Correlation of ln speed and ln pressure from which only their product can be told."""
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Covariates:
+    """Names of the slopes of a group, their centres, and what is to be said about those that it lacks.
+
+    A slope is on ln(slip_speed), ln(pressure) or, where these went together, ln(pressure_velocity), each
+    counted from its `centres`, the mean over the tests.
+    """
+
+    names: tuple[str, ...] = ()
+    centres: tuple[float, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def row(self, values: dict[str, float]) -> list[float]:
+        """Row of the design: 1, and the logarithm of each condition over its centre."""
+        return [1.0, *(log(values[n]) - c for n, c in zip(self.names, self.centres, strict=True))]
+
+
+def covariates(tests: Sequence[FrictionTest]) -> Covariates:
+    """Slopes that these tests can tell: all state the condition and span it, and a test is left over."""
+    notes = list(_unstated(tests))
+    spanned = [name for name in ("slip_speed", "pressure") if _spans(tests, name)]
+    if len(spanned) == 2 and _go_together(tests):
+        spanned = ["pressure_velocity"]
+        notes.append("slip speed and pressure went together: slope on their product pV")
+    if len(tests) < len(spanned) + 2 and len(spanned) == 2 and _spans(tests, "pressure_velocity"):
+        spanned = ["pressure_velocity"]
+        notes.append("too few tests for two slopes: slope on the product pV")
+    if spanned and len(tests) < len(spanned) + 2:
+        notes.append(f"{len(tests)} tests are too few for a slope")
+        spanned = []
+    logs = {name: [centre(getattr(test, name)) for test in tests] for name in spanned}
+    return Covariates(
+        names=tuple(spanned), centres=tuple(sum(x) / len(x) for x in logs.values()), notes=tuple(notes)
+    )
+
+
+def centre(limits: Range) -> float:
+    """Logarithm of the geometric middle of a range."""
+    return 0.5 * (log(limits[0]) + log(limits[1]))
+
+
+def values_of(test: FrictionTest, names: Sequence[str]) -> dict[str, float]:
+    """Geometric middle of each condition of a test."""
+    return {name: math.exp(centre(getattr(test, name))) for name in names}
+
+
+def tested_range(tests: Sequence[FrictionTest], name: str) -> Range | None:
+    """Lowest and highest value in the tests that state it; None if none does."""
+    stated = [limits for test in tests if (limits := getattr(test, name)) is not None]
+    return (min(low for low, _ in stated), max(high for _, high in stated)) if stated else None
+
+
+def _unstated(tests: Sequence[FrictionTest]) -> Iterator[str]:
+    for name in ("slip_speed", "pressure"):
+        missing = sum(getattr(test, name) is None for test in tests)
+        if 0 < missing < len(tests):
+            yield f"{WORDS[name]} is not stated for {missing} of {len(tests)} tests: no slope on it"
+
+
+def _spans(tests: Sequence[FrictionTest], name: str) -> bool:
+    stated = [limits for test in tests if (limits := getattr(test, name)) is not None]
+    middles = [centre(limits) for limits in stated]
+    return len(stated) == len(tests) and max(middles) - min(middles) >= log(LEAST_SPAN)
+
+
+def _go_together(tests: Sequence[FrictionTest]) -> bool:
+    x, y = ([centre(getattr(test, name)) for test in tests] for name in ("slip_speed", "pressure"))
+    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+    xy = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True))
+    xx, yy = (sum((a - m) ** 2 for a in values) for values, m in ((x, mean_x), (y, mean_y)))
+    return xy > TOGETHER * math.sqrt(xx * yy) and _spans(tests, "pressure_velocity")
+
+
+def in_words(limits: Range, unit: str) -> str:
+    """A range as text: ``"1 to 5 m/s"``."""
+    low, high = (format_quantity(x, unit, 3) for x in limits)
+    if low == high:
+        return low
+    number, _, symbol = low.partition(" ")
+    return f"{number} to {high}" if high.endswith(f" {symbol}") else f"{low} to {high}"

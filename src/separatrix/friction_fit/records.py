@@ -1,0 +1,143 @@
+"""One friction test as a fit takes it, and the conditions under which it was run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from separatrix import _check
+from separatrix.errors import InputError
+from separatrix.study import FRICTION_LIMIT
+from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity, shown
+
+LEAST_FRICTION = 1e-5
+CONDITIONS = {"temperature": "K", "slip_speed": "m/s", "pressure": "Pa"}
+"""What friction may depend on, and the SI unit."""
+
+WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "pressure"}
+
+_LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
+_TEXTS = ("material", "counterface", "medium", "sample", "test", "source", "checksum", "reduced_by")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrictionTest:
+    """Steady friction of one test, with what is known of its scatter and of its conditions.
+
+    Attributes
+    ----------
+    material, counterface, medium : str
+        Of the cage, of the ball or race it slid on, and the gas or liquid around.
+    friction : float
+        Steady mean [-].
+    standard_error, standard_deviation : float or None
+        Of that mean, and of the whole-cycle means within the test [-]; None where not known.
+    effective_count : float or None
+        How many independent values the standard error rests on.
+    temperature, slip_speed, pressure : tuple of float or None
+        Lowest and highest during the test, or over the tests that a printed mean stands for [K, m/s, Pa];
+        None where not known. The pressure is the mean contact pressure.
+    sample : str or None
+        Of which specimen; tests of one sample share its deviation. None: one of its own.
+    run_in_end, run_in_axis : float and str, or None
+        Where the steady part begins, and of what: time [s], distance [m] or cycles.
+    """
+
+    material: str
+    counterface: str
+    medium: str
+    friction: Ratio
+    standard_error: Ratio | None = None
+    standard_deviation: Ratio | None = None
+    effective_count: float | None = None
+    temperature: tuple[Kelvin, Kelvin] | None = None
+    slip_speed: tuple[MetrePerSecond, MetrePerSecond] | None = None
+    pressure: tuple[Pascal, Pascal] | None = None
+    sample: str | None = None
+    test: str | None = None
+    run_in_end: float | None = None
+    run_in_axis: str | None = None
+    flags: tuple[str, ...] = ()
+    source: str | None = None
+    checksum: str | None = None
+    reduced_by: str | None = None
+
+    def __post_init__(self) -> None:
+        logarithm = "The fit takes its logarithm."
+        _check.settle(
+            *(_check.printable_text(self, name) for name in _TEXTS),
+            _no_comma(self),
+            _check.positive(self, "friction", LEAST_FRICTION, FRICTION_LIMIT, hint=logarithm),
+            _check.not_negative(self, "standard_error", FRICTION_LIMIT),
+            _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
+            _check.positive(self, "effective_count", 1e-3, 1e12),
+            *(_range(self, name, *limits) for name, limits in _LIMITS.items()),
+        )
+
+    @property
+    def environment(self) -> str:
+        """Medium and counterface, as friction tables name them."""
+        return f"{self.medium}, {self.counterface}"
+
+    @property
+    def pressure_velocity(self) -> tuple[float, float] | None:
+        """Product pV of mean pressure and slip speed, lowest and highest [Pa m/s]; None where not known."""
+        if self.pressure is None or self.slip_speed is None:
+            return None
+        return self.pressure[0] * self.slip_speed[0], self.pressure[1] * self.slip_speed[1]
+
+
+def _no_comma(test: FrictionTest) -> Iterator[InputError]:
+    """The name of an environment is taken apart at its first comma."""
+    if isinstance(test.medium, str) and "," in test.medium:
+        cure = 'An environment is named "medium, counterface".'
+        yield InputError("FrictionTest.medium", "must not hold a comma", "", shown(test.medium), cure)
+
+
+def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[InputError]:
+    value, where, unit = getattr(test, name), f"FrictionTest.{name}", CONDITIONS[name]
+    if value is None:
+        return
+    if not isinstance(value, tuple) or len(value) != 2:
+        yield InputError(where, "must be a lowest and a highest value", "", shown(value))
+    elif outside := [x for x in value if not (_check.is_number(x) and low <= x <= high)]:
+        rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
+        got = outside[0]
+        yield InputError(where, rule, "", format_quantity(got, unit) if got == got else "nan")
+    elif value[0] > value[1]:
+        rule = "must name the lowest first"
+        yield InputError(where, rule, "", " before ".join(format_quantity(x, unit) for x in value))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """Friction that the tests foretell for stated conditions: log-normal about `mean`.
+
+    Attributes
+    ----------
+    mean : float
+        The material's friction, its median [-].
+    standard_error : float
+        How well that mean is known from the tests [-].
+    standard_deviation : float
+        Scatter of a new sample about it, widened where the conditions were not tested [-].
+    extrapolation : tuple of str
+        In what respect the conditions were not tested, in words; empty where they were.
+    widening : float
+        What the conditions not tested add to the standard deviation, in quadrature [-].
+    assumed_scatter : bool
+        Whether no repeated test of this material in this environment tells the scatter.
+    """
+
+    mean: Ratio
+    standard_error: Ratio
+    standard_deviation: Ratio
+    extrapolation: tuple[str, ...] = ()
+    widening: Ratio = 0.0
+    assumed_scatter: bool = False
+
+    @property
+    def next_cage(self) -> Ratio:
+        """Standard deviation of the friction of the next cage: of the mean and of a new sample together."""
+        total: Ratio = (self.standard_error**2 + self.standard_deviation**2) ** 0.5
+        return total
