@@ -19,8 +19,8 @@ from separatrix.friction_fit.covariates import (
     Covariates,
     Range,
     covariates,
-    values_of,
     tested_range,
+    values_of,
 )
 from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.posterior import Posterior, posteriors

@@ -107,8 +107,10 @@ def _relative(fit: Conditional, model: LinearModel) -> Array:
 def _normal(distance: Array, deviation: float) -> Array:
     """Discrete normal distribution along the last axis."""
     weight: Array = np.exp(-0.5 * (distance / deviation) ** 2)
-    return np.divide(weight, weight.sum(axis=-1, keepdims=True))
+    normal: Array = weight / weight.sum(axis=-1, keepdims=True)
+    return normal
 
 
 def _normalised(weight: Array) -> Array:
-    return np.divide(weight, weight.sum())
+    normalised: Array = weight / weight.sum()
+    return normalised
