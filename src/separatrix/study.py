@@ -9,9 +9,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, Protocol
 
 from separatrix import _cage_rules, _check, _rules
+from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.units import (
     Kelvin,
@@ -277,13 +278,60 @@ class StabilitySettings:
         return sorted(self.kicks)[len(self.kicks) // 2]
 
 
+class PredictedFriction(Protocol):
+    """Friction foretold for some conditions, as `separatrix.friction_fit.Prediction`."""
+
+    @property
+    def mean(self) -> Ratio:
+        """The material's friction."""
+
+    @property
+    def standard_error(self) -> Ratio:
+        """Of that mean."""
+
+    @property
+    def standard_deviation(self) -> Ratio:
+        """Of a new sample about it."""
+
+    @property
+    def extrapolation(self) -> tuple[str, ...]:
+        """In what respect the conditions were not tested, in words."""
+
+    @property
+    def assumed_scatter(self) -> bool:
+        """Whether no repeated test tells the scatter."""
+
+
+class FrictionLaw(Protocol):
+    """Friction as a function of the conditions, from tests, as `separatrix.friction_fit.TestedFriction`."""
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None,
+        pressure: Pascal | None,
+        temperature: Kelvin | None,
+        medium: str | None,
+    ) -> PredictedFriction:
+        """Friction for these conditions; one that is None is not asked about."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Friction:
-    """A measured ball/cage friction: its mean and, if known, its scatter."""
+    """A measured ball/cage friction: its mean and, if known, its scatter.
+
+    `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
+    not the former over the root of `count`. `law` is what knows more: friction over the conditions.
+    `extrapolation` says in words in what respect a friction was asked for where nothing was tested.
+    """
 
     mean: Ratio
     standard_deviation: Ratio | None = None
     count: int | None = None
+    standard_error: Ratio | None = None
+    assumed_scatter: bool = False
+    extrapolation: tuple[str, ...] = ()
+    law: FrictionLaw | None = field(default=None, compare=False, repr=False)
     source: str = "given in the study"
     confidence: str = "given in the study"
 
@@ -291,6 +339,7 @@ class Friction:
         _check.settle(
             _check.between(self, "mean", 0.0, FRICTION_LIMIT),
             _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
+            _check.not_negative(self, "standard_error", FRICTION_LIMIT),
             () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
         )
 
@@ -313,8 +362,13 @@ class RankingQuestion:
 
     environments: tuple[str, ...]
     candidates: tuple[Candidate, ...]
+    friction_scatter: Ratio = 0.09
+    """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess."""
 
     def __post_init__(self) -> None:
+        _check.settle(
+            _check.between(self, "friction_scatter", 1e-3, 1.0, hint="0.09 stands for 9 %."),
+        )
         _check.settle(_rules.named_twice(self), _rules.unknown_environments(self))
 
 
@@ -333,6 +387,8 @@ class Study:
     ranking: RankingQuestion | None = None
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)
+    """What is known of the uncertain numbers, by their names (`study_numbers`); the records hold the means."""
 
     records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     """Whole records of the library that are no material: "operation.fluid", "ranking.friction"."""
