@@ -1,7 +1,7 @@
 """What is asked of a model, and what sensitivity, next test and inverse questions answer.
 
-A model is a function of uncertain inputs: `evaluate(values)` with values of shape (sample, input), in SI units,
-answers for every case, a candidate in one environment. It knows nothing of how it is asked.
+A model is a function of uncertain inputs: `evaluate(values)`, with values of shape (sample, input) in SI
+units, answers for every case, a candidate in one environment. It knows nothing of how it is asked.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix import _check
+from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.units import Array, Ratio
 
@@ -28,7 +29,7 @@ Verdicts = NDArray[np.int_]
 
 
 class Evaluated(Protocol):
-    """What a model answers, each of shape (sample, case): margin and threshold [-], verdict (`STABLE` or not)."""
+    """What a model answers, each of shape (sample, case)."""
 
     @property
     def margin(self) -> Array:
@@ -41,21 +42,6 @@ class Evaluated(Protocol):
     @property
     def verdict(self) -> Verdicts:
         """`STABLE`, or another number."""
-
-
-class Distribution(Protocol):
-    """Distribution of an input, as `separatrix.distribution` has them."""
-
-    @property
-    def mean(self) -> float:
-        """Mean, SI."""
-
-    @property
-    def standard_deviation(self) -> float:
-        """Standard deviation, SI."""
-
-    def quantile(self, u: Array) -> Array:
-        """Value below which lies the share `u`, 0 < u < 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,8 +194,8 @@ class CaseSobol:
     """Sobol indices of one case.
 
     `margin` and `verdict` hold one index a factor, the largest total first; empty if the quantity never
-    changes, as `margin_reason` or `verdict_reason` then says. Factors that do not enter the case are left out.
-    `probability_stable` is the share of STABLE samples among them.
+    changes, as `margin_reason` or `verdict_reason` then says. Factors that do not enter the case are left
+    out. `probability_stable` is the share of STABLE samples among them.
     """
 
     candidate: str

@@ -1,0 +1,242 @@
+"""Which test to run next: what measuring one input better is expected to settle.
+
+Pre-posterior analysis. A result of the test that might come out is drawn, the samples are weighted by how
+likely each makes that result, and with the weights the probability of STABLE is found again; then the mean
+over possible results. The value for choosing a material follows the same road, and for an input known
+exactly the regression of Strong, Oakley & Brennan (2014), Medical Decision Making 34, 311-326.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.errors import InputError
+from separatrix.sensitivity.design import BLOCKS, Design
+from separatrix.sensitivity.likelihood import likelihood
+from separatrix.sensitivity.records import (
+    SETTLED_HIGH,
+    SETTLED_LOW,
+    CaseGain,
+    Measurement,
+    NextTest,
+    Question,
+    TestGain,
+)
+from separatrix.sensitivity.scatter import estimate, jackknife
+from separatrix.sensitivity.value import best_choices, perfect_choice
+from separatrix.units import Array, Ratio
+
+RESULTS = 128
+"""Results of a test that are looked at, equally likely."""
+
+ERROR: Ratio = 0.10
+REPEATS = 3
+FEWEST_EFFECTIVE = 100
+"""Samples that a result must leave some weight on; a test sharper than that is taken as this sharp."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Asked:
+    """Samples of all matrices, block by block, and which cases are undecided."""
+
+    question: Question
+    design: Design
+    entering: NDArray[np.bool_]
+    margin: Array
+    stable: Array
+    undecided: NDArray[np.bool_]
+
+
+def next_test(
+    question: Question, design: Design, measurements: Sequence[Measurement] | None = None
+) -> NextTest:
+    """Tests ranked by how many undecided cases each is expected to settle.
+
+    Parameters
+    ----------
+    question : Question
+        Model and its independent inputs.
+    design : Design
+        Its samples; the more, the sharper the tests that can be told apart.
+    measurements : sequence of Measurement, optional
+        Tests that might be made; by default `default_measurements`.
+
+    Raises
+    ------
+    InputError
+        A measurement of an input that there is not.
+    """
+    tests = default_measurements(question) if measurements is None else tuple(measurements)
+    _require_inputs(question, tests)
+    asked = _asked(question, design)
+    found = [_gain(asked, one, place) for place, one in enumerate(tests)]
+    return NextTest(
+        undecided=tuple(
+            (case.candidate, case.environment)
+            for case, open_ in zip(question.cases, asked.undecided, strict=True)
+            if open_
+        ),
+        cases=len(question.cases),
+        environments=len({case.environment for case in question.cases}),
+        tests=tuple(sorted(found, key=lambda one: (-one.settled.value, -one.choice.value))),
+        samples=asked.margin.shape[0] * asked.margin.shape[1],
+    )
+
+
+def default_measurements(
+    question: Question,
+    *,
+    error: Ratio = ERROR,
+    repeats: int = REPEATS,
+    reducible: Mapping[int, Ratio] | None = None,
+) -> tuple[Measurement, ...]:
+    """Every input measured to 10 %; every friction by three more tests that scatter as it does itself.
+
+    Parameters
+    ----------
+    question : Question
+        Whose inputs.
+    error : float
+        Of an input that is no friction [-].
+    repeats : int
+        Of a friction.
+    reducible : mapping, optional
+        By place of the input, see `Measurement`; 1 where nothing is said.
+    """
+    frictions = {case.friction for case in question.cases}
+    shares = reducible or {}
+    return tuple(
+        Measurement(
+            input=i,
+            error=_own_scatter(question, i) if i in frictions else error,
+            repeats=repeats if i in frictions else 1,
+            reducible=shares.get(i, 1.0),
+        )
+        for i in range(len(question.inputs))
+    )
+
+
+def _own_scatter(question: Question, i: int) -> Ratio:
+    known = question.inputs[i].distribution
+    return known.standard_deviation / abs(known.mean) if known.mean else ERROR
+
+
+def is_undecided(probability_stable: Array) -> NDArray[np.bool_]:
+    """Whether probabilities of STABLE are neither low nor high enough to count as settled."""
+    return (probability_stable > SETTLED_LOW) & (probability_stable < SETTLED_HIGH)
+
+
+def _require_inputs(question: Question, tests: Sequence[Measurement]) -> None:
+    for one in tests:
+        if one.input >= len(question.inputs):
+            rule = f"must be the place of an input, 0 to {len(question.inputs) - 1}"
+            raise InputError("Measurement.input", rule, "", str(one.input))
+
+
+def _asked(question: Question, design: Design) -> _Asked:
+    stable = _in_blocks(design.stable.astype(float))
+    return _Asked(
+        question=question,
+        design=design,
+        entering=question.entering(),
+        margin=_in_blocks(design.margin),
+        stable=stable,
+        undecided=is_undecided(stable.mean(axis=(0, 1))),
+    )
+
+
+def _in_blocks(values: Array) -> Array:
+    """Shape (block, sample of all matrices, ...) from (matrix, sample, ...)."""
+    matrices, samples, *rest = values.shape
+    parts = values.reshape(matrices, BLOCKS, samples // BLOCKS, *rest)
+    return np.moveaxis(parts, 0, 1).reshape(BLOCKS, -1, *rest)
+
+
+def _gain(asked: _Asked, test: Measurement, place: int) -> TestGain:
+    cases = np.flatnonzero(asked.entering[test.input])
+    x = _in_blocks(asked.design.values[:, :, test.input])
+    sums = _weighted(asked, test, x, cases, place)
+    groups = _environments(asked.question)
+    open_ = asked.undecided[cases]
+
+    def quantities(of: Array) -> Array:
+        stable, means = _posteriors(of, cases)
+        high, low = share_above(stable, SETTLED_HIGH), share_above(1.0 - stable, 1.0 - SETTLED_LOW)
+        settled = high + low
+        totals = [settled[open_].sum(), (1.0 - settled)[~open_].sum(), best_choices(means, groups)]
+        return np.array([*totals, *high, *low])
+
+    value, half = jackknife(sums, quantities)
+    known = asked.question.inputs[test.input]
+    perfect, perfect_half = perfect_choice(known.distribution, x, asked.margin, cases, groups)
+    most = float(len(asked.undecided))
+    return TestGain(
+        name=known.name,
+        words=known.words,
+        measurement=test,
+        settled=estimate(value[0], half[0], 0.0, float(open_.sum())),
+        unsettled=estimate(value[1], half[1], 0.0, most),
+        choice=estimate(value[2], half[2], 0.0),
+        choice_perfect=estimate(perfect, perfect_half, 0.0),
+        cases=_case_gains(asked, cases, value[3:].reshape(2, -1)),
+    )
+
+
+def _case_gains(asked: _Asked, cases: NDArray[np.intp], shares: Array) -> tuple[CaseGain, ...]:
+    """Undecided cases that the test touches, the most settled first; shares of shape (2, case)."""
+    found = [
+        CaseGain(
+            candidate=asked.question.cases[c].candidate,
+            environment=asked.question.cases[c].environment,
+            settles=float(high + low),
+            settles_stable=float(high),
+            settles_unstable=float(low),
+        )
+        for c, high, low in zip(cases, *shares, strict=True)
+        if asked.undecided[c]
+    ]
+    return tuple(sorted(found, key=lambda one: -one.settles))
+
+
+def _environments(question: Question) -> list[NDArray[np.intp]]:
+    names = [case.environment for case in question.cases]
+    return [np.flatnonzero([name == one for one in names]) for name in dict.fromkeys(names)]
+
+
+def _weighted(asked: _Asked, test: Measurement, x: Array, cases: NDArray[np.intp], place: int) -> Array:
+    """Sums over each block, shape (block, result + 1, 1 + stable + margin): the last row without weights."""
+    told = likelihood(asked.question.inputs[test.input].distribution, test, x.size, FEWEST_EFFECTIVE)
+    results = told.results(RESULTS, (asked.design.seed, place))
+    return np.array(
+        [
+            _block_sums(told.weights(one, results), stable, margin)
+            for one, stable, margin in zip(x, asked.stable[:, :, cases], asked.margin, strict=True)
+        ]
+    )
+
+
+def _block_sums(weights: Array, stable: Array, margin: Array) -> Array:
+    columns = np.column_stack((np.ones(len(margin)), stable, margin))
+    return np.vstack((weights @ columns, columns.sum(axis=0)))
+
+
+def _posteriors(sums: Array, cases: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Probability of STABLE, shape (result, case touched), and mean margins, shape (result, case)."""
+    count = len(cases)
+    weight, stable, margin = np.split(sums, [1, 1 + count], axis=1)
+    means = np.broadcast_to(margin[-1] / weight[-1], margin[:-1].shape).copy()
+    means[:, cases] = (margin[:-1] / weight[:-1])[:, cases]
+    return stable[:-1] / weight[:-1], means
+
+
+def share_above(curve: Array, level: Ratio) -> Array:
+    """Share of equally likely results above a level, straight lines between them; shape (...) of (result, ...)."""
+    low, high = np.minimum(curve[:-1], curve[1:]), np.maximum(curve[:-1], curve[1:])
+    rise = np.where(high > low, high - low, 1.0)
+    between = np.where(high > low, np.clip((high - level) / rise, 0.0, 1.0), high >= level)
+    ends = 0.5 * ((curve[0] >= level) + (curve[-1] >= level))
+    return np.asarray((between.sum(axis=0) + ends) / len(curve))
