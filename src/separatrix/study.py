@@ -9,11 +9,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Protocol
+from typing import Any
 
 from separatrix import _cage_rules, _check, _rules
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError
+from separatrix.measured_friction import FRICTION_LIMIT as FRICTION_LIMIT
+from separatrix.measured_friction import Friction as Friction
 from separatrix.units import (
     Kelvin,
     Kilogram,
@@ -34,7 +36,6 @@ from separatrix.units import (
 )
 
 MOST_BALLS = 200
-FRICTION_LIMIT = 2.0
 LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""
 
@@ -276,72 +277,6 @@ class StabilitySettings:
     def middle_kick(self) -> MetrePerSecond:
         """The kick at which stiffness, critical friction and threshold are taken; of two, the larger."""
         return sorted(self.kicks)[len(self.kicks) // 2]
-
-
-class PredictedFriction(Protocol):
-    """Friction foretold for some conditions, as `separatrix.friction_fit.Prediction`."""
-
-    @property
-    def mean(self) -> Ratio:
-        """The material's friction."""
-
-    @property
-    def standard_error(self) -> Ratio:
-        """Of that mean."""
-
-    @property
-    def standard_deviation(self) -> Ratio:
-        """Of a new sample about it."""
-
-    @property
-    def extrapolation(self) -> tuple[str, ...]:
-        """In what respect the conditions were not tested, in words."""
-
-    @property
-    def assumed_scatter(self) -> bool:
-        """Whether no repeated test tells the scatter."""
-
-
-class FrictionLaw(Protocol):
-    """Friction as a function of the conditions, from tests, as `separatrix.friction_fit.TestedFriction`."""
-
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None,
-        pressure: Pascal | None,
-        temperature: Kelvin | None,
-        medium: str | None,
-    ) -> PredictedFriction:
-        """Friction for these conditions; one that is None is not asked about."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Friction:
-    """A measured ball/cage friction: its mean and, if known, its scatter.
-
-    `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
-    not the former over the root of `count`. `law` is what knows more: friction over the conditions.
-    `extrapolation` says in words in what respect a friction was asked for where nothing was tested.
-    """
-
-    mean: Ratio
-    standard_deviation: Ratio | None = None
-    count: int | None = None
-    standard_error: Ratio | None = None
-    assumed_scatter: bool = False
-    extrapolation: tuple[str, ...] = ()
-    law: FrictionLaw | None = field(default=None, compare=False, repr=False)
-    source: str = "given in the study"
-    confidence: str = "given in the study"
-
-    def __post_init__(self) -> None:
-        _check.settle(
-            _check.between(self, "mean", 0.0, FRICTION_LIMIT),
-            _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
-            _check.not_negative(self, "standard_error", FRICTION_LIMIT),
-            () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,0 +1,77 @@
+"""Measured friction of ball on cage: its mean, its scatter, and the law over the conditions behind it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from separatrix import _check
+from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
+
+FRICTION_LIMIT = 2.0
+
+
+class PredictedFriction(Protocol):
+    """Friction foretold for some conditions, as `separatrix.friction_fit.Prediction`."""
+
+    @property
+    def mean(self) -> Ratio:
+        """The material's friction."""
+
+    @property
+    def standard_error(self) -> Ratio:
+        """Of that mean."""
+
+    @property
+    def standard_deviation(self) -> Ratio:
+        """Of a new sample about it."""
+
+    @property
+    def extrapolation(self) -> tuple[str, ...]:
+        """In what respect the conditions were not tested, in words."""
+
+    @property
+    def assumed_scatter(self) -> bool:
+        """Whether no repeated test tells the scatter."""
+
+
+class FrictionLaw(Protocol):
+    """Friction as a function of the conditions, from tests, as `separatrix.friction_fit.TestedFriction`."""
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None,
+        pressure: Pascal | None,
+        temperature: Kelvin | None,
+        medium: str | None,
+    ) -> PredictedFriction:
+        """Friction for these conditions; one that is None is not asked about."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Friction:
+    """A measured ball/cage friction: its mean and, if known, its scatter.
+
+    `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
+    not the former over the root of `count`. `law` is what knows more: friction over the conditions.
+    `extrapolation` says in words in what respect a friction was asked for where nothing was tested.
+    """
+
+    mean: Ratio
+    standard_deviation: Ratio | None = None
+    count: int | None = None
+    standard_error: Ratio | None = None
+    assumed_scatter: bool = False
+    extrapolation: tuple[str, ...] = ()
+    law: FrictionLaw | None = field(default=None, compare=False, repr=False)
+    source: str = "given in the study"
+    confidence: str = "given in the study"
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            _check.between(self, "mean", 0.0, FRICTION_LIMIT),
+            _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
+            _check.not_negative(self, "standard_error", FRICTION_LIMIT),
+            () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
+        )
