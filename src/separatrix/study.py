@@ -323,7 +323,7 @@ class Study:
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
     distributions: Mapping[str, Distribution] = field(default_factory=dict)
-    """What is known of the uncertain numbers, by their names (`study_numbers`); the records hold the means."""
+    """What is known of uncertain numbers, by their names (`study_numbers`); the records hold the means."""
 
     records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     """Whole records of the library that are no material: "operation.fluid", "ranking.friction"."""

@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.study_file.shipped import shipped_studies
 from separatrix.toml_text import label_of, path_text, read_toml
@@ -59,6 +60,8 @@ class Document:
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     problems: list[InputError] = field(default_factory=list)
+    distributions: dict[str, Distribution] = field(default_factory=dict)
+    """Of the uncertain numbers, by their names, as they are read."""
 
     def place(self, *keys: str) -> str:
         """File and line of the first of the dotted keys that has a line of its own."""

@@ -8,6 +8,7 @@ from separatrix import library
 from separatrix.errors import InputError, together
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
+from separatrix.study_file.distributions import Uncertain, gathered
 from separatrix.study_file.document import Document
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, where
 from separatrix.study_file.values import Reader
@@ -65,7 +66,11 @@ def _in_place(document: Document, items: Any) -> dict[str, Any]:
 def _candidate(document: Document, item: Any, number: int) -> Candidate:
     place = document.sections["ranking"]["candidates"].item_places[number]
     at = f"{place}: [ranking] candidates[{number + 1}]"
-    return values.build(Candidate, values.table(item, at, _CANDIDATE, ("name", "friction")), at)
+    given, found = gathered(values.table(item, at, _CANDIDATE, ("name", "friction")))
+    for key, one in found.items():
+        named = f"ranking.{given['name']}.{key.removeprefix('friction.')}"
+        document.distributions[named] = one
+    return values.build(Candidate, given, at)
 
 
 def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate:
@@ -74,13 +79,14 @@ def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate
     return Candidate(name=candidate.name, friction=friction, material=candidate.material)
 
 
-def _frictions(value: Any, at: str) -> dict[str, Friction]:
+def _frictions(value: Any, at: str) -> Uncertain:
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
         got = f"{len(value)} of them" if isinstance(value, dict) else shown(value)
         rule = f"must be a table from environment to friction, with 1 to {MOST_CANDIDATES} entries"
         raise InputError(at, rule, "", got, cure)
-    frictions, problems = {}, []
+    frictions: dict[str, Friction | Uncertain] = {}
+    problems = []
     for name, item in value.items():
         try:
             environment = values.text(name, f"{at}, name of an environment,")
@@ -89,7 +95,7 @@ def _frictions(value: Any, at: str) -> dict[str, Friction]:
             problems.append(error)
     if problems:
         raise together(problems)
-    return frictions
+    return Uncertain(*gathered(frictions))
 
 
 _CANDIDATE: dict[str, Reader] = {

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
+from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
 from separatrix.study import (
     BallBearing,
@@ -23,12 +23,14 @@ from separatrix.study import (
     Study,
 )
 from separatrix.study_file import values
+from separatrix.study_file.distributions import certain, count, number, unwrapped, written
 from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry
 from separatrix.study_file.ranking_section import ranking
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, relocated, where
 from separatrix.study_file.values import Reader
+from separatrix.study_numbers import MOST_DISTRIBUTIONS, contact_angle_of, settled_in
 from separatrix.toml_values import nearest
-from separatrix.units import format_quantity, shown, unit_of
+from separatrix.units import printable, shown, unit_of
 
 _REQUIRED_SECTIONS = ("bearing", "operation", "film")
 
@@ -36,26 +38,29 @@ _REQUIRED_SECTIONS = ("bearing", "operation", "film")
 def _readers(record: type, **special: Reader) -> dict[str, Reader]:
     """Reader of each field of a record: from its unit, or the special one."""
     units = {f.name: unit_of(record, f.name) for f in fields(record) if f.name not in special}
-    return {
-        name: values.ratio if u == "-" else values.quantity(u) for name, u in units.items() if u
-    } | special
+    return {name: _number(u) for name, u in units.items() if u} | special
+
+
+def _number(unit: str) -> Reader:
+    """Reader of a number in this unit, certain or not."""
+    return number(values.ratio if unit == "-" else values.quantity(unit), unit)
 
 
 _READERS: dict[str, dict[str, Reader]] = {
     "bearing": _readers(
         BallBearing,
-        ball_count=values.whole,
+        ball_count=count,
         ball_material=values.material("bearing material"),
         ring_material=values.material("bearing material"),
-        radial_clearance=values.quantity("m"),
+        radial_clearance=_number("m"),
     ),
     "operation": _readers(Operation, fluid=values.text),
     "kinematics": {"model": values.choice(KinematicModel)},
     "film": _readers(
         Film,
         material=values.material("film"),
-        elastic_modulus=values.quantity("Pa"),
-        poisson_ratio=values.ratio,
+        elastic_modulus=_number("Pa"),
+        poisson_ratio=_number("-"),
     ),
     "cage": _readers(
         CageDesign,
@@ -63,16 +68,16 @@ _READERS: dict[str, dict[str, Reader]] = {
         guidance=values.choice(Guidance),
         pocket_shape=values.choice(PocketShape),
         pocket_contact=values.choice(PocketContact),
-        pocket_angles=values.pocket_angles,
-        land_count=values.whole,
-        land_lobes=values.whole,
+        pocket_angles=certain(values.pocket_angles),
+        land_count=count,
+        land_lobes=count,
     ),
     "stability": _readers(
         StabilitySettings,
-        kicks=values.kicks,
-        runs=values.whole,
-        restitution_factors=values.restitution_factors,
-        seed=values.whole,
+        kicks=certain(values.kicks),
+        runs=certain(values.whole),
+        restitution_factors=certain(values.restitution_factors),
+        seed=certain(values.whole),
     ),
     "ranking": {
         "friction": values.text,
@@ -99,9 +104,43 @@ def build_study(document: Document, name: str) -> Study:
     if document.problems:
         raise together(document.problems)
     try:
-        return Study(name=name, title=title or name, origins=_origins(document), **parts)
+        study = Study(name=name, title=title or name, origins=_origins(document), **parts)
     except InputError as error:
         raise relocated(document, error) from None
+    return _with_distributions(document, study)
+
+
+def _with_distributions(document: Document, study: Study) -> Study:
+    """The study with what is known of its uncertain numbers, each fitting its place."""
+    found = document.distributions
+    if len(found) > MOST_DISTRIBUTIONS:
+        cure = "Make those certain that matter least."
+        rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
+        raise InputError(document.label, rule, "", str(len(found)), cure)
+    tried = {key: attempt(document, _settled, document, study, key) for key in found}
+    settled = {key: one for key, one in tried.items() if one is not None}
+    if document.problems:
+        raise together(document.problems)
+    return replace(study, distributions=settled) if settled else study
+
+
+def _settled(document: Document, study: Study, key: str) -> Distribution:
+    try:
+        return settled_in(study, key, document.distributions[key])
+    except InputError as error:
+        at = _place_of_number(document, key)
+        raise InputError(at, error.rule, error.unit, error.value, error.cure) from None
+
+
+def _place_of_number(document: Document, name: str) -> str:
+    """Place of an uncertain number: that of its key, and its name inside it."""
+    section, _, key = name.partition(".")
+    if section == "ranking":
+        return f"{where(document, section, 'candidates')}, {printable(key, 120)},"
+    first, _, rest = key.partition(".")
+    if first in document.sections[section]:
+        return where(document, section, first) + (f".{rest}" if rest else "")
+    return f"{where(document, section, 'material')}.{key}"
 
 
 def _parts(document: Document) -> dict[str, Any]:
@@ -125,10 +164,21 @@ def _converted(document: Document, section: str) -> dict[str, Any]:
     for key, entry in document.sections[section].items():
         if len(document.problems) > MOST_PROBLEMS:
             break
-        value = attempt(document, _read, document, section, key, entry)
+        value, found = unwrapped(attempt(document, _read, document, section, key, entry))
+        for name, one in found.items():
+            document.distributions[_name_of(section, key, name)] = one
         if value is not None:
             converted[key] = value
     return converted
+
+
+def _name_of(section: str, key: str, part: str) -> str:
+    """Name of an uncertain number; that of the film's material has no middle."""
+    return (
+        f"{section}.{part}"
+        if (section, key) == ("film", "material")
+        else f"{section}.{key}.{part}".strip(".")
+    )
 
 
 def _read(document: Document, section: str, key: str, entry: Entry) -> Any:
@@ -161,14 +211,13 @@ def _free_angle(document: Document, clearance: float, given: dict[str, Any]) -> 
     if any(key not in given for key in needed):
         return 0.0  # the record is refused for what is missing
     diameter, inner, outer = (given[key] for key in needed)
-    room = 2.0 * (inner + outer - 1.0) * diameter
-    if room <= 0.0:
+    if 2.0 * (inner + outer - 1.0) * diameter <= 0.0:
         return 0.0  # the record is refused for its conformities
-    if not 0.0 <= clearance < room:
-        rule = f"must be >= 0 and < {format_quantity(room, 'm')}, where the free contact angle reaches 90 deg"
+    try:
+        return contact_angle_of(clearance, diameter, inner, outer)
+    except InputError as error:
         text = shown(document.sections["bearing"]["radial_clearance"].value)
-        raise InputError(where(document, "bearing", "radial_clearance"), rule, "", text)
-    return 2.0 * math.asin(math.sqrt(0.5 * clearance / room))
+        raise InputError(where(document, "bearing", "radial_clearance"), error.rule, "", text) from None
 
 
 def _operation(document: Document, given: dict[str, Any]) -> Operation:
@@ -253,7 +302,8 @@ def _origins(document: Document) -> dict[str, str]:
     origins = {}
     for section, entries in document.sections.items():
         for key, entry in entries.items():
-            text = f": {shown(entry.value)}" if not isinstance(entry.value, (dict, list)) else ""
+            plain = not isinstance(entry.value, (dict, list)) or f"{section}.{key}" in document.distributions
+            text = f": {written(entry.value)}" if plain else ""
             origins[f"{section}.{key}"] = entry.place + text
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"

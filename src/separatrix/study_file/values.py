@@ -7,6 +7,7 @@ from typing import Any
 from separatrix import library, study
 from separatrix.errors import InputError
 from separatrix.study import Friction, Material
+from separatrix.study_file.distributions import Uncertain, friction_deviation, gathered, number, unwrapped
 from separatrix.toml_values import (
     Reader,
     as_is,
@@ -71,7 +72,7 @@ def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
 def material(kind: str) -> Reader:
     """Read a material: a name of the library, or a table with its properties."""
 
-    def read(value: Any, where: str) -> Material:
+    def read(value: Any, where: str) -> Material | Uncertain:
         if isinstance(value, str):
             return named_material(value, kind, where)
         if not isinstance(value, dict):
@@ -92,28 +93,35 @@ def named_material(name: str, kind: str, where: str) -> Material:
     return library.material(kind, name)
 
 
-def material_in_place(value: Any, where: str, name: str = "given in the study") -> Material:
+def material_in_place(value: Any, where: str, name: str = "given in the study") -> Material | Uncertain:
     """Material from a table with elastic_modulus, poisson_ratio and perhaps density, name and source."""
     readers: dict[str, Reader] = {
-        "elastic_modulus": quantity("Pa"),
-        "poisson_ratio": ratio,
-        "density": quantity("kg/m3"),
+        "elastic_modulus": number(quantity("Pa"), "Pa"),
+        "poisson_ratio": number(ratio, "-"),
+        "density": number(quantity("kg/m3"), "kg/m3"),
         "name": text,
         "source": text,
         "confidence": text,
     }
-    given = table(value, where, readers, ("elastic_modulus", "poisson_ratio"))
-    return build(Material, {"name": name, **given}, where)
+    given, found = gathered(table(value, where, readers, ("elastic_modulus", "poisson_ratio")))
+    made = build(Material, {"name": name, **given}, where)
+    return Uncertain(made, found) if found else made
 
 
-def friction(value: Any, where: str) -> Friction:
-    """Read a friction: a number, or a table with mean, standard_deviation and count."""
-    if isinstance(value, dict):
+def friction(value: Any, where: str) -> Friction | Uncertain:
+    """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
+    if isinstance(value, dict) and not {"between", "samples"} & set(value):
         readers: dict[str, Reader] = {
             "mean": ratio,
             "standard_deviation": ratio,
             "count": whole,
             "source": text,
         }
-        return build(Friction, table(value, where, readers, ("mean",)), where)
-    return build(Friction, {"mean": ratio(value, where)}, where)
+        given = {**value, "standard_deviation": friction_deviation(value, where)}
+        kept = {key: item for key, item in given.items() if key in value}
+        return build(Friction, table(kept, where, readers, ("mean",)), where)
+    mean, found = unwrapped(number(ratio, "-")(value, where))
+    if not found:
+        return build(Friction, {"mean": mean}, where)
+    deviation = found[""].standard_deviation
+    return Uncertain(build(Friction, {"mean": mean, "standard_deviation": deviation}, where), found)
