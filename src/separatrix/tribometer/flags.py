@@ -1,0 +1,144 @@
+"""What a reader should know about a test, a plain sentence each, with its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from separatrix.tribometer.cycles import Spans
+from separatrix.tribometer.events import Event
+from separatrix.tribometer.options import ReductionOptions
+from separatrix.tribometer.run_in import RunIn
+from separatrix.tribometer.steady import SteadyMean
+from separatrix.tribometer.stick_slip import Oscillation
+from separatrix.units import format_number, format_quantity
+
+RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
+"""Size and words in which a drift is told, by the abscissa."""
+
+CHANCE = 0.01
+"""Probability without any drift below which a drift is told."""
+
+HALF = 0.5
+"""Share of a test beyond which running-in is told to be long."""
+
+GAP = 0.05
+"""Share of the steady part without a row that is told."""
+
+
+def at(value: float, axis: str) -> str:
+    """Return a place along the abscissa as text: ``"12.5 min"``, ``"1.2 km"``, ``"500 cycles"``."""
+    if axis == "cycles":
+        return f"{format_number(value)} cycles"
+    if axis == "distance":
+        return f"{format_number(value / 1e3)} km" if value >= 1e4 else format_quantity(value, "m")
+    for size, name in ((3600.0, "h"), (60.0, "min")):
+        if value >= 3.0 * size:
+            return f"{format_number(value / size)} {name}"
+    return format_quantity(value, "s")
+
+
+def run_in_flags(found: RunIn | None, start: float, end: float, cut: float, axis: str) -> Iterator[str]:
+    """Tell of running-in that takes more than half of the test, or that does not end in it."""
+    share = (cut - start) / (end - start)
+    if found is not None and not found.ends:
+        yield (
+            f"Running-in does not end: friction still changes at {at(cut, axis)}, "
+            f"{100 * share:.0f} % of the test; the mean may be off by {format_number(abs(found.rest), 2)}."
+        )
+    elif share > HALF:
+        yield f"Running-in takes {100 * share:.0f} % of the test, up to {at(cut, axis)}."
+
+
+def drift_flag(mean: SteadyMean, length: float, axis: str, options: ReductionOptions) -> Iterator[str]:
+    """Tell of a straight drift that noise would hardly make and that counts."""
+    if mean.change_chance >= CHANCE or abs(mean.change) < options.drift_ratio * abs(mean.mean):
+        return
+    size, words = RATES[axis]
+    rate, error = mean.change / length * size, mean.change_error / length * size
+    first, last = mean.mean - mean.change / 2, mean.mean + mean.change / 2
+    yield (
+        f"Friction drifts by {format_number(rate, 3)} {words} (standard error {format_number(error, 2)}), "
+        f"from {format_number(first, 3)} to {format_number(last, 3)} over the steady part: "
+        "its mean stands for that part, not for its end."
+    )
+
+
+def oscillation_flag(
+    found: Oscillation, mean: float, axis: str, is_cycle_known: bool, options: ReductionOptions
+) -> Iterator[str]:
+    """Tell of an oscillation that is large enough and stands out of the noise."""
+    if found.amplitude <= 0.0 or found.amplitude < options.stick_slip_ratio * abs(mean):
+        return
+    rate = format_number(found.frequency, 3)
+    where = {"time": f"at {rate} Hz", "distance": f"{rate} times per m", "cycles": f"{rate} times per cycle"}
+    what = (
+        "stick-slip" if is_cycle_known else "stick-slip, or once per turn or stroke (no cycle time is known)"
+    )
+    yield (
+        f"Friction oscillates {where[axis]} by {format_number(found.amplitude, 2)} from peak to peak, "
+        f"{100 * found.amplitude / abs(mean):.0f} % of its mean, with {format_number(found.signal_to_noise, 2)} "
+        f"times the power of all the rest: {what}."
+    )
+
+
+def event_flag(event: Event, begin: str, end: str) -> str:
+    """Tell of an event that the rows show, at two places along the abscissa."""
+    usual = format_number(event.usual, 3)
+    if event.kind == "loading":
+        force = format_quantity(event.usual, "N")
+        return f"The normal force reaches its {force} only at {begin}: what is before is left out."
+    if event.kind == "force lost":
+        low, force = format_quantity(event.size, "N"), format_quantity(event.usual, "N")
+        return f"The normal force falls from {force} to {low} at {begin}: the steady part ends before it."
+    size = format_number(event.size, 3)
+    if event.kind == "seizure":
+        return (
+            f"Seizure or a failed film: friction rises from {usual} to {size} at {begin} and stays up; "
+            "the steady part ends before it."
+        )
+    return f"Friction rises from {usual} to {size} between {begin} and {end}, and comes back: a spike."
+
+
+def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | None) -> Iterator[str]:
+    """Tell of steps in friction or wear depth, each with its place as text and its size."""
+    if friction is not None:
+        place, size = friction
+        word = "rises" if size > 0 else "falls"
+        yield f"Friction {word} in one step by {format_number(abs(size), 2)} at {place}: wear event or new surface."
+    if wear is not None:
+        place, size = wear
+        yield f"Wear depth jumps by {format_quantity(abs(size), 'm', 2)} at {place}: a wear event."
+
+
+def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) -> Iterator[str]:
+    """Tell of a test too short for its correlation."""
+    if mean.is_long:
+        yield (
+            f"Friction stays alike over {100 * mean.correlation:.0f} % of the steady part or more: "
+            "the test is too short for its scatter, and the interval may be too narrow."
+        )
+    elif effective < options.fewest_effective:
+        yield (
+            f"The steady part holds {format_number(effective, 2)} independent values, fewer than "
+            f"{format_number(options.fewest_effective)}: the test is short for its scatter."
+        )
+
+
+def range_flag(mean: float, low: float, high: float) -> Iterator[str]:
+    """Tell of friction that no dry contact has."""
+    if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
+        yield (
+            f"Friction lies outside 0 to 2 (mean {format_number(mean, 3)}, rows from {format_number(low, 3)} to "
+            f"{format_number(high, 3)}): check zero, sign and units of the forces."
+        )
+
+
+def gap_flag(spans: Spans) -> Iterator[str]:
+    """Tell of a stretch without rows in the steady part."""
+    longest = current = 0
+    for count in spans.counts:
+        current = current + 1 if count == 0 else 0
+        longest = max(longest, current)
+    share = longest / spans.counts.size
+    if share > GAP:
+        yield f"No row lies in {100 * share:.0f} % of the steady part in one piece: the mean bridges it."

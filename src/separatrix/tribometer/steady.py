@@ -1,0 +1,150 @@
+"""Mean of a steady stretch and its standard error, when neighbouring values are alike and drift.
+
+The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns over
+the stretch. Each projection has the variance of the spectral density at its frequency, and nearly none is
+correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
+the mean, with as many degrees of freedom as there are of them, less one for the line [1]_. How many are low
+enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part
+with one time of correlation. Its remaining fall over the cosines used is corrected.
+
+References
+----------
+.. [1] E. Lazarus, D. J. Lewis, J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice",
+   Journal of Business & Economic Statistics 36 (2018) 541-559: the equal-weighted cosine estimate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import dct
+from scipy.special import stdtr, stdtrit
+
+from separatrix.units import Array, Ratio
+
+LEVEL = 0.95
+"""Of the interval."""
+
+CORNERS = np.geomspace(3.0, 4096.0, 32)
+"""Half turns of the stretch at which the correlated part has fallen to half: from a tenth of the
+stretch to none."""
+
+FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])
+"""White part of the spectrum at zero frequency."""
+
+FLAT = 0.75
+"""A cosine counts if the fitted spectrum has at least this share of its height at zero there."""
+
+FEWEST_COSINES, MOST_COSINES = 6, 60
+
+LONG = 4.5
+"""Corner below which the correlation is too long for the stated interval: 7 % of the stretch."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SteadyMean:
+    """Mean, standard error and drift of a stretch."""
+
+    mean: Ratio
+    standard_error: Ratio
+    degrees_of_freedom: int
+    change: Ratio
+    """Of the straight line, from one end of the stretch to the other."""
+    change_error: Ratio
+    """Standard error of `change`."""
+    corner: float
+    """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
+    floor: Ratio
+    """White part of the spectrum at zero frequency."""
+    power: Array
+    """Squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]."""
+    density: float
+    """Spectral density at zero frequency, in units of `power`."""
+
+    @property
+    def half_width(self) -> float:
+        """Half the 95 % interval by Student's t."""
+        return half_width(self.standard_error, self.degrees_of_freedom)
+
+    @property
+    def change_chance(self) -> float:
+        """Probability of a change at least as large without any drift."""
+        t = abs(self.change) / max(self.change_error, 1e-300)
+        return float(2.0 * stdtr(self.degrees_of_freedom, -t))
+
+    @property
+    def correlation(self) -> Ratio:
+        """Time of correlation, as a share of the stretch: that of the correlated part."""
+        return 1.0 / (np.pi * self.corner)
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the correlation is too long for the error to be trusted."""
+        return self.corner < LONG and self.floor < 1.0
+
+
+def half_width(standard_error: float, degrees_of_freedom: int) -> float:
+    """Return half the 95 % interval of Student's t."""
+    return float(standard_error * stdtrit(degrees_of_freedom, 0.5 + LEVEL / 2))
+
+
+def steady_mean(values: Array) -> SteadyMean:
+    """Return the mean of a stretch with its standard error.
+
+    Parameters
+    ----------
+    values : ndarray
+        Means over equal spans, shape (span,), at least twelve.
+    """
+    power = cosines(values) ** 2
+    corner, floor = fitted_shape(power)
+    shape = spectrum(np.arange(1, power.size + 1), corner, floor)
+    count = int(np.clip((shape >= FLAT).sum(), FEWEST_COSINES, min(MOST_COSINES, power.size // 2 + 1)))
+    density = float(power[:count].sum() / shape[1:count].sum())
+    n, x = values.size, _places(values.size)
+    return SteadyMean(
+        mean=float(values.mean()),
+        standard_error=float(np.sqrt(density / n)),
+        degrees_of_freedom=count - 1,
+        change=float(x @ values / (x @ x)),
+        change_error=float(np.sqrt(density / (x @ x))),
+        corner=corner,
+        floor=floor,
+        power=power,
+        density=density,
+    )
+
+
+def cosines(values: Array) -> Array:
+    """Return the projections on cosines 1, 2, ... of a stretch, straight line taken off, shape (span - 1,).
+
+    White noise gives each its own variance, save the first, of which the line takes nearly all.
+    """
+    x = _places(values.size)
+    level = values - values.mean()
+    return np.asarray(dct(level - x * (x @ level) / (x @ x), type=2, norm="ortho")[1:], dtype=float)
+
+
+def spectrum(cosine: Array, corner: float, floor: float) -> Array:
+    """Return the spectrum of a corner and a floor at some cosines, one at zero, shape (cosine,)."""
+    return np.asarray(floor + (1.0 - floor) / (1.0 + (cosine / corner) ** 2), dtype=float)
+
+
+def fitted_shape(power: Array) -> tuple[float, float]:
+    """Return corner and floor of the spectrum that fits best, by Whittle's likelihood.
+
+    The first cosine is left out, for the straight line has taken it.
+    """
+    place = np.arange(2, power.size + 1)
+    fall = 1.0 / (1.0 + (place / CORNERS[:, None, None]) ** 2)
+    shape = FLOORS[:, None] + (1.0 - FLOORS[:, None]) * fall
+    scale = np.maximum((power[1:] / shape).mean(axis=-1), 1e-300)
+    fit = np.log(scale) * place.size + np.log(shape).sum(axis=-1)
+    corner, floor = np.unravel_index(int(np.argmin(fit)), fit.shape)
+    return float(CORNERS[corner]), float(FLOORS[floor])
+
+
+def _places(count: int) -> Array:
+    """Return the middles of equal spans of a stretch of length one around zero."""
+    return np.asarray((np.arange(count) + 0.5) / count - 0.5, dtype=float)
