@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from separatrix.friction_fit.law import TestedFriction
+from separatrix.friction_fit.law import StatedFriction, TestedFriction
 from separatrix.friction_fit.records import FrictionTest, Prediction
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ __all__ = [
     "FrictionTest",
     "MaterialFit",
     "Prediction",
+    "StatedFriction",
     "TestedFriction",
     "fit_friction",
 ]

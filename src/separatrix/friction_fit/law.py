@@ -1,10 +1,12 @@
-"""Friction of one material in one environment, fitted when it is first asked for."""
+"""Friction of one material in one environment, as a candidate of a study carries it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import exp, log
+from math import exp, hypot, log, sqrt
 
+from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.records import FrictionTest, Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
 
@@ -48,3 +50,42 @@ class TestedFriction:
 
         fitted = fit_friction(self.tests, self.default_scatter).of(self.material, self.environment)
         return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StatedFriction:
+    """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
+
+    Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
+    """
+
+    mean: Ratio
+    standard_deviation: Ratio | None = None
+    count: int | None = None
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    medium: str | None = None
+    default_scatter: Ratio
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None = None,
+        pressure: Pascal | None = None,
+        temperature: Kelvin | None = None,
+        medium: str | None = None,
+    ) -> Prediction:
+        """Friction foretold for these conditions: the printed mean, its scatter widened where not tested."""
+        asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
+        within = held(asked, self.ranges, {})
+        stated = self.standard_deviation
+        scatter = self.default_scatter * self.mean if stated is None else stated
+        widening = self.mean * within.widening
+        other = () if self.medium is None else other_medium(medium, (self.medium,))
+        return Prediction(
+            mean=self.mean,
+            standard_error=scatter if stated is None else scatter / sqrt(self.count or 1),
+            standard_deviation=hypot(scatter, widening),
+            extrapolation=(*within.sentences, *other),
+            widening=widening,
+            assumed_scatter=stated is None,
+        )

@@ -28,7 +28,10 @@ _ALTERNATIVES = {
 }
 """Keys that exclude each other: a variant that gives one side drops the other side of its base."""
 
-_OUTSIDE = "Before the first [section] there are only title and extends; move it into its section."
+TOP = ("title", "extends", "library")
+"""Keys before the first section."""
+
+_OUTSIDE = "Before the first [section] there are only title, extends and library; move it into its section."
 _LAND_KEYS = (
     *("land_clearance", "land_friction", "land_stiffness", "land_restitution"),
     *("land_count", "land_out_of_round", "land_lobes"),
@@ -50,6 +53,17 @@ class Entry:
     item_places: tuple[str, ...] = ()
     """Place of each item, if it is a list of tables."""
 
+    folder: Path = Path()
+    """Folder of the file, beside which the files stand that it names."""
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryPlace:
+    """A study file of the chain, whose neighbours and whose key `library` say where materials are."""
+
+    study: Path
+    given: Entry | None
+
 
 @dataclass(slots=True)
 class Document:
@@ -62,6 +76,10 @@ class Document:
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
     """Of the uncertain numbers, by their names, as they are read."""
+
+    libraries: list[LibraryPlace] = field(default_factory=list)
+
+    folder: Path = Path()
 
     def place(self, *keys: str) -> str:
         """File and line of the first of the dotted keys that has a line of its own."""
@@ -108,14 +126,14 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
 
 def _own(path: Path) -> Document:
     data, lines = read_toml(path)
-    document = Document(label_of(path), lines=lines)
+    document = Document(label_of(path), lines=lines, folder=path.parent)
     for name, value in data.items():
         if len(document.problems) > MOST_PROBLEMS:
             break
         place = document.place(name, f"{name}.0")
         plain = printable(name) or '""'
-        if name in ("title", "extends"):
-            document.top[name] = Entry(value, place)
+        if name in TOP:
+            document.top[name] = Entry(value, place, folder=document.folder)
         elif name in SECTIONS and isinstance(value, dict):
             document.sections[name] = {key: _entry(document, f"{name}.{key}", v) for key, v in value.items()}
         elif name in SECTIONS:
@@ -129,13 +147,14 @@ def _own(path: Path) -> Document:
             document.problems.append(
                 InputError(f"{place}: {plain}", "stands outside a section", cure=_OUTSIDE)
             )
+    document.libraries.append(LibraryPlace(path, document.top.get("library")))
     return document
 
 
 def _entry(document: Document, key: str, value: Any) -> Entry:
     items = value if isinstance(value, list) else []
     places = tuple(document.place(f"{key}.{i}", key) for i in range(len(items)))
-    return Entry(value, document.place(key, f"{key}.0"), places)
+    return Entry(value, document.place(key, f"{key}.0"), places, document.folder)
 
 
 def _base(path: Path, text: str, where: str) -> Path:
@@ -148,7 +167,10 @@ def _base(path: Path, text: str, where: str) -> Path:
 
 
 def _merged(base: Document, document: Document) -> Document:
-    merged = Document(document.label, document.top, {}, {}, base.problems + document.problems)
+    merged = Document(
+        document.label, document.top, problems=base.problems + document.problems, folder=document.folder
+    )
+    merged.libraries = document.libraries + base.libraries
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)
         if below is not None or above is not None:

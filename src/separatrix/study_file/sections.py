@@ -9,6 +9,7 @@ from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
+from separatrix.library import Library
 from separatrix.study import (
     BallBearing,
     CageDesign,
@@ -25,6 +26,7 @@ from separatrix.study import (
 from separatrix.study_file import values
 from separatrix.study_file.distributions import certain, count, number, unwrapped, written
 from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry
+from separatrix.study_file.libraries import library_of, used_records
 from separatrix.study_file.ranking_section import ranking
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, relocated, where
 from separatrix.study_file.values import Reader
@@ -83,6 +85,7 @@ _READERS: dict[str, dict[str, Reader]] = {
         "friction": values.text,
         "materials": values.list_of(values.text),
         "candidates": values.as_is,  # read one by one below, each with its own place
+        "friction_scatter": certain(values.ratio),
     },
 }
 """How each key of each section is read: the contract of a study file."""
@@ -97,14 +100,17 @@ def build_study(document: Document, name: str) -> Study:
         With everything that is wrong, on one line.
     """
     title = attempt(document, _title, document, name)
-    parts = _parts(document)
+    library = attempt(document, library_of, document) or Library()
+    with values.using(library, _temperature(document)):
+        parts = _parts(document)
     if missing := [f"[{section}]" for section in _REQUIRED_SECTIONS if section not in document.sections]:
         rule = f"lacks the section{'s'[: len(missing) > 1]} {', '.join(missing)}"
         document.problems.append(InputError(document.label, rule))
     if document.problems:
         raise together(document.problems)
+    records = used_records(library, document)
     try:
-        study = Study(name=name, title=title or name, origins=_origins(document), **parts)
+        study = Study(name=name, title=title or name, origins=_origins(document), records=records, **parts)
     except InputError as error:
         raise relocated(document, error) from None
     return _with_distributions(document, study)
@@ -141,6 +147,16 @@ def _place_of_number(document: Document, name: str) -> str:
     if first in document.sections[section]:
         return where(document, section, first) + (f".{rest}" if rest else "")
     return f"{where(document, section, 'material')}.{key}"
+
+
+def _temperature(document: Document) -> float | None:
+    """Temperature of the study, by which data of the library are chosen; None if absent or refused."""
+    entry = document.sections.get("operation", {}).get("temperature")
+    try:
+        value = None if entry is None else _READERS["operation"]["temperature"](entry.value, "")
+    except InputError:  # it is refused in its own place
+        return None
+    return None if value is None else float(unwrapped(value)[0])
 
 
 def _parts(document: Document) -> dict[str, Any]:
