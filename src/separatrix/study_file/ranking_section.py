@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from separatrix import library
 from separatrix.errors import InputError, together
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.distributions import Uncertain, gathered
 from separatrix.study_file.document import Document
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, where
+from separatrix.study_file.tested_friction import of_conditions, question_of_tests, scatter_of, tests_file
 from separatrix.study_file.values import Reader
 from separatrix.toml_values import nearest
 from separatrix.units import shown
@@ -27,25 +27,32 @@ def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
         raise Unfinished
     if "candidates" in written:
         question = _in_place(document, given["candidates"])
+    elif "friction" in written and (file := tests_file(document, given["friction"])) is not None:
+        question = question_of_tests(document, file, given)
     elif "friction" in written:
         question = _from_table(document, given)
     else:
         raise InputError(f"{document.label}: [ranking]", "lacks: friction (or candidates)")
+    if "friction_scatter" in given:
+        question["friction_scatter"] = given["friction_scatter"]
     return record_of(document, RankingQuestion, question)
 
 
 def _from_table(document: Document, given: dict[str, Any]) -> dict[str, Any]:
-    name = given["friction"]
-    if name not in library.FRICTION_TABLES:
-        rule, known = "is no friction table of the library", library.FRICTION_TABLES
-        raise InputError(where(document, "ranking", "friction"), rule, "", shown(name), nearest(name, known))
+    name, library = given["friction"], values.current_library()
+    values.refuse_unknown(name, "friction table", where(document, "ranking", "friction"))
     table = library.friction_table(name)
     chosen = given.get("materials", tuple(table.friction))
     for material in chosen:
         if material not in table.friction:
             rule, cure = f"names a material that {name} lacks", nearest(material, table.friction)
             raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
-    return {"environments": table.environments, "candidates": tuple(table.candidate(m) for m in chosen)}
+    temperature = values.current_temperature()
+    candidates = tuple(
+        of_conditions(library.candidate(table, material, temperature), table, scatter_of(given))
+        for material in chosen
+    )
+    return {"environments": table.environments, "candidates": candidates}
 
 
 def _in_place(document: Document, items: Any) -> dict[str, Any]:

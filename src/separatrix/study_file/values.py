@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
-from separatrix import library, study
+from separatrix import study
 from separatrix.errors import InputError
+from separatrix.library import Library
 from separatrix.study import Friction, Material
 from separatrix.study_file.distributions import Uncertain, friction_deviation, gathered, number, unwrapped
 from separatrix.toml_values import (
@@ -28,6 +32,8 @@ __all__ = [
     "as_is",
     "build",
     "choice",
+    "current_library",
+    "current_temperature",
     "friction",
     "kicks",
     "list_of",
@@ -38,11 +44,38 @@ __all__ = [
     "pocket_angles",
     "quantity",
     "ratio",
+    "refuse_unknown",
     "restitution_factors",
     "table",
     "text",
+    "using",
     "whole",
 ]
+
+
+_LIBRARY: ContextVar[Library | None] = ContextVar("library", default=None)
+_TEMPERATURE: ContextVar[float | None] = ContextVar("temperature", default=None)
+
+
+@contextmanager
+def using(library: Library, temperature: float | None) -> Iterator[None]:
+    """Read names from this library, with the data that serve at this temperature, until the end."""
+    before = _LIBRARY.set(library), _TEMPERATURE.set(temperature)
+    try:
+        yield
+    finally:
+        _LIBRARY.reset(before[0])
+        _TEMPERATURE.reset(before[1])
+
+
+def current_library() -> Library:
+    """The library of the study that is being read; the shipped one otherwise."""
+    return _LIBRARY.get() or Library()
+
+
+def current_temperature() -> float | None:
+    """Temperature of the study that is being read; None where it states none."""
+    return _TEMPERATURE.get()
 
 
 def kicks(value: Any, where: str) -> tuple[float, ...]:
@@ -85,12 +118,26 @@ def material(kind: str) -> Reader:
 
 def named_material(name: str, kind: str, where: str) -> Material:
     """Material of the library, or a refusal that lists what there is."""
-    if name not in library.names(kind):
-        listed = f"The library has {', '.join(library.names(kind))}."
-        near = nearest(name, library.names(kind))
-        cure = f"{near} {listed}" if near.startswith("Did") else listed
-        raise InputError(where, f"is no {kind} of the library", "", shown(name), cure)
-    return library.material(kind, name)
+    refuse_unknown(name, kind, where)
+    return current_library().material(kind, name, current_temperature())
+
+
+def refuse_unknown(name: str, kind: str, where: str) -> None:
+    """Refuse a name that the library lacks, with the nearest one and what there is."""
+    names = current_library().names(kind)
+    if name in names:
+        return
+    listed = f"The library has {', '.join(names)}."
+    if len(listed) > 200:
+        listed = f"{listed[: listed.rindex(',', 0, 200)]}, ..."
+    near = nearest(name, names)
+    raise InputError(
+        where,
+        f"is no {kind} of the library",
+        "",
+        shown(name),
+        f"{near} {listed}" if near.startswith("Did") else listed,
+    )
 
 
 def material_in_place(value: Any, where: str, name: str = "given in the study") -> Material | Uncertain:

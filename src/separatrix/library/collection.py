@@ -1,0 +1,230 @@
+"""The shipped library together with those of the user: names to records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from separatrix.errors import DataError, InputError
+from separatrix.library.reading import Content, read_library
+from separatrix.library.records import KINDS, PROPERTIES, Choice, FrictionTable, LibraryFile, Record, choose
+from separatrix.study import Candidate, Material
+from separatrix.units import Kelvin, printable, shown
+
+SHIPPED_FILES = {
+    "bearing material": "bearing_materials.toml",
+    "cage material": "cage_materials.toml",
+    "film": "films.toml",
+    "fluid": "fluids.toml",
+    "friction table": "pin-on-disk-77K.toml",
+}
+"""Shipped file of each kind; each is read when it is first asked."""
+
+MOST_FILES = 200
+Records = Mapping[str, Record | FrictionTable]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Library:
+    """The shipped records and, over them, those of the user's files."""
+
+    files: tuple[LibraryFile, ...] = ()
+    """Files of the user."""
+
+    own: Mapping[str, Records] = field(default_factory=dict)
+    """Records of the user by kind and name."""
+
+    def records(self, kind: str) -> Records:
+        """Records of one kind by name, the shipped ones first."""
+        return {**shipped_records(kind), **self.own.get(kind, {})}
+
+    def names(self, kind: str) -> tuple[str, ...]:
+        """Names of one kind, in the order of the files."""
+        return tuple(self.records(kind))
+
+    def record(self, kind: str, name: str) -> Record:
+        """One material or fluid by its exact name.
+
+        Raises
+        ------
+        DataError
+            There is none of that name.
+        """
+        found = self.records(kind).get(name)
+        if not isinstance(found, Record):
+            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
+        return found
+
+    def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
+        """One solid by its exact name, with the data that serve at a temperature.
+
+        Raises
+        ------
+        DataError
+            There is none of that name.
+        """
+        return as_material(self.record(kind, name), temperature)
+
+    def friction_table(self, name: str) -> FrictionTable:
+        """One table of measured friction by its exact name.
+
+        Raises
+        ------
+        DataError
+            There is none of that name.
+        """
+        kind = "friction table"
+        found = self.records(kind).get(name)
+        if not isinstance(found, FrictionTable):
+            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
+        return found
+
+    def candidate(self, table: FrictionTable, name: str, temperature: Kelvin | None = None) -> Candidate:
+        """One material of a friction table, with its elastic record if the library has one.
+
+        Raises
+        ------
+        DataError
+            The table has no such material.
+        """
+        if name not in table.friction:
+            raise DataError(f'no material "{name}"; {table.name} has {", ".join(table.friction)}')
+        kind = "cage material"
+        known = name in self.names(kind)
+        material = self.material(kind, name, temperature) if known else None
+        return Candidate(name=name, friction=table.friction[name], material=material)
+
+    def fluid(self, name: str) -> Record | None:
+        """Record of a fluid by its name or another name of it, in any case of letters; None if unknown."""
+        wanted = name.strip().casefold()
+        fluids = [record for record in self.records("fluid").values() if isinstance(record, Record)]
+        known = {alias.casefold(): r for r in fluids for alias in r.facts.get("aliases") or ()}
+        return (known | {record.name.casefold(): record for record in fluids}).get(wanted)
+
+    def every(self) -> tuple[Record | FrictionTable, ...]:
+        """All records."""
+        return tuple(record for kind in KINDS for record in self.records(kind).values())
+
+
+_ACTING = {
+    "bearing material": ("elastic_modulus", "poisson_ratio", "density"),
+    "cage material": ("elastic_modulus", "poisson_ratio"),
+    "film": ("elastic_modulus", "poisson_ratio"),
+}
+"""Numbers of a solid that any answer depends on."""
+
+
+def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
+    """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
+    chosen = {key: choose(data, temperature, PROPERTIES[key].words) for key, data in record.data.items()}
+    words = {key: PROPERTIES[key].words for key in chosen}
+    sources = [f"{words[key]}: {choice.datum.source}" for key, choice in chosen.items()]
+    remark = [(record.remark or "").rstrip(".")] if record.remark else []
+    return Material(
+        name=record.name,
+        source=". ".join([*remark, *sources]),
+        confidence=", ".join(f"{words[key]}: {choice.datum.confidence}" for key, choice in chosen.items()),
+        record=_whole(record, chosen, temperature),
+        cautions=tuple(
+            choice.caution for key, choice in chosen.items() if choice.caution and key in _ACTING[record.kind]
+        ),
+        **{key: choice.datum.value for key, choice in chosen.items()},
+    )
+
+
+def _whole(record: Record, chosen: Mapping[str, Choice], temperature: Kelvin | None) -> dict[str, Any]:
+    """The record as plain data, with which datum of each property was taken and for which temperature."""
+    taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
+    return {**record.plain(), "taken": taken, "taken_at": temperature}
+
+
+def joined(contents: Sequence[Content]) -> Library:
+    """Library of files of the user over the shipped records.
+
+    Raises
+    ------
+    InputError
+        A name stands twice, or is shipped and the record does not say that it replaces it.
+    """
+    own: dict[str, dict[str, Record | FrictionTable]] = {}
+    for content in contents:
+        for record in content.records:
+            kind = own.setdefault(record.kind, {})
+            _refuse_hiding(kind.get(record.name) or shipped_records(record.kind).get(record.name), record)
+            kind[record.name] = record
+    return Library(files=tuple(content.file for content in contents), own=own)
+
+
+def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
+    """Refuse a record that would take the place of another in silence."""
+    where = f"{place(new)}: [{new.kind.replace(' ', '_')}] {printable(new.name)}"
+    if old is None and new.replaces:
+        cure = "Leave replaces out, or correct the name."
+        raise InputError(where, f"says that it replaces a {new.kind} that is not shipped", cure=cure)
+    if old is None:
+        return
+    if not old.file.shipped:
+        cure = "Rename or remove one of them."
+        raise InputError(where, f"stands in {place(old)} too", "", shown(new.name), cure)
+    if not new.replaces:
+        cure = "Give it another name, or say replaces = true."
+        raise InputError(where, f"has the name of a shipped {new.kind}", "", shown(new.name), cure)
+
+
+def place(record: Record | FrictionTable) -> str:
+    """File and line of a record."""
+    return record.file.label if record.line is None else f"{record.file.label}, line {record.line}"
+
+
+@cache
+def shipped_records(kind: str) -> Records:
+    """Records of one kind that come with the package, by name."""
+    folder = Path(str(files("separatrix.library") / "data"))
+    return {
+        record.name: record for record in read_library(folder / SHIPPED_FILES[kind], shipped=True).records
+    }
+
+
+def shipped() -> Library:
+    """The library that comes with the package, alone."""
+    return Library()
+
+
+def with_files(paths: Iterable[Path]) -> Library:
+    """Shipped library with library files of the user.
+
+    Raises
+    ------
+    InputError
+        A file is wrong, or a name stands twice.
+    """
+    wanted = list(dict.fromkeys(path.resolve() for path in paths))
+    return joined([read_library(path) for path in wanted])
+
+
+def library_files(path: Path) -> list[Path]:
+    """The file itself, or the TOML files of a folder, by name; hidden ones are left out.
+
+    Raises
+    ------
+    InputError
+        There is no such file or folder, or the folder holds none or too many.
+    """
+    if not path.is_dir():
+        return [path]
+    found = sorted(file for file in path.glob("*.toml") if not file.name.startswith("."))
+    if len(found) > MOST_FILES:
+        raise InputError(printable(str(path), 200), f"holds more than {MOST_FILES} library files")
+    return found
+
+
+def beside(folder: Path, besides: Path | None = None) -> list[Path]:
+    """Library files that stand in a folder: `materials.toml`, and those of a folder `materials`."""
+    alone, several = folder / "materials.toml", folder / "materials"
+    found = [alone] if alone.is_file() else []
+    found += library_files(several) if several.is_dir() else []
+    return [path for path in found if besides is None or path.resolve() != besides.resolve()]

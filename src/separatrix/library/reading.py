@@ -1,0 +1,133 @@
+"""Strict reader of library files: TOML whose every number has a unit, a source and a confidence."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from separatrix.errors import InputError, together
+from separatrix.library.materials import material
+from separatrix.library.records import KINDS, FrictionTable, LibraryFile, Record
+from separatrix.library.tables import friction_table
+from separatrix.library.words import long_text
+from separatrix.toml_text import Kind, label_of, parsed, read_text
+from separatrix.toml_values import nearest, text
+from separatrix.units import printable, shown
+
+LIBRARY = Kind(
+    noun="a library of materials",
+    most_bytes=1024 * 1024,
+    empty="`separatrix materials show 440C` shows what a record holds.",
+)
+SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
+"""Section of a file -> kind of its records."""
+
+MOST_RECORDS = 2000
+MOST_PROBLEMS = 20
+TOP = ("title",)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Content:
+    """What a library file holds."""
+
+    file: LibraryFile
+    records: tuple[Record | FrictionTable, ...]
+
+
+def read_library(path: Path, *, shipped: bool = False) -> Content:
+    """Records of a library file.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong, on one line: file, line, record, rule, value, cure.
+    """
+    return library_of_text(read_text(path, LIBRARY), label_of(path), shipped=shipped)
+
+
+def library_of_text(given: str, label: str, *, shipped: bool = False) -> Content:
+    """Records of the text of a library file."""
+    data, lines = parsed(given, label, LIBRARY)
+    checksum = hashlib.sha256(given.encode()).hexdigest()
+    file = LibraryFile(label=label, checksum=checksum, shipped=shipped)
+    return _Reading(file, lines).content(data)
+
+
+class _Reading:
+    """One file being read: what is wrong is collected with its place."""
+
+    def __init__(self, file: LibraryFile, lines: Mapping[str, int]) -> None:
+        self.file, self.lines = file, lines
+        self.problems: list[InputError] = []
+
+    def content(self, data: Mapping[str, Any]) -> Content:
+        """Read every section; refuse with everything wrong."""
+        records = []
+        for section, value in data.items():
+            if section in TOP:
+                self.attempt(long_text, value, f"{self.place(section)}: {section}")
+            else:
+                records += self.section(section, value)
+        if not records and not self.problems:
+            rule = (
+                f"holds no record: it needs a section such as [cage_material.{chr(34)}My compound{chr(34)}]"
+            )
+            self.problems.append(InputError(self.file.label, rule))
+        if self.problems:
+            raise together(self.problems)
+        return Content(file=self.file, records=tuple(records))
+
+    def section(self, section: str, value: Any) -> list[Record | FrictionTable]:
+        """Read the records of one kind."""
+        where = f"{self.place(section, *self.first_below(section))}: [{printable(section)}]"
+        if section not in SECTIONS or not isinstance(value, dict):
+            rule = (
+                "is no kind of record" if section not in SECTIONS else "must hold records, each with its name"
+            )
+            cure = nearest(section, SECTIONS) if section not in SECTIONS else ""
+            self.problems.append(
+                InputError(where, rule, "", "" if section not in SECTIONS else shown(value), cure)
+            )
+            return []
+        if len(value) > MOST_RECORDS:
+            self.problems.append(InputError(where, f"holds more than {MOST_RECORDS} records"))
+            return []
+        read = (self.attempt(self.record, section, name, item) for name, item in value.items())
+        return [record for record in read if record is not None]
+
+    def record(self, section: str, name: str, item: Any) -> Record | FrictionTable | None:
+        """Read one record, unless too much is wrong already."""
+        if len(self.problems) > MOST_PROBLEMS:
+            return None
+        key = f"{section}.{name}"
+        line = self.lines.get(key)
+        at = f"{self.place(key, section)}: [{section}] {printable(name)}"
+        text(name, f"{at}, its name,")
+        if not isinstance(item, dict):
+            raise InputError(at, "must be a record: keys with values", "", shown(item))
+        common = {"name": name, "file": self.file, "line": line}
+        places = {field: self.place(f"{key}.{field}", key, section) for field in item}
+        if section == "friction_table":
+            return friction_table(item, at, common)
+        return material(SECTIONS[section], item, at, common, places)
+
+    def attempt(self, make: Callable[..., Any], *args: Any) -> Any:
+        """What `make` returns, or None with its refusals noted."""
+        try:
+            return make(*args)
+        except InputError as error:
+            self.problems.extend(error.problems or (error,))
+        return None
+
+    def first_below(self, section: str) -> list[str]:
+        """The first dotted key inside a section that has no header of its own."""
+        return [key for key in self.lines if key.startswith(f"{section}.")][:1]
+
+    def place(self, *keys: str) -> str:
+        """File and line of the first of the dotted keys that has a line of its own."""
+        line = next((self.lines[key] for key in keys if key in self.lines), None)
+        return self.file.label if line is None else f"{self.file.label}, line {line}"
