@@ -1,4 +1,4 @@
-"""The traced stability curve of every kick, as lines over the restitution factor with the runs' own scatter."""
+"""The traced stability curve of every kick: lines over the restitution factor, with the runs' own scatter."""
 
 from __future__ import annotations
 

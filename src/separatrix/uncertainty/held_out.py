@@ -1,0 +1,119 @@
+"""How well a fitted boundary foretells runs that it was not fitted to, and what that adds to its scatter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import expit
+
+from separatrix.uncertainty.records import SurrogateError
+from separatrix.uncertainty.surrogate import Points, Surrogate, features, logits
+from separatrix.units import Array
+
+PARTS = 5
+"""Parts of equal numbers in which the held-out runs are looked at, along eta and along each parameter."""
+
+BINS = 8
+FEWEST = 12
+"""Runs below which a part says nothing."""
+
+LARGEST_ERROR = 0.2
+"""Standard deviation of ln f from which on the boundary decides nothing: most frictions scatter by 0.1."""
+
+
+def foretold(surrogate: Surrogate, points: Points) -> tuple[Array, Array]:
+    """Logit of P(grow) of each run, and the width of its kick there, shape (run,)."""
+    z, width = np.zeros(points.kick.size), np.ones(points.kick.size)
+    for kick, mode in enumerate(surrogate.mode):
+        own = points.kick == kick
+        terms = features(points.restitution_factor[own], surrogate.scale.standard(points.parameters[own]))
+        z[own], width[own] = logits(mode, terms, points.offset[own])
+    return z, width
+
+
+def misfit(surrogate: Surrogate, points: Points) -> float:
+    """Standard deviation of ln f by which the fit misses parts of the runs, beyond their own scatter [-].
+
+    In every part one step of Newton's says by how much the boundary should shift, and the information how
+    well that is known; what the squared shifts have in excess of it is misfit. The largest excess over the
+    ways of parting counts. Misfit inside a part is not seen: it makes the fitted widths larger, which is on
+    the careful side.
+    """
+    z, width = foretold(surrogate, points)
+    share = expit(z)
+    push, information = (share - points.grew) / width, share * (1.0 - share) / width**2
+    return math.sqrt(max(0.0, *(_excess(push, information, part) for part in _partings(points))))
+
+
+def _partings(points: Points) -> Iterator[NDArray[np.int_]]:
+    """Yield number of its part for each run: by kick, and along eta or a parameter."""
+    for along in (points.restitution_factor, *points.parameters.T):
+        ends = np.quantile(along, np.linspace(0.0, 1.0, PARTS + 1)[1:-1])
+        yield points.kick.astype(np.int_) * PARTS + np.searchsorted(ends, along)
+
+
+def _excess(push: Array, information: Array, part: NDArray[np.int_]) -> float:
+    """Mean square shift of the parts less what their runs' scatter explains; 0 where none has enough runs."""
+    sizes = np.bincount(part)
+    known = np.flatnonzero(sizes >= FEWEST)
+    if known.size == 0:
+        return 0.0
+    total = np.bincount(part, weights=information)[known]
+    shift = np.bincount(part, weights=push)[known] / total
+    return float(np.mean(shift**2 - 1.0 / total))
+
+
+def error_of(surrogate: Surrogate, eta: Array, parameters: Array) -> float:
+    """Standard deviation of ln f at samples, coefficients and misfit together, root mean square [-]."""
+    terms = features(eta, surrogate.scale.standard(parameters))
+    spread = [np.sum((terms @ root[:-2]) ** 2, axis=1) for root in surrogate.root]
+    return math.sqrt(float(np.mean(spread)) + surrogate.misfit**2)
+
+
+def deviance(z: Array, grew: Array) -> float:
+    """Mean of minus twice the logarithm of the probability of what each run did."""
+    return float(-2.0 * np.mean(grew * z - np.logaddexp(0.0, z)))
+
+
+def calibration(z: Array, grew: Array) -> tuple[Array, Array, Array]:
+    """Mean foretold probability, growing runs and runs in bins of equal numbers, shape (bin,) each."""
+    order = np.array_split(np.argsort(z, kind="stable"), BINS)
+    share = expit(z)
+    return (
+        np.array([share[part].mean() for part in order]),
+        np.array([grew[part].sum() for part in order]),
+        np.array([float(part.size) for part in order]),
+    )
+
+
+def surrogate_error(
+    tried: Surrogate,
+    held_out: Points,
+    final: Surrogate,
+    eta: Array,
+    parameters: Array,
+    *,
+    runs: int,
+    cages: int,
+) -> SurrogateError:
+    """Record of the error of `final`, as `tried`, fitted without the held-out runs, shows it."""
+    z, _ = foretold(tried, held_out)
+    common = float(np.clip(held_out.grew.mean(), 1e-6, 1.0 - 1e-6))
+    predicted, grown, counted = calibration(z, held_out.grew)
+    error = error_of(final, eta, parameters)
+    return SurrogateError(
+        runs=runs,
+        held_out=held_out.grew.size,
+        cages=cages,
+        deviance=deviance(z, held_out.grew),
+        deviance_constant=deviance(np.full(z.size, math.log(common / (1.0 - common))), held_out.grew),
+        predicted=predicted,
+        grown=grown,
+        counted=counted,
+        misfit=final.misfit,
+        error=error,
+        decides=error <= LARGEST_ERROR,
+    )

@@ -1,0 +1,270 @@
+r"""How the boundary moves with the cage: a logistic law of single runs, fitted where they are undecided.
+
+.. math:: \operatorname{logit} P(\text{grow}) = \frac{\ln f - \ln f_{1/2}(\eta) - \delta(x, \eta)}{w_\pm}
+
+for each kick, with the traced curve :math:`f_{1/2}` of the cage as it is, a shift :math:`\delta` of low
+order in the standardised parameters x of the cage and in :math:`\eta`, and a width on either side of one
+half. Coefficients and widths have normal priors; the mode is found by Fisher scoring, and their posterior is
+normal about it (Laplace's approximation: D. J. C. MacKay, Information Theory, Inference, and Learning
+Algorithms, 2003, ch. 27).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator, Philox
+from numpy.typing import NDArray
+from scipy.special import expit
+
+from separatrix.distribution import Distribution
+from separatrix.uncertainty.traced import FEW
+from separatrix.units import Array, Ratio
+
+KNOTS: Array = np.array([0.0, 0.125, 0.25, 0.5, 0.75, 0.9, 1.0])
+"""Restitution factors between which a shift of the traced curve itself is a straight line."""
+
+MOST_CROSSED = 8
+"""Parameters up to which products of two enter the shift."""
+
+PRIOR_KNOT, PRIOR_LINEAR, PRIOR_SLOPE, PRIOR_SQUARE, PRIOR_PRODUCT = 0.2, 0.5, 0.25, 0.15, 0.15
+"""Standard deviations of the coefficients of ln f thought possible before a run."""
+
+WIDTH, WIDTH_SPREAD = 0.12, 1.0
+"""Width of logit P in ln f thought likely, and how far (a factor of e) it may be off."""
+
+STEPS, SETTLED = 60, 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Scale:
+    """Parameters of a cage and what makes them standard: (x - centre) / spread, of ln x where it is positive.
+
+    `centre`, `spread` and `logarithmic` have shape (parameter,).
+    """
+
+    names: tuple[str, ...]
+    centre: Array
+    spread: Array
+    logarithmic: NDArray[np.bool_]
+
+    def standard(self, parameters: Array) -> Array:
+        """Return standardised parameters, shape (sample, parameter) [-]."""
+        known = np.asarray(parameters, dtype=np.float64)
+        found = np.where(self.logarithmic, np.log(np.where(self.logarithmic, known, 1.0)), known)
+        return np.asarray((found - self.centre) / self.spread)
+
+
+def scale_of(names: Sequence[str], distributions: Sequence[Distribution]) -> Scale:
+    """Scale of parameters from what is known of them: median and half the middle two thirds."""
+    logarithmic = np.array([one.low > 0.0 for one in distributions], dtype=np.bool_)
+    ends = np.array([one.quantile(np.array([0.16, 0.5, 0.84])) for one in distributions]).reshape(-1, 3)
+    ends[logarithmic] = np.log(ends[logarithmic])
+    relative = [one.standard_deviation / (one.mean if one.low > 0.0 else 1.0) for one in distributions]
+    half = 0.5 * (ends[:, 2] - ends[:, 0])
+    return Scale(
+        names=tuple(names),
+        centre=ends[:, 1],
+        spread=np.where(half > 0.0, half, np.array(relative)),
+        logarithmic=logarithmic,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Points:
+    """Single runs: shape (run,) each but `parameters`, shape (run, parameter).
+
+    `offset` is ln f less that of the traced curve; `kick` the place of the kick, `grew` whether the run grew.
+    """
+
+    kick: Array
+    restitution_factor: Array
+    parameters: Array
+    offset: Array
+    grew: Array
+
+    def of(self, chosen: Array) -> Points:
+        """Return some of the runs."""
+        return Points(
+            kick=self.kick[chosen],
+            restitution_factor=self.restitution_factor[chosen],
+            parameters=self.parameters[chosen],
+            offset=self.offset[chosen],
+            grew=self.grew[chosen],
+        )
+
+    def __add__(self, other: Points) -> Points:
+        def both(name: str) -> Array:
+            return np.concatenate([getattr(self, name), getattr(other, name)])
+
+        return Points(
+            kick=both("kick"),
+            restitution_factor=both("restitution_factor"),
+            parameters=both("parameters"),
+            offset=both("offset"),
+            grew=both("grew"),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Surrogate:
+    """Fitted law of every kick.
+
+    Attributes
+    ----------
+    scale : Scale
+        Of the parameters.
+    mode : ndarray
+        Coefficients of the shift, then logarithms of both widths, shape (kick, coefficient).
+    root : ndarray
+        Root of their covariance, shape (kick, coefficient, coefficient).
+    misfit : float
+        Standard deviation of ln f that held-out runs show beyond their own scatter [-].
+    clear : float
+        Share of growing runs that is clearly more than half [-].
+    seed : int
+        Of the draws.
+    """
+
+    scale: Scale
+    mode: Array
+    root: Array
+    misfit: float
+    clear: Ratio
+    seed: int
+
+    def coefficients(self, draw: int | None) -> tuple[Array, Array]:
+        """Coefficients, shape (kick, coefficient), and the misfit of each kick: the mode, or a draw."""
+        if draw is None:
+            return self.mode, np.zeros(len(self.mode))
+        kicks, count = self.mode.shape
+        normal = Generator(Philox(key=[self.seed, draw])).standard_normal((kicks, count + 1))
+        return self.mode + np.einsum("kij,kj->ki", self.root, normal[:, 1:]), self.misfit * normal[:, 0]
+
+    def shift(self, eta: Array, parameters: Array, draw: int | None) -> Array:
+        """Shift of ln f of each kick, shape (kick, sample)."""
+        found, misfit = self.coefficients(draw)
+        return np.asarray(found[:, :-2] @ features(eta, self.scale.standard(parameters)).T + misfit[:, None])
+
+    def shifts(self, kick: int, nodes: Array, parameters: Array, draw: int | None) -> Array:
+        """Shift of one kick at every node for every sample, shape (sample, node)."""
+        samples = len(parameters)
+        standard = self.scale.standard(parameters)
+        found, misfit = self.coefficients(draw)
+        columns = [
+            features(np.full(samples, eta), standard) @ found[kick, :-2] + misfit[kick] for eta in nodes
+        ]
+        return np.stack(columns, axis=1)
+
+    def around(self, half: Array, eta: Array, parameters: Array, draw: int | None) -> tuple[Array, Array]:
+        """Frictions at which few, and clearly more than half, of the runs grow, shape (kick, sample) each.
+
+        `half` holds those of the traced curve at which half of them grow.
+        """
+        found, _ = self.coefficients(draw)
+        below, above = np.exp(found[:, -2]), np.exp(found[:, -1])
+        middle = half * np.exp(self.shift(eta, parameters, draw))
+        few = middle * np.exp(logit(FEW) * below)[:, None]
+        return few, middle * np.exp(logit(self.clear) * above)[:, None]
+
+
+def logit(share: Ratio) -> float:
+    """Logarithm of the odds."""
+    return math.log(share / (1.0 - share))
+
+
+def features(eta: Array, standard: Array) -> Array:
+    """Terms of the shift, shape (sample, term): straight pieces in eta, then the parameters."""
+    count = standard.shape[1]
+    pieces = [np.interp(eta, KNOTS, unit) for unit in np.eye(KNOTS.size)]
+    linear = list(standard.T)
+    slopes = [column * (2.0 * eta - 1.0) for column in linear]
+    squares = [column**2 - 1.0 for column in linear]
+    products = (
+        [linear[i] * linear[j] for i in range(count) for j in range(i)] if count <= MOST_CROSSED else []
+    )
+    return np.stack([*pieces, *linear, *slopes, *squares, *products], axis=1)
+
+
+def prior(count: int) -> Array:
+    """Standard deviations of the coefficients before any run, the two widths last."""
+    products = count * (count - 1) // 2 if count <= MOST_CROSSED else 0
+    parts = ((PRIOR_KNOT, KNOTS.size), (PRIOR_LINEAR, count), (PRIOR_SLOPE, count), (PRIOR_SQUARE, count))
+    return np.concatenate(
+        [*(np.full(n, sd) for sd, n in parts), np.full(products, PRIOR_PRODUCT), np.full(2, WIDTH_SPREAD)]
+    )
+
+
+def fitted(
+    points: Points, scale: Scale, kicks: int, *, clear: Ratio, seed: int, misfit: float = 0.0
+) -> Surrogate:
+    """Law of every kick by penalised likelihood, each from its own runs."""
+    deviation = prior(len(scale.names))
+    modes, roots = [], []
+    for kick in range(kicks):
+        own = points.of(points.kick == kick)
+        terms = features(own.restitution_factor, scale.standard(own.parameters))
+        mode, root = _mode(terms, own.offset, own.grew, deviation)
+        modes.append(mode)
+        roots.append(root)
+    return Surrogate(
+        scale=scale, mode=np.stack(modes), root=np.stack(roots), misfit=misfit, clear=clear, seed=seed
+    )
+
+
+def _mode(terms: Array, offset: Array, grew: Array, deviation: Array) -> tuple[Array, Array]:
+    """Mode of the coefficients and the root of their covariance, by Fisher scoring with halved steps."""
+    centre = np.zeros(deviation.size)
+    centre[-2:] = math.log(WIDTH)
+    found, value = centre.copy(), -math.inf
+    value = _objective(found, terms, offset, grew, centre, deviation)
+    for _ in range(STEPS):
+        gradient, information = _scores(found, terms, offset, grew, centre, deviation)
+        step = np.linalg.solve(information, gradient)
+        share = 1.0
+        while share > 1e-6:
+            tried = found + share * step
+            new = _objective(tried, terms, offset, grew, centre, deviation)
+            if new >= value:
+                break
+            share *= 0.5
+        else:
+            break
+        gain, found, value = new - value, tried, new
+        if gain < SETTLED * abs(value):
+            break
+    _, information = _scores(found, terms, offset, grew, centre, deviation)
+    return found, np.linalg.inv(np.linalg.cholesky(information)).T
+
+
+def logits(found: Array, terms: Array, offset: Array) -> tuple[Array, Array]:
+    """Logit of P(grow) of runs, and the width of each, shape (run,)."""
+    distance = offset - terms @ found[:-2]
+    width = np.exp(np.where(distance < 0.0, found[-2], found[-1]))
+    return distance / width, width
+
+
+def _objective(
+    found: Array, terms: Array, offset: Array, grew: Array, centre: Array, deviation: Array
+) -> float:
+    """Logarithm of the penalised likelihood."""
+    z, _ = logits(found, terms, offset)
+    likelihood = float(np.sum(grew * z - np.logaddexp(0.0, z)))
+    return likelihood - 0.5 * float(np.sum(((found - centre) / deviation) ** 2))
+
+
+def _scores(
+    found: Array, terms: Array, offset: Array, grew: Array, centre: Array, deviation: Array
+) -> tuple[Array, Array]:
+    """Gradient of the penalised likelihood, and its expected information."""
+    z, width = logits(found, terms, offset)
+    share = expit(z)
+    slope = np.concatenate(
+        [-terms / width[:, None], -(z * (z < 0.0))[:, None], -(z * (z >= 0.0))[:, None]], axis=1
+    )
+    gradient = slope.T @ (grew - share) - (found - centre) / deviation**2
+    weighted = slope * (share * (1.0 - share))[:, None]
+    return gradient, weighted.T @ slope + np.diag(deviation**-2.0)

@@ -1,0 +1,333 @@
+"""Single runs of changed cages near their boundary, and the law fitted to them.
+
+Cages come from a quasi-random sequence in all uncertain inputs; each is run at its own restitution factor and
+at others, from every kick, at frictions where the outcome is open. Run number k is run at point k alone, and
+begins as run k does everywhere (common random numbers).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from threading import Event
+
+import numpy as np
+from scipy.stats import qmc
+
+from separatrix.cage import PlanarCage, RunOutcome, run_ensemble
+from separatrix.chain import CageState, cage_state
+from separatrix.errors import InputError, SeparatrixError
+from separatrix.ranking import ranking_question
+from separatrix.stability.growth import cage_at
+from separatrix.stability.pool import Progress, Stopped, work_through
+from separatrix.study import StabilitySettings, Study
+from separatrix.study_numbers import setter
+from separatrix.uncertainty.held_out import misfit, surrogate_error
+from separatrix.uncertainty.records import SurrogateError
+from separatrix.uncertainty.sampling import UncertainInput
+from separatrix.uncertainty.surrogate import (
+    Points,
+    Surrogate,
+    features,
+    fitted,
+    scale_of,
+)
+from separatrix.uncertainty.traced import TracedBoundary
+from separatrix.units import Array, Ratio
+
+MOVES: Ratio = 0.01
+"""Share by which a size of the cage must change with an input, within its middle two thirds, to count."""
+
+ROUNDS = 5
+"""Rounds of runs; each is placed by what those before it say."""
+
+HIGHEST: Ratio = 0.97
+"""Restitution factor up to which runs are placed: beyond, the boundary falls to nothing."""
+
+FIRST_REACH, REACH = 0.6, 3.0
+"""How far from the boundary runs are placed: in ln f at first, then in logits of P(grow)."""
+
+HELD_OUT = 5
+"""One run in so many is held out of the fit that is tried."""
+
+SLICE = 8
+"""Cages that a thread runs before it looks whether to stop."""
+
+NUMBERS = (int, float)
+_NOT_OF_THE_BOUNDARY = {"race_damping", "ball_cage_friction"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trainee:
+    """A changed cage: its place in the plan, uncertain parameters, restitution factor, and its ensemble."""
+
+    place: int
+    parameters: tuple[float, ...]
+    restitution_factor: Ratio
+    cage: PlanarCage
+    settings: StabilitySettings
+
+
+def moving_inputs(study: Study, inputs: Sequence[UncertainInput], place: int) -> tuple[str, ...]:
+    """Names of the uncertain inputs that change a candidate's cage itself, beside race damping and friction.
+
+    Parameters
+    ----------
+    study : Study
+        With candidates.
+    inputs : sequence of UncertainInput
+        From `uncertain_inputs`.
+    place : int
+        Of the candidate in the ranking.
+    """
+    middle = _sizes(changed_cage(study, place).cage)
+    return tuple(one.key for one in inputs if _moves(study, one, place, middle))
+
+
+def changed_cage(study: Study, place: int) -> CageState:
+    """Cage of a candidate, without friction."""
+    return cage_state(study, material=ranking_question(study).candidates[place].material, friction=0.0)
+
+
+def enters(study: Study, name: str, place: int) -> bool:
+    """Whether an input may matter to a candidate's cage or restitution factor: all but others' materials."""
+    own = f"ranking.{ranking_question(study).candidates[place].name}.material."
+    return not name.startswith("ranking.") or name.startswith(own)
+
+
+def _moves(study: Study, one: UncertainInput, place: int, middle: Array) -> bool:
+    """Whether an input changes a size of the cage by more than `MOVES` of itself."""
+    if one.key.startswith("stability."):
+        return True
+    if not enters(study, one.key, place):
+        return False
+    for value in one.distribution.quantile(np.array([0.16, 0.84])).tolist():
+        sizes = _sizes(changed_cage(setter(study, [one.key])([value]), place).cage)
+        if sizes.shape != middle.shape or np.any(np.abs(sizes[0] - middle[0]) > MOVES * middle[1]):
+            return True
+    return False
+
+
+def _sizes(cage: PlanarCage) -> Array:
+    """Numbers of a cage but its race damping and friction, and the size of each; shape (2, number).
+
+    Waves of the balls' speed are as large as the largest of them.
+    """
+    rows: list[tuple[float, float]] = []
+    for name in (f.name for f in fields(cage) if f.name not in _NOT_OF_THE_BOUNDARY):
+        value = getattr(cage, name)
+        numbers = [float(x) for x in (value if isinstance(value, tuple) else (value,)) if type(x) in NUMBERS]
+        rows += [(x, max(map(abs, numbers))) for x in numbers]
+    return np.array(rows).T
+
+
+def trained(
+    study: Study,
+    inputs: Sequence[UncertainInput],
+    place: int,
+    names: Sequence[str],
+    traced: TracedBoundary,
+    *,
+    seed: int,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    stop: Event | None = None,
+) -> tuple[Surrogate, SurrogateError]:
+    """Fit how the boundary of a candidate's cage moves with uncertain inputs.
+
+    Parameters
+    ----------
+    study, inputs, place
+        As in `moving_inputs`.
+    names : sequence of str
+        Inputs that move the boundary: `moving_inputs`.
+    traced : TracedBoundary
+        Of the cage as it is.
+    seed : int
+        Of the plan; the runs have the study's.
+    jobs, progress, stop
+        As in `stability.pool.work_out`.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Interrupted: the fit needs all runs.
+    """
+    halt = stop or Event()
+    known = [one for one in inputs if enters(study, one.key, place)]
+    scale = scale_of(names, [one.distribution for name in names for one in known if one.key == name])
+    cages = trainees(study, known, place, names, cage_count(len(names)), seed=seed, jobs=jobs, stop=halt)
+    plan = _Plan(study.stability.kicks, traced, cages, seed)
+    points, law = None, None
+    for turn in range(ROUNDS):
+        wanted = plan.points(turn, law)
+        told = None if progress is None else _part(progress, turn, ROUNDS)
+        grew = _run(cages, wanted, traced, first=turn * plan.size, jobs=jobs, progress=told, stop=halt)
+        new = replace(wanted, grew=grew)
+        points = new if points is None else points + new
+        law = fitted(points, scale, len(traced.kicks), clear=traced.targets[2], seed=seed)
+    if points is None or law is None:
+        raise KeyboardInterrupt
+    return _judged(points, law, cages)
+
+
+def _judged(points: Points, law: Surrogate, cages: Sequence[Trainee]) -> tuple[Surrogate, SurrogateError]:
+    """Return the law with the misfit that held-out runs show, and the record of its error."""
+    out = np.arange(points.grew.size) % HELD_OUT == HELD_OUT - 1
+    tried = fitted(points.of(~out), law.scale, len(law.mode), clear=law.clear, seed=law.seed)
+    final = replace(law, misfit=misfit(tried, points.of(out)))
+    eta = np.array([one.restitution_factor for one in cages])
+    known = np.array([one.parameters for one in cages])
+    error = surrogate_error(tried, points.of(out), final, eta, known, runs=points.grew.size, cages=len(cages))
+    return final, error
+
+
+def cage_count(parameters: int) -> int:
+    """Different cages that are run: more of them, the more parameters move."""
+    return 64 if parameters <= 1 else 128 if parameters <= 3 else 256 if parameters <= 8 else 512
+
+
+def trainees(
+    study: Study,
+    inputs: Sequence[UncertainInput],
+    place: int,
+    names: Sequence[str],
+    count: int,
+    *,
+    seed: int,
+    jobs: int,
+    stop: Event,
+) -> list[Trainee]:
+    """Cages of a quasi-random sequence; those that cannot be built are left out."""
+    unit = qmc.Sobol(len(inputs), rng=np.random.default_rng([seed, 1])).random(count)
+    unit = np.clip(unit, 1e-9, 1.0 - 1e-9)
+    values = np.stack([one.distribution.quantile(unit[:, j]) for j, one in enumerate(inputs)], axis=1)
+    keys = [one.key for one in inputs]
+    put, columns = setter(study, keys), [keys.index(name) for name in names]
+
+    def build(row: int) -> Trainee | None:
+        try:
+            changed = put(values[row].tolist())
+            state = changed_cage(changed, place)
+        except SeparatrixError:
+            return None
+        return Trainee(
+            place=row,
+            parameters=tuple(values[row, columns].tolist()),
+            restitution_factor=state.restitution.restitution.restitution_factor,
+            cage=state.cage,
+            settings=changed.stability,
+        )
+
+    built = work_through(build, range(count), jobs=jobs, stop=stop)
+    if stop.is_set():
+        raise KeyboardInterrupt
+    found = [one for one in built if one is not None]
+    if len(found) < count // 2:
+        cure = "Make the distributions of its inputs narrower."
+        rule = f"cannot be built in {count - len(found)} of {count} samples"
+        raise InputError("The uncertain cage", rule, cure=cure)
+    return found
+
+
+class _Plan:
+    """Where the runs of each round are placed.
+
+    In a round every cage is run once from every kick at its own restitution factor, and once at another.
+    """
+
+    def __init__(
+        self, kicks: Sequence[float], traced: TracedBoundary, cages: Sequence[Trainee], seed: int
+    ) -> None:
+        self.kicks, self.traced, self.cages, self.seed = len(kicks), traced, cages, seed
+        self.size = 2 * len(kicks) * len(cages)
+
+    def points(self, turn: int, law: Surrogate | None) -> Points:
+        """Points of a round, with nothing run yet; `law` is what the rounds before say."""
+        passes, cage = np.divmod(np.arange(self.size), len(self.cages))
+        kick, own = passes % self.kicks, passes < self.kicks
+        unit = qmc.Sobol(2, rng=np.random.default_rng([self.seed, 2, turn])).random(_power(self.size))
+        etas = np.array([one.restitution_factor for one in self.cages])[cage]
+        eta = np.minimum(np.where(own, etas, HIGHEST * unit[: self.size, 0]), HIGHEST)
+        parameters = np.array([one.parameters for one in self.cages])[cage]
+        way = 2.0 * unit[: self.size, 1] - 1.0
+        blank = Points(
+            kick=kick, restitution_factor=eta, parameters=parameters, offset=way, grew=np.zeros(self.size)
+        )
+        offset = FIRST_REACH * way if law is None else _near(law, blank)
+        highest = -np.log(np.maximum(_half(self.traced, blank), 1e-12))
+        return replace(blank, offset=np.minimum(offset, highest))
+
+
+def _near(law: Surrogate, blank: Points) -> Array:
+    """Offsets at which the law leaves the outcome open."""
+    found = np.zeros(blank.offset.size)
+    for kick, mode in enumerate(law.mode):
+        own = blank.kick == kick
+        terms = features(blank.restitution_factor[own], law.scale.standard(blank.parameters[own]))
+        z = REACH * blank.offset[own]
+        width = np.exp(np.where(z < 0.0, mode[-2], mode[-1]))
+        found[own] = terms @ mode[:-2] + z * width
+    return found
+
+
+def _half(traced: TracedBoundary, points: Points) -> Array:
+    """Traced critical friction at points, shape (run,) [-]."""
+    lines = np.stack(
+        [
+            np.interp(points.restitution_factor, traced.restitution_factors, traced.friction[i, 1])
+            for i in range(len(traced.kicks))
+        ]
+    )
+    return np.asarray(lines[points.kick.astype(np.int_), np.arange(points.kick.size)])
+
+
+def _power(count: int) -> int:
+    return 1 << max(0, (count - 1).bit_length())
+
+
+def _part(progress: Progress, turn: int, turns: int) -> Progress:
+    """Progress of one of several rounds of equal work."""
+
+    def told(done: int, total: int) -> None:
+        progress(turn * total + done, turns * total)
+
+    return told
+
+
+def _run(
+    cages: Sequence[Trainee],
+    points: Points,
+    traced: TracedBoundary,
+    *,
+    first: int,
+    jobs: int,
+    progress: Progress | None,
+    stop: Event,
+) -> Array:
+    """Whether each run grew, shape (run,): run number `first` + k at point k."""
+    friction = np.minimum(_half(traced, points) * np.exp(points.offset), 1.0)
+    grew = np.zeros(points.kick.size)
+    parts = [range(k, min(k + SLICE, grew.size)) for k in range(0, grew.size, SLICE)]
+
+    def work(part: range) -> int:
+        if stop.is_set():
+            raise Stopped
+        for k in part:
+            one, eta = cages[k % len(cages)], float(points.restitution_factor[k])
+            kick = traced.kicks[int(points.kick[k])]
+            found = run_ensemble(
+                cage_at(one.cage, eta, float(friction[k])),
+                one.settings,
+                kicks=(kick,),
+                runs=1,
+                first_run=first + k,
+                growth_only=True,
+            )
+            grew[k] = found.outcome[0, 0] == RunOutcome.GROWS
+        return len(part)
+
+    done = work_through(work, parts, jobs=jobs, progress=progress, stop=stop)
+    if None in done:
+        raise KeyboardInterrupt
+    return grew
