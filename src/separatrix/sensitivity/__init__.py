@@ -1,1 +1,68 @@
-"""Which input drives the doubt, which test to run next, and what a cage or a new material may be at most."""
+"""Which input drives the doubt, which test to run next, and what a cage or a new material may be at most.
+
+Every question is asked of a model, `records.Question`; it does not matter what computes it.
+"""
+
+from separatrix.sensitivity.design import Design, sampled_design, sampled_values
+from separatrix.sensitivity.inverse import allowed_friction
+from separatrix.sensitivity.next_test import default_measurements, next_test
+from separatrix.sensitivity.records import (
+    AllowedFriction,
+    Case,
+    CaseSobol,
+    Estimate,
+    Factor,
+    FilmAxis,
+    Input,
+    Measurement,
+    NextTest,
+    Question,
+    RestitutionGrid,
+    SobolAnswer,
+    SobolIndex,
+    StableRegion,
+    TestGain,
+)
+from separatrix.sensitivity.region import friction_grid, modulus_grid, stable_regions
+from separatrix.sensitivity.sobol import indices_of, sobol_indices
+from separatrix.sensitivity.words import (
+    allowed_sentence,
+    input_words,
+    next_test_sentences,
+    region_sentences,
+    sobol_sentence,
+)
+
+__all__ = [
+    "AllowedFriction",
+    "Case",
+    "CaseSobol",
+    "Design",
+    "Estimate",
+    "Factor",
+    "FilmAxis",
+    "Input",
+    "Measurement",
+    "NextTest",
+    "Question",
+    "RestitutionGrid",
+    "SobolAnswer",
+    "SobolIndex",
+    "StableRegion",
+    "TestGain",
+    "allowed_friction",
+    "allowed_sentence",
+    "default_measurements",
+    "friction_grid",
+    "indices_of",
+    "input_words",
+    "modulus_grid",
+    "next_test",
+    "next_test_sentences",
+    "region_sentences",
+    "sampled_design",
+    "sampled_values",
+    "sobol_indices",
+    "sobol_sentence",
+    "stable_regions",
+]

@@ -87,7 +87,7 @@ def sampled_design(
         enters=enters,
         values=values,
         margin=np.array([one.margin for one in answers], float),
-        stable=np.array([np.asarray(one.verdict) == STABLE for one in answers]),
+        stable=np.array([is_stable(one) for one in answers]),
         seed=seed,
     )
 
@@ -110,6 +110,12 @@ def evaluated(question: Question, values: Array) -> Evaluated:
         rule = f"must be finite in all {found.margin.size} samples"
         raise InputError("The model's margin", rule, "-", f"{wrong} that are not")
     return found
+
+
+def is_stable(found: Evaluated) -> NDArray[np.bool_]:
+    """Whether each sample of each case is STABLE, shape (sample, case)."""
+    stable: NDArray[np.bool_] = np.asarray(found.verdict) == STABLE
+    return stable
 
 
 def central_values(question: Question) -> Array:

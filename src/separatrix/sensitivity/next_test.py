@@ -234,7 +234,7 @@ def _posteriors(sums: Array, cases: NDArray[np.intp]) -> tuple[Array, Array]:
 
 
 def share_above(curve: Array, level: Ratio) -> Array:
-    """Share of equally likely results above a level, straight lines between them; shape (...) of (result, ...)."""
+    """Share of equally likely results above a level, with straight lines between the first axis's."""
     low, high = np.minimum(curve[:-1], curve[1:]), np.maximum(curve[:-1], curve[1:])
     rise = np.where(high > low, high - low, 1.0)
     between = np.where(high > low, np.clip((high - level) / rise, 0.0, 1.0), high >= level)

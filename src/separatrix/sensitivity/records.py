@@ -110,13 +110,17 @@ class Question:
         evaluate(values (sample, input)) -> Evaluated.
     judge : callable, optional
         judge(values (sample, input), restitution_factor (sample, case)) -> Evaluated: the same with the
-        restitution factor given. Cheap; where it is there, the dear part of `evaluate` can be fitted instead.
+        restitution factor given. Cheap; where it is there, the dear part of `evaluate` is not asked again for
+        another friction or film.
+    nominal : callable, optional
+        Like `evaluate`, without what finite ensembles leave open; by default `evaluate` itself.
     """
 
     inputs: tuple[Input, ...]
     cases: tuple[Case, ...]
     evaluate: Evaluate
     judge: Judge | None = None
+    nominal: Evaluate | None = None
 
     def __post_init__(self) -> None:
         _check.settle(_something(self, "inputs"), _something(self, "cases"), _places(self))
@@ -333,26 +337,55 @@ class AllowedFriction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RestitutionGrid:
-    """Restitution factor over two quantities of the film.
+class FilmAxis:
+    """A quantity of the film.
 
     Attributes
     ----------
-    x, y : ndarray
-        Shape (x,) and (y,), each rising, in SI units `x_unit` and `y_unit`.
-    x_words, y_words : str
-        ``"film thickness"``, ``"race friction"``.
-    restitution_factor : ndarray
-        Shape (y, x) [-].
+    name, words, unit : str
+        As in `Input`.
+    values : ndarray
+        Rising, at least two, shape (value,) [SI].
+    own : float
+        The study's own [SI].
     """
 
-    x: Array
-    y: Array
-    x_words: str
-    y_words: str
-    x_unit: str
-    y_unit: str
+    name: str
+    words: str
+    unit: str
+    values: Array
+    own: float
+
+    def __post_init__(self) -> None:
+        _check.settle(_check.printable_text(self, "name"), _rising(self))
+
+
+def _rising(axis: FilmAxis) -> _check.Problems:
+    values = np.asarray(axis.values)
+    if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all() or (np.diff(values) <= 0).any():
+        yield InputError(f"The axis {axis.name}", "must have at least two values, finite and rising")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionGrid:
+    """Restitution factor over two quantities of the film, shape (y, x) [-]."""
+
+    x: FilmAxis
+    y: FilmAxis
     restitution_factor: Array
+
+    def __post_init__(self) -> None:
+        _check.settle(_fits(self))
+
+
+def _fits(grid: RestitutionGrid) -> _check.Problems:
+    factors, wanted = np.asarray(grid.restitution_factor), (len(grid.y.values), len(grid.x.values))
+    if factors.shape != wanted:
+        yield InputError(
+            "RestitutionGrid.restitution_factor", f"must have the shape {wanted}", "", str(factors.shape)
+        )
+    elif not ((factors >= 0.0) & (factors < 1.0)).all():
+        yield InputError("RestitutionGrid.restitution_factor", "must lie in 0 <= eta < 1", "-")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

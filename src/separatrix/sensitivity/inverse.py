@@ -1,0 +1,205 @@
+"""Which pocket friction a new material may have at most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.special import ndtri
+
+from separatrix.errors import InputError
+from separatrix.sensitivity.design import BLOCKS, central_values, evaluated, is_stable
+from separatrix.sensitivity.records import (
+    AllowedFriction,
+    Estimate,
+    Evaluated,
+    Question,
+    Span,
+)
+from separatrix.sensitivity.scatter import by_block, jackknife
+from separatrix.sensitivity.spans import largest, spans_above
+from separatrix.stability import SEARCHED_FRICTION
+from separatrix.units import Array, Ratio, shown
+
+PROBABILITY: Ratio = 0.95
+POINTS = 97
+"""Frictions at which samples are judged; between them the probability is a straight line."""
+
+NOMINAL_POINTS = 2049
+
+At = Callable[[Array], Evaluated]
+"""What the model says of values of shape (sample, input)."""
+
+
+def allowed_friction(
+    question: Question,
+    values: Array,
+    *,
+    probability: Ratio = PROBABILITY,
+    scatter: Ratio = 0.0,
+    searched: Ratio = SEARCHED_FRICTION,
+    points: int = POINTS,
+) -> tuple[AllowedFriction, ...]:
+    """Largest pocket friction that is still STABLE, in place of each case's own, all else as it is.
+
+    Every friction from 0 to `searched` is looked at, and every stretch that is stable is told.
+
+    Parameters
+    ----------
+    question : Question
+        Cases without a friction input are left out.
+    values : ndarray
+        Samples of all inputs, from `sampled_values`, shape (sample, input) [SI].
+    probability : float
+        Of STABLE, wanted [-].
+    scatter : float
+        Standard deviation of the new material's friction, as a share of it [-].
+    searched : float
+        Up to which friction [-].
+    points : int
+        Frictions looked at.
+
+    Raises
+    ------
+    InputError
+        A number outside its range, or no case with a friction.
+    """
+    _require(question, probability, scatter, searched, points)
+    frictions, fine = _frictions(searched, points), _frictions(searched, NOMINAL_POINTS)
+    share, half = _shares(question, values, frictions, _scattered(len(values), scatter))
+    nominal = _nominal(question, fine)
+    found = []
+    for c, case in enumerate(question.cases):
+        if case.friction is None:
+            continue
+        spans = spans_above(frictions, share[:, c], probability)
+        spans_nominal = spans_above(fine, nominal[:, c], 1.0)
+        found.append(
+            AllowedFriction(
+                like=case.candidate,
+                environment=case.environment,
+                probability=probability,
+                scatter=scatter,
+                searched=searched,
+                most=_most(frictions, share[:, c], half[:, c], probability, spans),
+                reason=_reason(spans, frictions, share[:, c], probability),
+                spans=spans,
+                most_nominal=largest(spans_nominal) if spans_nominal else None,
+                reason_nominal=_reason_nominal(spans_nominal, searched),
+                spans_nominal=spans_nominal,
+            )
+        )
+    return tuple(found)
+
+
+def _require(question: Question, probability: Ratio, scatter: Ratio, searched: Ratio, points: int) -> None:
+    require_within("probability", probability, 0.5, 0.9999)
+    require_within("scatter", scatter, 0.0, 1.0)
+    require_within("searched", searched, 1e-3, 2.0)
+    if isinstance(points, bool) or not isinstance(points, int) or not 3 <= points <= 10_000:
+        raise InputError("points", "must be a whole number from 3 to 10000", "", shown(points))
+    if all(case.friction is None for case in question.cases):
+        raise InputError("No case", "has an uncertain pocket friction", cure="Give one its friction's place.")
+
+
+def require_within(name: str, value: object, low: float, high: float) -> None:
+    """Refuse what is no number from `low` to `high`."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise InputError(name, f"must lie between {low:g} and {high:g}", "-", shown(value))
+
+
+def _frictions(searched: Ratio, points: int) -> Array:
+    """0, then equal ratios up to the end of the search."""
+    return np.concatenate(([0.0], np.geomspace(searched / 1000.0, searched, points - 1)))
+
+
+def _scattered(samples: int, scatter: Ratio) -> Array:
+    """Friction of each sample as a share of its mean, at equally likely places in a fixed random order."""
+    places = np.random.default_rng(samples).permutation(samples)
+    return np.asarray(np.maximum(1.0 + scatter * ndtri((places + 0.5) / samples), 0.0))
+
+
+def _shares(question: Question, values: Array, frictions: Array, scattered: Array) -> tuple[Array, Array]:
+    """Probability of STABLE and half its interval, shape (friction, case)."""
+    ask = _asked_again(question, values)
+    found = [_share(ask(_with_friction(question, values, f * scattered))) for f in frictions]
+    share, half = zip(*found, strict=True)
+    return np.array(share), np.array(half)
+
+
+def _asked_again(question: Question, values: Array) -> At:
+    """Model for other frictions, on which the restitution factor does not depend."""
+    if question.judge is None:
+        return question.evaluate
+    first, judge = evaluated(question, values), question.judge
+    factor = first.threshold - first.margin
+    return lambda changed: judge(changed, factor)
+
+
+def _with_friction(question: Question, values: Array, friction: Array) -> Array:
+    changed = values.copy()
+    for case in question.cases:
+        if case.friction is not None:
+            changed[:, case.friction] = friction
+    return changed
+
+
+def _share(found: Evaluated) -> tuple[Array, Array]:
+    """Probability of STABLE of each case, and half its interval from the scatter between blocks."""
+    stable = is_stable(found).astype(float)
+    return jackknife(by_block(stable, BLOCKS) / len(stable), np.asarray)
+
+
+def _nominal(question: Question, frictions: Array) -> Array:
+    """1 where the nominal verdict is STABLE, shape (friction, case)."""
+    values = np.repeat(central_values(question), len(frictions), axis=0)
+    found = (question.nominal or question.evaluate)(_with_friction(question, values, frictions))
+    return is_stable(found).astype(float)
+
+
+def _most(
+    frictions: Array, share: Array, half: Array, probability: Ratio, spans: tuple[Span, ...]
+) -> Estimate | None:
+    """Largest allowed friction; its interval is where the ends of the probability's own cross."""
+    if not spans:
+        return None
+    value = largest(spans)
+    surely, perhaps = (spans_above(frictions, one, probability) for one in (share - half, share + half))
+    return Estimate(
+        value=value, low=min(largest(surely), value) if surely else 0.0, high=max(largest(perhaps), value)
+    )
+
+
+def _reason(spans: tuple[Span, ...], frictions: Array, share: Array, probability: Ratio) -> str:
+    if not spans:
+        best = int(np.argmax(share))
+        return (
+            f"No pocket friction is stable with a probability of {percent(probability)}: the best is "
+            f"{percent(float(share[best]))}, at {frictions[best]:.3g}; the film must return less."
+        )
+    if spans[-1].to_edge:
+        return f"No end of it was found up to a friction of {frictions[-1]:g}."
+    return _gaps(spans)
+
+
+def _reason_nominal(spans: tuple[Span, ...], searched: Ratio) -> str:
+    if not spans:
+        return "With every input at its mean no pocket friction is stable."
+    if spans[-1].to_edge:
+        return f"No end of it was found up to a friction of {searched:g}."
+    return _gaps(spans)
+
+
+def _gaps(spans: tuple[Span, ...]) -> str:
+    """Say that not every friction below the largest is allowed."""
+    if len(spans) == 1 and spans[0].from_edge:
+        return ""
+    stretches = ", ".join(f"{span.low:.3g} to {span.high:.3g}" for span in spans)
+    return f"Not every friction below is: only {stretches}."
+
+
+def percent(share: Ratio) -> str:
+    """A share as a percentage that is never rounded up to certainty."""
+    if 0.995 <= share < 1.0:
+        return "over 99 %"
+    return "under 1 %" if 0.0 < share < 0.005 else f"{100.0 * share:.0f} %"

@@ -1,0 +1,194 @@
+"""Sentences from records: report, JSON and workbook share them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from separatrix.sensitivity.inverse import percent
+from separatrix.sensitivity.records import (
+    AllowedFriction,
+    CaseSobol,
+    Estimate,
+    Measurement,
+    NextTest,
+    RegionRow,
+    SobolIndex,
+    Span,
+    StableRegion,
+    TestGain,
+)
+from separatrix.units import format_quantity
+
+LEAST_WORTH = 0.5
+"""A test that is expected to settle fewer cases than this settles none worth the name."""
+
+NAMED = 3
+"""Factors named in a sentence."""
+
+NOTHING_UNDECIDED = (
+    "Nothing is undecided: every probability of STABLE is at most 5 % or at least 95 %. "
+    "No test is needed for the verdicts."
+)
+
+
+_WORDS = {
+    "film.race_friction": "the friction between ball and race",
+    "cage.ball_cage_stiffness": "the pocket's stiffness",
+    "cage.ball_cage_friction": "the pocket friction",
+}
+
+
+def input_words(name: str) -> str:
+    """Name of a study's number as it stands in a sentence.
+
+    Examples
+    --------
+    >>> input_words("film.thickness"), input_words("operation.axial_load")
+    ("the film's thickness", 'the axial load')
+    >>> input_words("ranking.Armalon.liquid nitrogen, 440C")
+    'the pocket friction of Armalon in liquid nitrogen, 440C'
+    """
+    section, _, rest = name.partition(".")
+    if section == "ranking" and "." in rest:
+        candidate, _, environment = rest.partition(".")
+        return f"the pocket friction of {case_name(candidate, environment)}"
+    parts = [part.replace("_", " ") for part in name.split(".") if part != "operation"]
+    return _WORDS.get(name, "the " + "'s ".join(parts))
+
+
+def case_name(candidate: str, environment: str) -> str:
+    """Candidate and environment as they stand in a sentence."""
+    return f"{candidate} in {environment}" if environment else candidate
+
+
+def sobol_sentence(case: CaseSobol) -> str:
+    """What drives margin and verdict of one case."""
+    name = case_name(case.candidate, case.environment)
+    margin = _drivers("The margin", name, case.margin, case.margin_reason)
+    return f"{margin} {_drivers('The verdict', name, case.verdict, case.verdict_reason)}"
+
+
+def _drivers(what: str, name: str, indices: Sequence[SobolIndex], reason: str) -> str:
+    if not indices:
+        return f"{what} of {name} has no doubt to share out: {reason}."
+    named = [one for one in indices if one.total.low > 0.0][:NAMED]
+    if not named:
+        return f"{what} of {name}: no input's share can be told from 0 with these samples."
+    parts = [f"{one.words} ({_share(one.total)}, alone {_share(one.first)})" for one in named]
+    return f"{what} of {name} is driven by {_and(parts)}."
+
+
+def _share(one: Estimate) -> str:
+    return f"{100 * one.value:.0f} % [{100 * one.low:.0f}-{100 * one.high:.0f}]"
+
+
+def _and(parts: Sequence[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+def next_test_sentences(answer: NextTest) -> tuple[str, ...]:
+    """Ranked list in words, the best test first; one sentence if nothing is undecided or no test helps."""
+    if not answer.undecided:
+        return (NOTHING_UNDECIDED,)
+    best = answer.tests[0] if answer.tests else None
+    if best is None:
+        return ("No test was asked about.",)
+    listed = tuple(test_sentence(one, answer) for one in answer.tests if _number(one.settled.value) != "0")
+    if best.settled.value >= LEAST_WORTH:
+        return listed
+    return (_none_settles(best, answer), *listed[1:])
+
+
+def _none_settles(best: TestGain, answer: NextTest) -> str:
+    count = len(answer.undecided)
+    of_them = f"any of {count}" if count > 1 else "the one"
+    first = f"No single measurement settles {of_them} undecided {_noun(answer, count)}"
+    if _number(best.settled.value) == "0":
+        return f"{first}."
+    name = act(best.measurement, best.words)
+    expected = _expected(best.settled, answer)
+    return f"{first}; the best, {name[0].lower()}{name[1:]}, would settle {expected} on average."
+
+
+def test_sentence(test: TestGain, answer: NextTest) -> str:
+    """What one test is expected to settle."""
+    text = f"{act(test.measurement, test.words)} would settle {_expected(test.settled, answer)} on average"
+    if len(answer.undecided) == 1 or not test.cases:
+        return f"{text}."
+    likely = [one for one in test.cases if one.settles >= 0.05][:NAMED]
+    parts = [f"{case_name(one.candidate, one.environment)} {percent(one.settles)}" for one in likely]
+    return f"{text}: {', '.join(parts)}." if parts else f"{text}."
+
+
+test_sentence.__test__ = False  # type: ignore[attr-defined]  # pytest must not collect it
+
+
+def _expected(settled: Estimate, answer: NextTest) -> str:
+    count = len(answer.undecided)
+    low, high = _number(settled.low), _number(settled.high)
+    between = "" if low == high else f" (95 % interval {low} to {high})"
+    return f"{_number(settled.value)} of {count} undecided {_noun(answer, count)}{between}"
+
+
+def _number(value: float) -> str:
+    """To a tenth, whole numbers without it."""
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def _noun(answer: NextTest, count: int) -> str:
+    one, more = ("material", "materials") if answer.environments == 1 else ("case", "cases")
+    return one if count == 1 else more
+
+
+def act(test: Measurement, words: str) -> str:
+    """What a person would do: the test as the subject of a sentence."""
+    if test.repeats > 1:
+        return f"Measuring {words} {test.repeats} more times"
+    return f"Measuring {words} to {100 * test.error:.3g} %"
+
+
+def allowed_sentence(answer: AllowedFriction) -> str:
+    """Which friction a new material may have at most."""
+    place = f" in {answer.environment}" if answer.environment else ""
+    if answer.most is None:
+        return f"For a new material{place}: {answer.reason}"
+    nominal = "" if answer.most_nominal is None else f" (nominally {answer.most_nominal:.3f})"
+    if answer.spans[-1].to_edge:
+        return f"For a new material{place}: {answer.reason}"
+    most = f"{answer.most.value:.3f} ({answer.most.low:.3f} to {answer.most.high:.3f})"
+    text = (
+        f"A new material{place} may have a pocket friction of at most {most} to be stable with a probability "
+        f"of {percent(answer.probability)}{nominal}."
+    )
+    return f"{text} {answer.reason}".rstrip()
+
+
+def region_sentences(region: StableRegion) -> tuple[str, ...]:
+    """Which film thickness keeps a case stable, one sentence for each value of the other quantity."""
+    name = case_name(region.candidate, region.environment)
+    return tuple(f"{name}: {_row(region, row)}" for row in region.rows)
+
+
+def _row(region: StableRegion, row: RegionRow) -> str:
+    x, y = region.grid.x, region.grid.y
+    at = f"with a {y.words} of {format_quantity(row.y, y.unit, 3)}"
+    if not row.probable:
+        nominal = f"; nominally {_stretches(row.nominal, x.unit)} would do" if row.nominal else ""
+        return f"{at} no {x.words} is stable with a probability of {percent(region.probability)}{nominal}."
+    if len(row.probable) == 1 and row.probable[0].from_edge and row.probable[0].to_edge:
+        return f"{at} every {x.words} searched is stable."
+    nominal = f" (nominally {_stretches(row.nominal, x.unit)})" if row.nominal else ""
+    return f"{at} stable at a {x.words} of {_stretches(row.probable, x.unit)}{nominal}."
+
+
+def _stretches(spans: Sequence[Span], unit: str) -> str:
+    return " or ".join(_stretch(span, unit) for span in spans)
+
+
+def _stretch(span: Span, unit: str) -> str:
+    low, high = (format_quantity(one, unit, 3) for one in (span.low, span.high))
+    if span.from_edge and span.to_edge:
+        return "any"
+    if span.to_edge:
+        return f"at least {low}"
+    return f"at most {high}" if span.from_edge else f"{low} to {high}"
