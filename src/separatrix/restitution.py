@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
 
 import numpy as np
-from numpy.polynomial import polynomial
 
+from separatrix.compiled import kernel
 from separatrix.errors import InputError
 from separatrix.hertz import contact_modulus
 from separatrix.study import Material
@@ -210,43 +210,65 @@ def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
     """
     beta = 2.0 * damping_ratio / sqrt(EQUAL_ENERGY)
     start = min(beta, FORGOTTEN)
-    return _speed_returned(start) * (start / beta) ** 5 if beta > 0.0 else 1.0
+    return float(_speed_returned(start)) * (start / beta) ** 5 if beta > 0.0 else 1.0
 
 
+@kernel
 def _speed_returned(beta: Ratio) -> Ratio:
     """Follow h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the approach's root, is 0 again."""
     h, u = 0.0, 1.0
+    a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)
     while True:
-        a, b = _blow_series(h, u, beta)
+        _blow_series(h, u, beta, a, b, square)
         step = exp(-2.0) / max(_growth(a), _growth(b))
-        if polynomial.polyval(step, a) <= 0.0:
-            return -float(polynomial.polyval(_root(a, step), b))
-        h, u = (float(polynomial.polyval(step, c)) for c in (a, b))
+        if _value(a, step) <= 0.0:
+            return -_value(b, _root(a, step))
+        h, u = _value(a, step), _value(b, step)
 
 
-def _blow_series(h: float, u: float, beta: Ratio) -> tuple[Array, Array]:
-    """Taylor coefficients of h and u, shape (ORDER + 1,)."""
-    a, b, square = np.zeros((3, ORDER + 1))
+@kernel
+def _blow_series(h: float, u: float, beta: Ratio, a: Array, b: Array, square: Array) -> None:
+    """Taylor coefficients of h, u and h^2, shape (ORDER + 1,)."""
     a[0], b[0] = h, u
     for n in range(ORDER):
-        back = slice(n, None, -1)
-        square[n] = a[: n + 1] @ a[back]
-        a[n + 1] = (b[n] - beta * (square[: n + 1] @ a[back])) / (n + 1)
-        b[n + 1] = -2.0 * (square[: n + 1] @ square[back]) / (n + 1)
-    return a, b
+        twice, cube, fourth = 0.0, 0.0, 0.0
+        for i in range(n + 1):
+            twice += a[i] * a[n - i]
+        square[n] = twice
+        for i in range(n + 1):
+            cube += square[i] * a[n - i]
+            fourth += square[i] * square[n - i]
+        a[n + 1] = (b[n] - beta * cube) / (n + 1)
+        b[n + 1] = -2.0 * fourth / (n + 1)
 
 
+@kernel
+def _value(coefficients: Array, at: float) -> float:
+    """Value of a power series, by Horner's rule."""
+    total = 0.0
+    for n in range(coefficients.size - 1, -1, -1):
+        total = coefficients[n] + at * total
+    return total
+
+
+@kernel
 def _growth(coefficients: Array) -> float:
     """One over the radius of convergence; every fifth coefficient may be all that is not 0."""
-    last = range(ORDER - 5, ORDER + 1)
-    return float(max(abs(coefficients[n]) ** (1.0 / n) for n in last))
+    largest = 0.0
+    for n in range(ORDER - 5, ORDER + 1):
+        largest = max(largest, abs(coefficients[n]) ** (1.0 / n))
+    return largest
 
 
+@kernel
 def _root(a: Array, beyond: float) -> float:
     """Root of the series below a place where it is negative, by Newton's method."""
-    slope, place = polynomial.polyder(a), beyond
+    place = beyond
     for _ in range(20):
-        place -= float(polynomial.polyval(place, a) / polynomial.polyval(place, slope))
+        slope = 0.0
+        for n in range(a.size - 1, 0, -1):
+            slope = n * a[n] + place * slope
+        place -= _value(a, place) / slope
     return place
 
 
