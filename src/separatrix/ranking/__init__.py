@@ -1,5 +1,7 @@
 """Which cage material: verdict, margin, rank and reason for each candidate."""
 
+from separatrix.ranking.friction import frictions_seen
+from separatrix.ranking.lowest import LowestFriction, probability_lowest
 from separatrix.ranking.order import ranks
 from separatrix.ranking.rank import rank, ranking_question
 from separatrix.ranking.reason import PAPER_STATEMENT
@@ -7,9 +9,12 @@ from separatrix.ranking.records import RankedEnvironment, RankedMaterial, Rankin
 
 __all__ = [
     "PAPER_STATEMENT",
+    "LowestFriction",
     "RankedEnvironment",
     "RankedMaterial",
     "Ranking",
+    "frictions_seen",
+    "probability_lowest",
     "rank",
     "ranking_question",
     "ranks",

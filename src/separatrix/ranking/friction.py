@@ -1,21 +1,29 @@
-"""Measured pocket friction of a candidate, in one environment or over all of them."""
+"""Pocket friction of a candidate as its cage sees it, in one environment or over all of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from math import sqrt
 
-from separatrix.study import Friction
+from separatrix.chain import CageState, cage_state, traction_state
+from separatrix.pocket_contact import PocketConditions, pocket_conditions
+from separatrix.study import Candidate, Friction, Operation, Study
 from separatrix.units import Ratio
 
 
 @dataclass(frozen=True, slots=True)
 class MeanFriction:
-    """Mean friction and its standard error, None if no scatter was measured."""
+    """Mean friction, its standard error (None if no scatter is known), and what is to be said of it.
+
+    `deviation` is the standard deviation of a new sample; `assumed` tells a scatter that nobody measured.
+    """
 
     mean: Ratio
     error: Ratio | None = None
+    deviation: Ratio | None = None
+    assumed: bool = False
+    extrapolation: tuple[str, ...] = ()
 
     def interval(self) -> tuple[Ratio, Ratio]:
         """95 % interval of the mean; the mean twice if its scatter is not known."""
@@ -25,9 +33,10 @@ class MeanFriction:
 
 def measured(friction: Friction) -> MeanFriction:
     """Mean and standard error of one measurement; without a count the scatter is taken as it is."""
-    if friction.standard_deviation is None:
-        return MeanFriction(friction.mean)
-    return MeanFriction(friction.mean, friction.standard_deviation / sqrt(friction.count or 1))
+    error, deviation = friction.standard_error, friction.standard_deviation
+    if error is None and deviation is not None:
+        error = deviation / sqrt(friction.count or 1)
+    return MeanFriction(friction.mean, error, deviation, friction.assumed_scatter, friction.extrapolation)
 
 
 def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
@@ -37,4 +46,92 @@ def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
         return None
     mean = sum(one.mean for one in found) / len(found)
     errors = [one.error for one in found if one.error is not None]
-    return MeanFriction(mean, sqrt(sum(e * e for e in errors)) / len(found) if errors else None)
+    return MeanFriction(
+        mean,
+        sqrt(sum(e * e for e in errors)) / len(found) if errors else None,
+        assumed=any(one.assumed for one in found),
+        extrapolation=tuple(dict.fromkeys(text for one in found for text in one.extrapolation)),
+    )
+
+
+def frictions_seen(study: Study) -> Study:
+    """The study with the friction of every candidate as its cage sees it.
+
+    Each friction is asked for at the sliding speed and pressure of the pocket, the temperature and the fluid
+    of the study. It comes back with its standard error, the standard deviation of a new sample, and
+    what was not tested; a number without scatter gets that of an unrepeated test. Log-normal about `mean`.
+
+    Raises
+    ------
+    InputError
+        The study has no cage, or nothing to compute a pocket's stiffness from.
+    """
+    if study.ranking is None:
+        return study
+    traction = traction_state(study)
+    seen = (
+        candidate_seen(
+            study, candidate, cage_state(study, material=candidate.material, traction=traction, friction=0.0)
+        )
+        for candidate in study.ranking.candidates
+    )
+    return replace(study, ranking=replace(study.ranking, candidates=tuple(seen)))
+
+
+def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Candidate:
+    """One candidate with its frictions as the cage of `state` sees them."""
+    scatter = study.ranking.friction_scatter if study.ranking else 0.0
+    pocket = conditions_of(study, state)
+    friction = {
+        environment: None if one is None else friction_seen(one, pocket, study.operation, scatter)
+        for environment, one in candidate.friction.items()
+    }
+    return replace(candidate, friction=friction)
+
+
+def conditions_of(study: Study, state: CageState) -> PocketConditions:
+    """Sliding speed and pressure in the pockets of a cage."""
+    return pocket_conditions(
+        state.restitution.traction.bearing.equilibrium,
+        ball_diameter=study.bearing.ball_diameter,
+        ball_cage_stiffness=state.cage.ball_cage_stiffness,
+        cage_mass=state.cage.mass,
+        damping_ratio=state.restitution.restitution.damping_ratio,
+        impact_speed=study.stability.middle_kick,
+    )
+
+
+def friction_seen(
+    friction: Friction, pocket: PocketConditions, operation: Operation, scatter: Ratio
+) -> Friction:
+    """One friction as a pocket sees it; `scatter` is that of an unrepeated test."""
+    if friction.law is None:
+        return _with_scatter(friction, scatter)
+    found = friction.law.at(
+        slip_speed=pocket.slip_speed or None,
+        pressure=pocket.pressure,
+        temperature=operation.temperature,
+        medium=operation.fluid,
+    )
+    return replace(
+        friction,
+        mean=found.mean,
+        standard_error=found.standard_error,
+        standard_deviation=found.standard_deviation,
+        assumed_scatter=found.assumed_scatter,
+        extrapolation=found.extrapolation,
+    )
+
+
+def _with_scatter(friction: Friction, scatter: Ratio) -> Friction:
+    known = measured(friction)
+    if known.error is not None:
+        deviation = known.error if known.deviation is None else known.deviation
+        return replace(friction, standard_error=known.error, standard_deviation=deviation)
+    assumed = scatter * friction.mean
+    return replace(friction, standard_error=assumed, standard_deviation=assumed, assumed_scatter=True)
+
+
+def errors_of(frictions: Mapping[str, Friction | None], scatter: Ratio) -> dict[str, MeanFriction]:
+    """Mean and standard error of those that were measured; without any scatter that of an unrepeated test."""
+    return {name: measured(_with_scatter(f, scatter)) for name, f in frictions.items() if f is not None}

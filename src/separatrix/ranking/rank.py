@@ -9,7 +9,7 @@ from threading import Event
 from separatrix.cage import Judgement, judge
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
-from separatrix.ranking.friction import MeanFriction, measured, overall
+from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.order import Interval, ranks
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_measured, reason
 from separatrix.ranking.records import RankedEnvironment, RankedMaterial, Ranking
@@ -96,11 +96,12 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     """
     asked = ranking_question(study)
     question = _question(study, asked)
+    candidates = [candidate_seen(study, c, _state(question, c.name)) for c in asked.candidates]
     frictions = {
-        environment: {c.name: _measured(c, environment) for c in asked.candidates}
+        environment: {c.name: _measured(c, environment) for c in candidates}
         for environment in asked.environments
     }
-    means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in asked.candidates}
+    means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in candidates}
     tables = (*frictions.values(), means)
     keys = sorted(
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
@@ -112,6 +113,8 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
             question.cages[question.reference].restitution.restitution.restitution_factor_free_spin
         ),
         ball_cage_stiffness=question.reference,
+        pocket=conditions_of(study, question.cages[question.reference]),
+        friction_scatter=asked.friction_scatter,
         solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
         paper_statement=PAPER_STATEMENT,
         environments=tuple(
@@ -163,6 +166,11 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
         reference=reference,
         stop=stop,
     )
+
+
+def _state(question: _Question, name: str) -> CageState:
+    """Cage of one candidate."""
+    return question.cages[question.stiffness[name]]
 
 
 def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
@@ -275,6 +283,9 @@ def _row(
         name=name,
         friction=friction.mean,
         friction_error=friction.error,
+        friction_deviation=friction.deviation,
+        friction_scatter_assumed=friction.assumed,
+        extrapolation=friction.extrapolation,
         ball_cage_stiffness=stiffness,
         restitution_factor=eta,
         reason=NOT_FINISHED,

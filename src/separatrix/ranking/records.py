@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from separatrix.pocket_contact import PocketConditions
 from separatrix.stability import StabilityCurve
 from separatrix.units import Hertz, Joule, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Second
 
@@ -17,7 +18,14 @@ class RankedMaterial:
     name : str
         The candidate.
     friction, friction_error : float or None
-        Mean measured pocket friction, and its standard error if its scatter is known [-].
+        Mean pocket friction as the cage sees it, and its standard error [-].
+    friction_deviation : float or None
+        Of a new sample about that mean, a standard deviation, widened where nothing was tested; not
+        overall [-].
+    friction_scatter_assumed : bool or None
+        Whether the scatter is that of an unrepeated test, which nobody measured.
+    extrapolation : tuple of str
+        In what respect the friction was asked for where nothing was tested, in words.
     ball_cage_stiffness, restitution_factor : float or None
         Of its pocket [N/m], and of the chain with it [-].
     restitution_threshold, restitution_threshold_low, restitution_threshold_high : float or None
@@ -46,6 +54,9 @@ class RankedMaterial:
     name: str
     friction: Ratio | None = None
     friction_error: Ratio | None = None
+    friction_deviation: Ratio | None = None
+    friction_scatter_assumed: bool | None = None
+    extrapolation: tuple[str, ...] = ()
     ball_cage_stiffness: NewtonPerMetre | None = None
     restitution_factor: Ratio | None = None
     restitution_threshold: Ratio | None = None
@@ -97,6 +108,7 @@ class Ranking:
 
     `restitution_factor` is the chain's for `ball_cage_stiffness`, and so is the stability curve; where each
     candidate has a pocket stiffness, and so a restitution factor, of its own, these are the first one's.
+    `pocket` is what rubs there, `friction_scatter` what an unrepeated test is assumed to scatter.
     `overall` takes the mean friction over the measured environments. `complete` is False if an interrupt
     left something out.
     """
@@ -104,6 +116,8 @@ class Ranking:
     restitution_factor: Ratio
     restitution_factor_free_spin: Ratio
     ball_cage_stiffness: NewtonPerMetre
+    pocket: PocketConditions
+    friction_scatter: Ratio
     solid_lubrication_limit: Ratio
     paper_statement: str
     environments: tuple[RankedEnvironment, ...]

@@ -12,7 +12,7 @@ import xarray as xr
 
 from separatrix.errors import InputError
 from separatrix.results import maps
-from separatrix.results.labels import GROUPS, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
+from separatrix.results.labels import GROUPS, JOINED, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
 Columns = dict[str, tuple[tuple[str, ...], Any]]
 """Name of a variable: its dimensions and its nested values."""
@@ -127,6 +127,8 @@ def _flatten(node: Mapping[str, Any]) -> Columns:
 
 def _flatten_one(key: str, value: Any) -> Columns:
     group = GROUPS.get(key, Group(prefix=f"{key}_"))
+    if key in JOINED:
+        return {key: ((), "; ".join(value))}
     if isinstance(value, Mapping):
         return _prefixed(group.prefix, _flatten(value))
     if isinstance(value, list) and value and isinstance(value[0], Mapping):

@@ -44,6 +44,7 @@ GROUPS = {
     "linear_limit": Group("restitution_factor", "linear_limit_", label="restitution_factor"),
     "hard_limit": Group("restitution_factor", "hard_limit_", label="restitution_factor"),
     "here": Group(prefix="here_"),
+    "pocket": Group(prefix="pocket_"),
     "environments": Group("environment", label="name"),
     "materials": Group("material", "material_", label="name"),
     "overall": Group("material", "overall_", label="name"),
@@ -87,6 +88,9 @@ LISTS: dict[str, tuple[str, ...]] = {
 )
 """Key of a list of numbers: its dimensions. A key that is missing here names its own."""
 
+JOINED = ("extrapolation",)
+"""Lists of texts of which each record may have another number: in a dataset they are one text."""
+
 RENAMED = {"restitution_factor": "chain_restitution_factor"}
 """Single numbers that have the name of a dimension."""
 
@@ -102,6 +106,7 @@ RECORD_CLASSES = {
     "stability": "CriticalFriction StabilityCurve",
     "stability.map_records": "MapPoint Stopping Inference",
     "ranking": "RankedMaterial Ranking",
+    "pocket_contact": "PocketConditions",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""
 

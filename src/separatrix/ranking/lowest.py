@@ -1,0 +1,98 @@
+"""With what probability each candidate has the lowest friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import log, sqrt
+from typing import Any
+
+import numpy as np
+
+from separatrix.ranking.friction import errors_of
+from separatrix.study import Friction
+from separatrix.units import Array, Ratio
+
+TIED_FROM: Ratio = 0.05
+"""Probability of being below the leader from which a candidate is tied with it."""
+
+_LEAST_ERROR = 1e-9
+_REACH = 9.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LowestFriction:
+    """Probability of having the lowest mean friction, by candidate, and who cannot be told from the first.
+
+    `tied` begins with the leader, the most probable one; without a tie it stands alone.
+    """
+
+    probabilities: Mapping[str, Ratio]
+    tied: tuple[str, ...]
+
+
+def probability_lowest(frictions: Mapping[str, Friction | None], scatter: Ratio = 0.09) -> LowestFriction:
+    """Probability that each material's friction is the lowest of all in one environment.
+
+    Each mean is log-normal about what was measured, with its standard error; without any scatter the
+    standard error is that of an unrepeated test. Candidates that were not measured take no part.
+
+    Parameters
+    ----------
+    frictions : mapping
+        Candidate to its friction, or None.
+    scatter : float
+        Relative standard deviation of an unrepeated test [-].
+    """
+    known = errors_of(frictions, scatter)
+    names = list(known)
+    logs = [log(max(one.mean, 1e-300)) for one in known.values()]
+    errors = [max((one.error or 0.0) / max(one.mean, 1e-300), _LEAST_ERROR) for one in known.values()]
+    found = lowest_of(logs, errors)
+    if not names:
+        return LowestFriction(probabilities={}, tied=())
+    leader = int(np.argmax(found))
+    tied = [leader, *(j for j in range(len(names)) if j != leader and _reaches(logs, errors, j, leader))]
+    return LowestFriction(
+        probabilities=dict(zip(names, found, strict=True)), tied=tuple(names[j] for j in tied)
+    )
+
+
+def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio]:
+    r"""Probability that each of several independent normal numbers is the smallest.
+
+    :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
+    adaptive quadrature, broken where a factor falls.
+    """
+    from scipy import integrate
+    from scipy.special import ndtr
+
+    quad: Any = integrate.quad
+    mu, sigma = np.array(means, dtype=float), np.array(deviations, dtype=float)
+
+    def integrand(x: float, i: int, others: Array) -> float:
+        return float(
+            np.exp(-0.5 * x * x)
+            / sqrt(2.0 * np.pi)
+            * ndtr((others[0] - mu[i] - sigma[i] * x) / others[1]).prod()
+        )
+
+    found = []
+    for i in range(len(mu)):
+        others = np.array([np.delete(mu, i), np.delete(sigma, i)])
+        edges = np.clip((others[0] - mu[i]) / sigma[i], -_REACH, _REACH)
+        breaks = np.unique(np.concatenate([[-_REACH, 0.0, _REACH], edges]))
+        parts = [
+            quad(integrand, low, high, args=(i, others), epsabs=1e-12, epsrel=1e-10)[0]
+            for low, high in pairwise(breaks)
+        ]
+        found.append(float(sum(parts)))
+    return found
+
+
+def _reaches(means: Sequence[float], deviations: Sequence[float], j: int, leader: int) -> bool:
+    from scipy.special import ndtr
+
+    distance = (means[leader] - means[j]) / sqrt(deviations[leader] ** 2 + deviations[j] ** 2)
+    return bool(ndtr(distance) >= TIED_FROM)
