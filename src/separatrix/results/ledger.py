@@ -110,8 +110,15 @@ def question_key(question: MapQuestion) -> str:
 
 def _asked(study: Study) -> dict[str, Any]:
     """Inputs of a study, without names and places in files."""
-    values = plain(study, "study")
+    values = _without_records(plain(study, "study"))
     return {key: value for key, value in values.items() if key not in ("name", "title", "origins")}
+
+
+def _without_records(value: Any) -> Any:
+    """The same without whole records of the library: their numbers stand in the materials."""
+    if isinstance(value, dict):
+        return {key: _without_records(v) for key, v in value.items() if key not in ("record", "records")}
+    return [_without_records(item) for item in value] if isinstance(value, list) else value
 
 
 def source_checksum(package: Path) -> str:

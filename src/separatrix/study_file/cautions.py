@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.study import Study
+from separatrix.study import Material, Study
 from separatrix.units import format_quantity
 
 JUDGED_FROM = 0.8
@@ -18,6 +19,8 @@ STEEP = 0.5
 def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
     yield from _ramp(study)
+    yield from _materials(study)
+    yield from _fluid(study)
     yield from _leaning_pocket(study)
 
 
@@ -29,6 +32,38 @@ def _ramp(study: Study) -> Iterator[str]:
             f"[operation] ramp_time {given}: runs of {run} are judged over their last fifth, before full "
             "speed is reached. Give [stability] a longer duration."
         )
+
+
+def _materials(study: Study) -> Iterator[str]:
+    """What must be said of the data of materials, where an answer depends on them."""
+    said: dict[tuple[str, ...], dict[str, None]] = {}
+    for where, material in _acting(study):
+        if material.cautions:
+            said.setdefault((where, *material.cautions), {})[material.name] = None
+    for (where, *cautions), names in said.items():
+        yield f"{where} {', '.join(names)}: {'; '.join(cautions)}. A value for that temperature would be better."
+
+
+def _acting(study: Study) -> Iterator[tuple[str, Material]]:
+    """Materials on whose numbers an answer depends, with where they are named."""
+    yield "[bearing]", study.bearing.ball_material
+    yield "[bearing]", study.bearing.ring_material
+    if study.film.material is not None:
+        yield "[film]", study.film.material
+    if study.cage is None or study.cage.ball_cage_stiffness is not None:
+        return
+    if study.cage.material is not None:
+        yield "[cage]", study.cage.material
+    for candidate in study.ranking.candidates if study.ranking is not None else ():
+        if candidate.material is not None:
+            yield "[ranking]", candidate.material
+
+
+def _fluid(study: Study) -> Iterator[str]:
+    """A fluid that cannot be what its name says at the temperature of the study."""
+    record, temperature = study.records.get("operation.fluid"), study.operation.temperature
+    if record is not None and temperature is not None:
+        yield from contradictions(record, temperature)
 
 
 def _leaning_pocket(study: Study) -> Iterator[str]:

@@ -34,7 +34,8 @@ def resolved(study: Study) -> dict[str, Any]:
     """Resolved inputs as plain nested dicts: numbers, text, lists and None only.
 
     Each quantity is ``{"value": ..., "unit": ..., "origin": ...}``, in SI. The origin is the place and text
-    in the study file, or ``"default"``. Each material has its source and confidence.
+    in the study file, or ``"default"``. Each material has its source and confidence, and the whole record of
+    the library behind it, with the checksum of its file: a later change of the library changes nothing here.
     """
     parts = {name: _part(study, name) for name in _PARTS}
     kinematics = {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})}
@@ -63,7 +64,10 @@ def _value(study: Study, record: object, section: str, name: str) -> dict[str, A
     if isinstance(value, Material):
         return _origin(study, f"{section}.{name}", _material(value))
     plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
-    return _origin(study, f"{section}.{name}", {"value": plain, **({"unit": unit} if unit else {})})
+    item = {"value": plain, **({"unit": unit} if unit else {})}
+    if (key := f"{section}.{name}") in study.records:
+        item["record"] = study.records[key]
+    return _origin(study, key, item)
 
 
 def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
@@ -83,6 +87,8 @@ def _material(material: Material) -> dict[str, Any]:
         "density": {"value": material.density, "unit": "kg/m3"},
         "source": material.source,
         "confidence": material.confidence,
+        "cautions": list(material.cautions),
+        "record": None if material.record is None else dict(material.record),
     }
 
 
@@ -90,7 +96,8 @@ def _ranking(study: Study) -> dict[str, Any] | None:
     if study.ranking is None:
         return None
     candidates = [_candidate(candidate) for candidate in study.ranking.candidates]
-    item = {"environments": list(study.ranking.environments), "candidates": candidates}
+    table = study.records.get("ranking.friction")
+    item = {"environments": list(study.ranking.environments), "candidates": candidates, "table": table}
     key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
     return _origin(study, key, item)
 
