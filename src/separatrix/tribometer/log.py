@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 
 from separatrix import _check
@@ -19,8 +19,9 @@ MEANINGS = {
     "temperature": "K",
     "wear_depth": "m",
     "slip_speed": "m/s",
+    "rotational_speed": "rad/s",
 }
-"""What a column may mean, and the SI unit it is kept in."""
+"""What a column may mean, and the SI unit it is kept in. A rotational speed serves the conditions only."""
 
 ABSCISSAE = ("time", "distance", "cycles")
 """The columns of which a log has at least one."""
@@ -92,6 +93,8 @@ class RawTable:
     columns: list[Array]
     """One per header, shape (row,) each, in the units written; NaN where the file has nothing."""
     metadata: Mapping[str, str] = field(default_factory=dict)
+    lines: Sequence[int] | Array | None = None
+    """Line of the file (from 1) in which each row stands, for messages; None where it has no lines."""
 
     def __post_init__(self) -> None:
         if not len(self.headers) == len(self.units) == len(self.columns):

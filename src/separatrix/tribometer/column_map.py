@@ -1,0 +1,244 @@
+"""A column map: the small TOML file that says what a log does not say itself (docs/tribometer-logs.md)."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from separatrix import units
+from separatrix.errors import InputError
+from separatrix.tribometer.dialect import MISSING, SEPARATORS
+from separatrix.tribometer.encoding import ENCODINGS
+from separatrix.tribometer.log import MEANINGS
+from separatrix.tribometer.names import known_units, scale_of
+from separatrix.units import printable, shown
+
+LARGEST = 1_000_000
+"""Bytes that a column map may have."""
+
+QUANTITIES = {
+    "temperature": "K",
+    "slip_speed": "m/s",
+    "pressure": "Pa",
+    "normal_force": "N",
+    "cycle_time": "s",
+    "contact_area": "m2",
+    "pin_diameter": "m",
+    "track_radius": "m",
+    "rotational_speed": "rad/s",
+}
+"""Conditions that are a number with a unit."""
+
+TEXTS = ("material", "counterface", "medium", "sample", "test")
+"""Conditions that are words."""
+
+_AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnChoice:
+    """One line of `[columns]`: which column, by its name or its number from 1, and its unit."""
+
+    name: str | None = None
+    number: int | None = None
+    unit: str | None = None
+    sign: int = 1
+    """-1 where compression counts negative."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TextFormat:
+    """`[format]`: how the text is written; None where the file shall say it."""
+
+    separator: str | None = None
+    decimal: str | None = None
+    encoding: str | None = None
+    header_line: int | None = None
+    units_line: int | None = None
+    missing: frozenset[str] = MISSING
+    tables: tuple[str, ...] = ()
+    """Names of the tables (sheets, steps) to read; all of them if empty."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnMap:
+    """What a user says about the files: columns, text format, conditions for all and by file pattern."""
+
+    columns: Mapping[str, ColumnChoice] = field(default_factory=dict)
+    format: TextFormat = field(default_factory=TextFormat)
+    test: Mapping[str, str | float] = field(default_factory=dict)
+    """Conditions in SI units, by the keys of `QUANTITIES` and `TEXTS`."""
+    files: Mapping[str, Mapping[str, str | float]] = field(default_factory=dict)
+    source: str = ""
+
+    def conditions(self, file_name: str) -> dict[str, str | float]:
+        """Conditions of one file: `[test]`, then every matching pattern in the order written."""
+        found = dict(self.test)
+        for pattern, given in self.files.items():
+            if fnmatchcase(file_name, pattern):
+                found |= given
+        return found
+
+
+def read_column_map(path: str | Path) -> ColumnMap:
+    """Column map of a TOML file.
+
+    Raises
+    ------
+    InputError
+        The file, section and key that is wrong, and how to write it.
+    """
+    path = Path(path)
+    name = printable(path.name, 100)
+    return column_map(_document(path, name), name)
+
+
+def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
+    """Column map of a parsed TOML document."""
+    sections = ("columns", "format", "test", "files")
+    _known(document, sections, source, "section")
+    parts = {key: _table(document.get(key, {}), f"{source}: [{key}]") for key in sections}
+    return ColumnMap(
+        columns=_columns(parts["columns"], f"{source}: [columns]"),
+        format=_format(parts["format"], f"{source}: [format]"),
+        test=_conditions(parts["test"], f"{source}: [test]"),
+        files={
+            pattern: _conditions(_table(given, where), where)
+            for pattern, given in parts["files"].items()
+            for where in [f'{source}: [files."{printable(pattern)}"]']
+        },
+        source=source,
+    )
+
+
+def _document(path: Path, name: str) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > LARGEST:
+            raise InputError(name, "is too large for a column map", "", f"{path.stat().st_size} bytes")
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        raise InputError(name, "must be UTF-8 text") from None
+    except tomllib.TOMLDecodeError as problem:
+        raise InputError(name, "is not valid TOML", "", printable(str(problem), 200)) from None
+    except OSError as problem:
+        reason = problem.strerror or type(problem).__name__
+        raise InputError(name, "cannot be read as a column map", "", reason) from None
+
+
+def _columns(given: Mapping[str, Any], where: str) -> dict[str, ColumnChoice]:
+    _known(given, tuple(MEANINGS), where, "column")
+    choices = {meaning: _choice(meaning, value, f"{where} {meaning}") for meaning, value in given.items()}
+    taken: dict[object, str] = {}
+    for meaning, choice in choices.items():
+        column = choice.name if choice.name is not None else choice.number
+        if column in taken:
+            raise InputError(
+                f"{where} {meaning}", f"is the same column as {taken[column]}", "", shown(column)
+            )
+        taken[column] = meaning
+    return choices
+
+
+def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
+    cure = f'Write {meaning} = "Fz", or {meaning} = {{ name = "Fz", unit = "N" }}.'
+    table = value if isinstance(value, dict) else {"name": value}
+    _known(table, ("name", "unit", "sign"), where, "key")
+    name, unit, sign = table.get("name"), table.get("unit"), table.get("sign", 1)
+    if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
+        raise InputError(where, "must name a column, or give its number", "", shown(name), cure)
+    if isinstance(name, int) and name < 1:
+        raise InputError(where, "must be the number of a column, counted from 1", "", shown(name))
+    if sign not in (1, -1) or isinstance(sign, bool):
+        raise InputError(f"{where} sign", "must be 1 or -1", "", shown(sign))
+    if unit is not None and (not isinstance(unit, str) or scale_of(unit, meaning) is None):
+        raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", "", shown(unit))
+    if isinstance(name, str):
+        return ColumnChoice(name=name, unit=unit, sign=sign)
+    return ColumnChoice(number=name, unit=unit, sign=sign)
+
+
+def _format(given: Mapping[str, Any], where: str) -> TextFormat:
+    _known(given, tuple(f.name for f in fields(TextFormat)), where, "key")
+    separator = _one_of(given, "separator", SEPARATORS, where)
+    decimal = _one_of(given, "decimal", {".": ".", ",": ",", "point": ".", "comma": ","}, where)
+    if separator == "," and decimal == ",":
+        raise InputError(where, "cannot have a comma both as separator and as decimal sign")
+    return TextFormat(
+        separator=separator,
+        decimal=decimal,
+        encoding=_one_of(given, "encoding", {name: name for name in ENCODINGS}, where),
+        header_line=_line(given, "header_line", where),
+        units_line=_line(given, "units_line", where),
+        missing=MISSING | {text.casefold() for text in _texts(given, "missing", where)},
+        tables=_texts(given, "tables", where),
+    )
+
+
+def _conditions(given: Mapping[str, Any], where: str) -> dict[str, str | float]:
+    _known(given, (*TEXTS, *QUANTITIES), where, "condition")
+    return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
+
+
+def _condition(key: str, value: object, where: str) -> str | float:
+    if key in TEXTS:
+        if not isinstance(value, str) or not 0 < len(value) <= 200 or not value.isprintable():
+            raise InputError(where, "must be printable text of 1 to 200 characters", "", shown(value))
+        return value
+    number = _area(value, where) if key == "contact_area" else units.parse(value, QUANTITIES[key], where)  # type: ignore[arg-type]
+    if number <= 0.0:
+        raise InputError(where, "must be > 0", "", shown(value))
+    return number
+
+
+def _area(value: object, where: str) -> float:
+    """An area, ``"3 mm2"``: no study has one, so its units are here."""
+    text = value if isinstance(value, str) else ""
+    number, _, unit = text.strip().replace("\u00b2", "2").replace("^", "").partition(" ")
+    if unit.strip() not in _AREAS:
+        raise InputError(
+            where, f"needs a unit of area ({', '.join(_AREAS)})", "", shown(value), 'Write "3 mm2".'
+        )
+    return units.parse(f"{number} m", "m", where) * _AREAS[unit.strip()]
+
+
+def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: str) -> None:
+    for name in given:
+        if name not in names:
+            near = get_close_matches(name, names, 1, 0.6)
+            cure = f'Did you mean "{near[0]}"?' if near else f"There are {', '.join(names)}."
+            raise InputError(where, f"has no {kind} of that name", "", shown(name), cure)
+
+
+def _table(value: object, where: str) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise InputError(where, "must be a section of the file", "", shown(value))
+    return value
+
+
+def _one_of(given: Mapping[str, Any], key: str, options: Mapping[str, str], where: str) -> str | None:
+    value = given.get(key)
+    if value is None:
+        return None
+    if not isinstance(value, str) or value not in options:
+        names = ", ".join(f'"{name}"' for name in options if name.isprintable() and name.strip())
+        raise InputError(f"{where} {key}", f"must be one of {names}", "", shown(value))
+    return options[value]
+
+
+def _line(given: Mapping[str, Any], key: str, where: str) -> int | None:
+    value = given.get(key)
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
+        raise InputError(f"{where} {key}", "must be the number of a line, counted from 1", "", shown(value))
+    return value
+
+
+def _texts(given: Mapping[str, Any], key: str, where: str) -> tuple[str, ...]:
+    value = given.get(key, [])
+    if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
+        raise InputError(f"{where} {key}", "must be a list of texts", "", shown(value))
+    return tuple(value)

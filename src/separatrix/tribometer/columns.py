@@ -1,0 +1,304 @@
+"""What the columns of a table mean: from the column map, else from the published names and units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import ColumnChoice, ColumnMap
+from separatrix.tribometer.formats import PLAIN
+from separatrix.tribometer.formats.layout import Layout
+from separatrix.tribometer.log import ABSCISSAE, MEANINGS, ColumnRead
+from separatrix.tribometer.names import (
+    Scale,
+    header_parts,
+    known_units,
+    looks_like_friction,
+    plain,
+    ranks,
+    scale_of,
+)
+from separatrix.units import printable, shown
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """One column that is used: where it stands, how it comes to SI, and its sign."""
+
+    index: int
+    scale: Scale
+    unit: str
+    why: str
+    sign: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class _Option:
+    """What one column may mean, by its name; no scale where its unit does not fit or is not there."""
+
+    meaning: str
+    rank: int
+    unit: str
+    scale: Scale | None
+
+
+@dataclass(slots=True)
+class Understood:
+    """The columns that are used by meaning, and what was said about every column."""
+
+    used: dict[str, Chosen]
+    columns: tuple[ColumnRead, ...]
+    unsettled: dict[str, list[int]] = field(default_factory=dict)
+    """Columns that could have each meaning, had they a unit or were they alone."""
+
+
+def understand(
+    headers: Sequence[str],
+    units: Sequence[str],
+    source: str,
+    columns: ColumnMap,
+    layout: Layout = PLAIN,
+    *,
+    constant_force: bool = False,
+) -> Understood:
+    """Meaning of each column.
+
+    Parameters
+    ----------
+    headers, units : sequence of str
+        As the file writes them; a unit may be empty and stand in the header instead.
+    source : str
+        Names the file in a refusal.
+    columns : ColumnMap
+        Its `[columns]` go first.
+    layout : Layout
+        What the instrument's format says.
+    constant_force : bool
+        The normal force is known, so that the tangential force alone gives the friction.
+
+    Raises
+    ------
+    InputError
+        Friction or its abscissa cannot be told; which columns could be it, and the line that settles it.
+    """
+    given = {
+        meaning: _given(meaning, choice, headers, units, source, layout)
+        for meaning, choice in columns.columns.items()
+    }
+    options = {
+        i: _options(headers[i], units[i], layout)
+        for i in range(len(headers))
+        if i not in {chosen.index for chosen in given.values()}
+    }
+    used, unsettled = _decided(options, given)
+    if "tangential_force" in given and "friction" not in given:
+        used.pop("friction", None)
+    result = Understood(used, (), unsettled)
+    _require_friction(result, headers, source, options, columns, constant_force)
+    _require_abscissa(result, headers, source, options)
+    result.columns = _read(headers, units, options, result)
+    return result
+
+
+def _given(
+    meaning: str,
+    choice: ColumnChoice,
+    headers: Sequence[str],
+    units: Sequence[str],
+    source: str,
+    layout: Layout,
+) -> Chosen:
+    index = _place(meaning, choice, headers, source)
+    ways = header_parts(layout.header(headers[index]))
+    written = [choice.unit, units[index], *(unit for _, unit in ways), layout.units.get(ways[0][0], "")]
+    for unit in [unit for unit in written if unit] + [""]:
+        scale = scale_of(layout.spellings.get((meaning, unit), unit), meaning)
+        if scale is not None:
+            return Chosen(index, scale, unit, "column map", choice.sign)
+    raise _unit_wanted(meaning, headers[index], next((unit for unit in written if unit), ""), source)
+
+
+def _place(meaning: str, choice: ColumnChoice, headers: Sequence[str], source: str) -> int:
+    if choice.number is not None:
+        if choice.number > len(headers):
+            rule = f"has {len(headers)} columns, not {choice.number}, as the column map says for {meaning}"
+            raise InputError(source, rule)
+        return choice.number - 1
+    name = choice.name or ""
+    exact = [i for i, header in enumerate(headers) if header.strip() == name.strip()]
+    near = [
+        i
+        for i, header in enumerate(headers)
+        if plain(name) in {plain(header), *(plain(part) for part, _ in header_parts(header))} - {""}
+    ]
+    found = exact or near
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        rule = f"has no column {shown(name)}, which the column map says is {meaning}"
+        raise InputError(source, rule, cure=f"It has {_listed(headers, range(len(headers)))}.")
+    numbers = " or ".join(str(i + 1) for i in found)
+    cure = f"Below [columns], give its number instead: {meaning} = {numbers}."
+    raise InputError(source, f"has {len(found)} columns {shown(name)}", cure=cure)
+
+
+def _options(header: str, unit: str, layout: Layout) -> list[_Option]:
+    """What a column may mean: those meanings of its name whose unit fits, or all where it has no unit."""
+    for way, (name, beside) in enumerate(header_parts(layout.header(header))):
+        written = unit or beside or layout.units.get(name, "")
+        options = _fitting(ranks(name), written, layout)
+        if options and (way == 0 or any(option.scale for option in options)):
+            return options
+    return []
+
+
+def _fitting(known: dict[str, int], written: str, layout: Layout) -> list[_Option]:
+    options = []
+    for meaning, rank in known.items():
+        spelled = layout.spellings.get((meaning, written), written)
+        options.append(_Option(meaning, rank, written, scale_of(spelled, meaning)))
+    fitting = [option for option in options if option.scale is not None]
+    if written and fitting:
+        return fitting
+    return options
+
+
+def _decided(
+    options: dict[int, list[_Option]], given: dict[str, Chosen]
+) -> tuple[dict[str, Chosen], dict[str, list[int]]]:
+    """One column for each meaning where one is best; the others as columns that could have it."""
+    used, unsettled = dict(given), {}
+    for meaning in MEANINGS:
+        if meaning in given:
+            continue
+        sure = {i: o[0] for i, o in options.items() if len(o) == 1 and o[0].meaning == meaning and o[0].scale}
+        if meaning != "friction" and sure:
+            best = min(option.rank for option in sure.values())
+            sure = {i: option for i, option in sure.items() if option.rank == best}
+        if len(sure) == 1:
+            ((index, option),) = sure.items()
+            used[meaning] = Chosen(index, option.scale or Scale(), option.unit, "its name")
+        unsure = [i for i, o in options.items() if i not in sure and any(x.meaning == meaning for x in o)]
+        unsettled[meaning] = list(sure) if len(sure) > 1 else ([] if sure else unsure)
+    return used, unsettled
+
+
+def _require_friction(
+    result: Understood,
+    headers: Sequence[str],
+    source: str,
+    options: dict[int, list[_Option]],
+    columns: ColumnMap,
+    constant_force: bool,
+) -> None:
+    forces = "tangential_force" in result.used and ("normal_force" in result.used or constant_force)
+    chosen_forces = "tangential_force" in columns.columns
+    if "friction" in result.used or (forces and (chosen_forces or len(result.unsettled["friction"]) < 1)):
+        return
+    for meaning in ("tangential_force", "normal_force") if chosen_forces else ("friction",):
+        _refuse_unsettled(meaning, result, headers, source, options)
+    for meaning, other in (("tangential_force", "normal_force"), ("normal_force", "tangential_force")):
+        if other in result.used or result.unsettled[other]:
+            _refuse_unsettled(meaning, result, headers, source, options)
+    raise _no_friction(headers, source, result)
+
+
+def _no_friction(headers: Sequence[str], source: str, result: Understood) -> InputError:
+    near = [i for i, header in enumerate(headers) if looks_like_friction(header)]
+    if "tangential_force" in result.used:
+        rule = "has a tangential force but no normal force"
+        cure = (
+            'Below [columns] in a column map: normal_force = "...", or below [test]: normal_force = "10 N".'
+        )
+        return InputError(source, rule, cure=cure)
+    rule = "has no column that is known to be the friction, nor two forces that give it"
+    name = headers[near[0]].strip() if near else "..."
+    cure = f"Say which below [columns] in a column map: friction = {shown(name)}."
+    return InputError(source, rule, "", _listed(headers, near or range(len(headers))), cure)
+
+
+def _require_abscissa(
+    result: Understood, headers: Sequence[str], source: str, options: dict[int, list[_Option]]
+) -> None:
+    if any(meaning in result.used for meaning in ABSCISSAE):
+        return
+    for meaning in ABSCISSAE:
+        _refuse_unsettled(meaning, result, headers, source, options)
+    rule = "has no column that is known to be time, distance or cycles"
+    cure = 'Say which below [columns] in a column map: time = { name = "...", unit = "s" }.'
+    raise InputError(source, rule, "", _listed(headers, range(len(headers))), cure)
+
+
+def _refuse_unsettled(
+    meaning: str, result: Understood, headers: Sequence[str], source: str, options: dict[int, list[_Option]]
+) -> None:
+    """Refuse if there are columns that could have the meaning, with the line that settles it."""
+    places = result.unsettled[meaning]
+    if meaning in result.used or not places:
+        return
+    if len(places) == 1:
+        option = next(o for o in options[places[0]] if o.meaning == meaning)
+        raise _unit_wanted(meaning, headers[places[0]], option.unit, source, options[places[0]])
+    twice = len({headers[i].strip() for i in places}) < len(places)
+    choice = str(places[0] + 1) if twice else shown(headers[places[0]].strip())
+    rule = f"has {len(places)} columns that could be the {_words(meaning)}"
+    cure = f"Say which below [columns] in a column map: {meaning} = {choice}."
+    raise InputError(source, rule, "", _listed(headers, places), cure)
+
+
+def _unit_wanted(
+    meaning: str, header: str, unit: str, source: str, options: Sequence[_Option] = ()
+) -> InputError:
+    name = shown(header.strip())
+    others = [option.meaning for option in options if option.meaning != meaning]
+    si = MEANINGS[meaning] if MEANINGS[meaning] != "-" else ""
+    unit_part = f', unit = "{si}"' if si else ""
+    cure = f"Below [columns] in a column map: {meaning} = {{ name = {name}{unit_part} }}."
+    if others and not unit:
+        cure = cure[:-1] + f" (or {others[0]})."
+    if unit:
+        rule = f"has a unit that is not one of the {_words(meaning)} ({known_units(meaning)})"
+        return InputError(f"{source}: column {name}", rule, "", shown(unit), cure)
+    return InputError(f"{source}: column {name}", "has no unit, so that its meaning is not sure", cure=cure)
+
+
+def _read(
+    headers: Sequence[str],
+    units: Sequence[str],
+    options: dict[int, list[_Option]],
+    result: Understood,
+) -> tuple[ColumnRead, ...]:
+    by_index = {chosen.index: (meaning, chosen) for meaning, chosen in result.used.items()}
+    reads = []
+    for i, header in enumerate(headers):
+        if i in by_index:
+            meaning, chosen = by_index[i]
+            read = ColumnRead(header=header.strip(), meaning=meaning, unit=chosen.unit, why=chosen.why)
+        else:
+            why = _why_not(options.get(i, []), result)
+            read = ColumnRead(header=header.strip(), meaning=None, unit=units[i], why=why)
+        reads.append(read)
+    return tuple(reads)
+
+
+def _why_not(options: list[_Option], result: Understood) -> str:
+    if not options:
+        return "not needed"
+    option = options[0]
+    if option.scale is None:
+        said = f'the unit "{printable(option.unit)}" does not fit' if option.unit else "it has no unit"
+        return f"could be {_words(option.meaning)}, but {said}"
+    if option.meaning in result.used:
+        return f"another column is the {_words(option.meaning)}"
+    return f"one of several that could be {_words(option.meaning)}"
+
+
+def _words(meaning: str) -> str:
+    return meaning.replace("_", " ")
+
+
+def _listed(headers: Sequence[str], places: Sequence[int] | range) -> str:
+    names = [shown(headers[i].strip()) for i in places if headers[i].strip()]
+    more = f" and {len(names) - 8} more" if len(names) > 8 else ""
+    return "columns " + ", ".join(names[:8]) + more

@@ -1,0 +1,126 @@
+"""Separator and decimal sign of a table of numbers, from its first rows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from separatrix.errors import InputError
+from separatrix.units import printable
+
+MISSING = frozenset(
+    {"", "x", "-", "--", "---", "nan", "+nan", "-nan", "n/a", "na", "#n/a", "null", "none"}
+    | {"inf", "+inf", "-inf", "infinity", "-infinity", "1.#qnan", "-1.#ind", "1.#inf", "-1.#inf"}
+)
+"""How files write that there is no value, in small letters."""
+
+SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "blanks": " ", " ": " "}
+"""What `[format] separator` of a column map may be, and the character meant."""
+
+_NAMES = {"\t": "tab", ";": "semicolon", ",": "comma", " ": "blanks"}
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[.,][0-9]{3})+")
+_WORD = re.compile(r"[^\W\d_].*|[0-9]{1,4}[-/.:][0-9]{1,2}[-/.:][0-9]{1,4}.*|[0-9]{1,2}:[0-9]{2}.*")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dialect:
+    """How a file writes a row of numbers."""
+
+    separator: str
+    """One character; a blank stands for runs of blanks and tabs."""
+    decimal: str
+    missing: frozenset[str] = MISSING
+
+    @property
+    def words(self) -> str:
+        """For a user: ``"tab, decimal comma"``."""
+        return f"{_NAMES[self.separator]}, decimal {_NAMES.get(self.decimal, 'point')}"
+
+    def fields(self, line: str) -> list[str]:
+        """The fields of a line, without the blanks around them."""
+        return fields(line, self.separator)
+
+    def is_data(self, line: str) -> bool:
+        """True for a row of the table: at least two numbers, and nothing that is no number, word or date."""
+        return _is_data(self.fields(line), self.missing)
+
+
+def fields(line: str, separator: str) -> list[str]:
+    """The fields of a line, without quotes and the blanks around them."""
+    parts = line.split() if separator == " " else line.split(separator)
+    return [part.strip().strip('"').strip() for part in parts]
+
+
+def dialect_of(
+    lines: Sequence[str],
+    source: str,
+    *,
+    separator: str | None = None,
+    decimal: str | None = None,
+    missing: frozenset[str] = MISSING,
+) -> Dialect:
+    """Dialect of the first lines of a file; what is given is kept.
+
+    The separator is the one with which most lines are rows of numbers; of equals, tab before semicolon
+    before comma before blanks. The decimal sign is the one found in the numbers; where all of them
+    might as well be groups of thousands, it is asked for.
+    """
+    chosen = separator or _separator(lines, missing, source)
+    rows = [row for row in (fields(line, chosen) for line in lines) if _is_data(row, missing)]
+    if decimal is None:
+        decimal = "." if chosen == "," else _decimal(rows, source)
+    return Dialect(separator=chosen, decimal=decimal, missing=missing)
+
+
+def is_number(field: str) -> bool:
+    """True for a number with a decimal point or comma."""
+    return _NUMBER.fullmatch(field) is not None
+
+
+def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> str:
+    scores = {
+        candidate: sum(_is_data(fields(line, candidate), missing) for line in lines) for candidate in _NAMES
+    }
+    best = max(scores, key=lambda candidate: scores[candidate])
+    if scores[best] == 0:
+        cure = "It needs a line of column names above at least two rows; say where with a column map."
+        raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
+    return best
+
+
+def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
+    numbers = words = 0
+    for field in row:
+        if field.casefold() in missing:
+            continue
+        if is_number(field):
+            numbers += 1
+        elif _WORD.fullmatch(field):
+            words += 1
+        elif not _GROUPED.fullmatch(field) and not _several_signs(field):
+            return False
+    return numbers >= 2 and words <= numbers
+
+
+def _several_signs(field: str) -> bool:
+    return re.fullmatch(r"[+-]?[0-9]+(?:[.,][0-9]+){2,}", field) is not None
+
+
+def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
+    tokens = [field for row in rows for field in row if field[-1:].isdigit() and field[:1] not in '"']
+    tokens = [field for field in tokens if is_number(field) or _several_signs(field)]
+    commas = [field for field in tokens if "," in field]
+    points = [field for field in tokens if "." in field]
+    both = commas and points
+    if both or any(_several_signs(field) for field in tokens):
+        shown = " and ".join(f'"{printable(found[0])}"' for found in (commas, points) if found)
+        cure = "Export the file without marks between thousands."
+        raise InputError(source, "has points and commas in its numbers", "", shown, cure)
+    marked = commas or points
+    if marked and all(_GROUPED.fullmatch(field) for field in marked):
+        cure = f'Add to the column map, below [format]: decimal = "{"," if commas else "."}".'
+        value = f'"{printable(marked[0])}"'
+        raise InputError(source, "does not tell decimals from thousands", "", value, cure)
+    return "," if commas else "."

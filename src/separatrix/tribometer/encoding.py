@@ -1,0 +1,106 @@
+"""The characters of a log file, decided by rules and never by luck."""
+
+from __future__ import annotations
+
+import codecs
+
+from separatrix.errors import InputError
+
+ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk")
+"""What `[format] encoding` of a column map may be."""
+
+_MARKS = {
+    codecs.BOM_UTF8: ("utf-8", 3),
+    codecs.BOM_UTF16_LE: ("utf-16-le", 2),
+    codecs.BOM_UTF16_BE: ("utf-16-be", 2),
+}
+_OTHERS = {
+    b"\xd0\xcf\x11\xe0": ("an old Excel workbook", "Save it as .xlsx or as CSV."),
+    b"\x1f\x8b": ("compressed (gzip)", "Unpack it first."),
+    b"7z\xbc\xaf": ("compressed (7-Zip)", "Unpack it first."),
+    b"%PDF": ("a PDF", "Export the log as text."),
+    b"\x89PNG": ("a picture", "Export the log as text."),
+    b"\x89HDF": ("an HDF5 file", "Export the log as text."),
+    b"MATLAB 5": ("a MATLAB file", "Export the log as text."),
+}
+_CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
+
+
+def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes, str]:
+    """The file as UTF-8 with line feeds only, and the encoding it had.
+
+    A byte order mark decides; without one, UTF-16 is known by the NUL bytes that its Latin letters have in
+    every second place, UTF-8 by being valid, and what is left is Windows-1252 if no byte is undefined in it.
+
+    Raises
+    ------
+    InputError
+        Not a text file, or none of these encodings.
+    """
+    if encoding is None:
+        _refuse_binary(raw, source)
+    body, known = _without_mark(raw)
+    chosen = encoding or known or _by_rule(body, source)
+    text = body if chosen == "utf-8" and body.isascii() else _recoded(body, chosen, source)
+    if text[:65536].translate(None, _CONTROLS) != text[:65536]:
+        raise _binary(source)
+    return _line_feeds(text), chosen
+
+
+def _without_mark(raw: bytes) -> tuple[bytes, str | None]:
+    for mark, (name, length) in _MARKS.items():
+        if raw.startswith(mark):
+            return raw[length:], name
+    return raw, None
+
+
+def _refuse_binary(raw: bytes, source: str) -> None:
+    for magic, (what, cure) in _OTHERS.items():
+        if raw.startswith(magic):
+            raise InputError(source, f"is {what}, not text", cure=cure)
+
+
+def _by_rule(raw: bytes, source: str) -> str:
+    if b"\0" in raw:
+        return _utf16_without_mark(raw, source)
+    if raw.isascii():
+        return "utf-8"
+    try:
+        raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8"
+
+
+def _utf16_without_mark(raw: bytes, source: str) -> str:
+    """Little or big endian by the side of the NUL bytes, if they are on one side and in most letters."""
+    head = raw[: min(len(raw), 65536) // 2 * 2]
+    low, high = head[0::2].count(0), head[1::2].count(0)
+    most = 0.8 * len(head) / 2
+    if low == 0 and high > most:
+        return "utf-16-le"
+    if high == 0 and low > most:
+        return "utf-16-be"
+    raise _binary(source)
+
+
+def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
+    try:
+        return raw.decode(encoding).encode("utf-8")
+    except UnicodeError as problem:
+        place = getattr(problem, "start", 0)
+        line = raw.count(b"\n", 0, place) + 1
+        rule = f"cannot be read as {encoding} text"
+        cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
+        raise InputError(f"{source}: line {line}", rule, "", f"byte {raw[place]:#04x}", cure) from None
+
+
+def _line_feeds(text: bytes) -> bytes:
+    if b"\r" in text:
+        text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return text
+
+
+def _binary(source: str) -> InputError:
+    cure = "Export the log as text from the tribometer's program."
+    return InputError(source, "is not a text file (it has NUL or control characters)", cure=cure)

@@ -1,0 +1,35 @@
+"""Bruker (CETR) UMT: text exported by the data viewer.
+
+``Created by CETR ...`` lines, ``Run # 1``, and for every step ``Step No. 1`` with ``key = value`` lines, one
+line of short headers (Fx, Fz, Z, T, Ff, COF), one of their units, an empty line, and the rows. T is the time
+in the step, so every step is a log of its own. A force in ``g`` is gram-force; compression counts negative.
+The keys (Radius, Velocity, Set Force) carry no units and are therefore not taken as conditions.
+"""
+
+from __future__ import annotations
+
+import re
+
+from separatrix.tribometer.formats.layout import Layout
+
+_FORCES = ("normal_force", "tangential_force")
+_RUN = re.compile(r"^\s*Run\s*(?:#|No\.?)\s*(\d+)", re.IGNORECASE)
+_STEP = re.compile(r"^\s*Step\s*(?:#|No\.?)\s*(\d+)", re.IGNORECASE)
+
+
+def _recognised(head: str) -> bool:
+    return "CETR" in head or "UMT" in head[:2000] or "TriboLab" in head[:2000]
+
+
+def _table_name(lines: list[str]) -> str:
+    steps = [found[1] for line in lines if (found := _STEP.match(line))]
+    runs = [found[1] for line in lines if (found := _RUN.match(line))]
+    return ", ".join([f"run {runs[-1]}"] * bool(runs) + [f"step {steps[-1]}"] * bool(steps))
+
+
+LAYOUT = Layout(
+    name="Bruker UMT text",
+    recognised=_recognised,
+    spellings={(meaning, unit): f"{unit}f" for meaning in _FORCES for unit in ("g", "kg")},
+    table_name=_table_name,
+)

@@ -1,0 +1,115 @@
+"""The line of column names above a table, and the line of units below it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from separatrix import units
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import TextFormat
+from separatrix.tribometer.dialect import Dialect, is_number
+from separatrix.tribometer.names import ALIASES, ranks
+from separatrix.units import printable
+
+_OTHER_UNITS = "% %rh v mv a ma w kw hz khz deg \u00b0 rad g kg nm mm2 mm3 um3 um2 bar mbar pa kpa mpa l/min ml/min ohm ohms db"
+_UNIT_WORDS = frozenset(
+    [spelling.casefold() for table in units.UNITS.values() for spelling in table]
+    + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
+    + [
+        *_OTHER_UNITS.split(),
+        "-",
+        "--",
+        "",
+        "n.a.",
+        "cycles",
+        "laps",
+        "rev",
+        "revs",
+        "u",
+        "\u00b5m",
+        "\u03bcm",
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """Names and units of the columns, and which of the lines before the table they are."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    lines: tuple[str, ...] = ()
+
+
+def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header | None:
+    """Header of a table of `count` columns among the lines before it: the last that fits.
+
+    The line below the names is that of the units if all its fields are units or in brackets.
+    """
+    matching: list[tuple[str, list[str]]] = []
+    for line in reversed(before[-8:]):
+        row = _row(line, count, dialect)
+        if row is not None and any(part and not is_number(part) for part in row):
+            matching.append((line, row))
+    if not matching:
+        return None
+    if len(matching) > 1 and is_units(matching[0][1]):
+        (units_line, units_row), (line, names) = matching[:2]
+        return Header(tuple(names), tuple(_bare(unit) for unit in units_row), (line, units_line))
+    line, names = matching[0]
+    return Header(tuple(names), ("",) * count, (line,))
+
+
+def header_at(
+    line: Callable[[int], str], length: int, form: TextFormat, count: int, source: str, dialect: Dialect
+) -> Header:
+    """Header where the column map says it is."""
+    rows = []
+    for key, number in (("header_line", form.header_line), ("units_line", form.units_line)):
+        if number is None:
+            rows.append([""] * count)
+            continue
+        row = _row(line(number - 1), count, dialect) if number <= length else None
+        if row is None:
+            shown = f'"{printable(line(number - 1))}"' if number <= length else f"a file of {length} lines"
+            raise InputError(f"{source}: {key} = {number}", f"must be a line of {count} fields", "", shown)
+        rows.append(row)
+    return Header(tuple(rows[0]), tuple(_bare(unit) for unit in rows[1]))
+
+
+def is_units(row: Sequence[str]) -> bool:
+    """True for a row of units: at least two of them, and nothing that could be a name."""
+    bare = [_bare(field) for field in row]
+    known = [unit for unit in bare if unit.casefold() in _UNIT_WORDS]
+    filled = [unit for unit in known if unit]
+    brackets = all(not field or field[0] in "[(" for field in row)
+    if brackets:
+        return len(bare) > 1
+    names = [field for field in bare if ranks(field) and field.casefold() not in _UNIT_WORDS]
+    return not names and len(filled) >= 1 and len(known) >= 0.7 * len(bare)
+
+
+def _bare(unit: str) -> str:
+    return re.sub(r"^\s*[\[(]\s*(.*?)\s*[\])]\s*$", r"\1", unit).strip()
+
+
+def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
+    """Fields of a line if there are `count`, not counting an empty one that a last separator makes."""
+    for row in _splits(line, count, dialect):
+        if len(row) == count:
+            return row
+        if len(row) == count + 1 and not row[-1]:
+            return row[:-1]
+        if len(row) == count - 1 and dialect.separator != " ":
+            return [*row, ""]
+    return None
+
+
+def _splits(line: str, count: int, dialect: Dialect) -> list[list[str]]:
+    if dialect.separator != " ":
+        return [dialect.fields(line)]
+    wide = [part.strip() for part in re.split(r"\t| {2,}", line.strip())]
+    bound = re.sub(r"\s+(?=[\[(])", "\x00", line)
+    return [wide, [part.replace("\x00", " ") for part in bound.split()], line.split()]

@@ -1,0 +1,201 @@
+"""The published table: which names and units of columns mean what, in English, German and French."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+
+from separatrix import units
+from separatrix.tribometer.log import MEANINGS
+
+NAMES: dict[str, tuple[str, ...]] = {
+    "friction": (
+        "cof; mu; friction coefficient; coefficient of friction; friction coeff; coeff of friction; "
+        "coeff friction; fric coeff; friction coef; coef of friction; dynamic friction coefficient; "
+        "kinetic friction coefficient; reibwert; reibungszahl; reibzahl; reibkoeffizient; "
+        "reibungskoeffizient; coefficient de frottement; coeff frottement; coef frottement; "
+        "coeff de frottement; coef de frottement; friction",
+    ),
+    "tangential_force": (
+        "ff; ft; friction force; tangential force; frictional force; friction; fric force; reibkraft; "
+        "reibungskraft; tangentialkraft; force de frottement; force tangentielle; ffriction; ftangential",
+        "fx",
+    ),
+    "normal_force": (
+        "fn; normal force; normal load; fnormal; normalkraft; force normale; charge normale",
+        "load; down force; downforce; applied load; fz; last; anpresskraft; charge",
+        "nominal load; nominal normal force; set load; load setpoint; sollkraft",
+    ),
+    "time": (
+        "time; zeit; temps; t",
+        "elapsed time; test time; sliding time; total time; run time; messzeit; prufzeit; laufzeit; "
+        "versuchszeit; duree; temps ecoule; temps de test; timestamp; time stamp",
+    ),
+    "distance": (
+        "distance; sliding distance; sliding dist; dist; track distance; gleitweg; weg; reibweg; "
+        "distance de glissement; distance parcourue; total distance",
+    ),
+    "cycles": (
+        "cycles; cycle; laps; lap; cycle count; number of cycles; no of cycles; total cycles; revolutions; "
+        "number of revolutions; revs; turns; umdrehungen; zyklen; zyklus; zyklenzahl; lastwechsel; tours; "
+        "nombre de cycles; nombre de tours; strokes; hube",
+    ),
+    "temperature": (
+        "temperature; temp; temperatur; t; sample temperature; specimen temperature; probentemperatur; "
+        "temperature echantillon",
+    ),
+    "wear_depth": (
+        "penetration depth; wear depth; depth; z depth; linear wear; wear; verschleiss; verschleisstiefe; "
+        "usure; profondeur d usure; profondeur de penetration; eindringtiefe",
+    ),
+    "slip_speed": (
+        "sliding speed; slip speed; sliding velocity; linear speed; lin speed; gleitgeschwindigkeit; "
+        "vitesse de glissement; vitesse lineaire",
+        "speed; velocity; geschwindigkeit; vitesse; max linear speed; max lin speed",
+    ),
+    "rotational_speed": (
+        "rotational speed; rotation speed; spindle speed; rotary velocity; rpm; drehzahl; "
+        "vitesse de rotation",
+        "speed; velocity; geschwindigkeit; vitesse",
+    ),
+}
+"""Names of each meaning; a name in an earlier entry is preferred to one in a later."""
+
+ALIASES: dict[str, dict[str, str]] = {
+    "s": {
+        "1 s": "sec; secs; second; seconds; sek; sekunden; seconde; secondes",
+        "1 ms": "msec; millisecond; milliseconds",
+        "1 min": "mins; minute; minutes; minuten",
+        "1 h": "hr; hrs; hour; hours; std; stunden; heure; heures",
+    },
+    "m": {
+        "1 m": "meter; meters; metre; metres",
+        "1000 m": "km",
+        "1 mm": "millimeter; millimetre",
+        "1 um": "micron; microns; micrometer; mum",
+    },
+    "N": {"1 N": "newton; newtons", "10 mN": "cN", "0.001 kgf": "gf", "1 kgf": "kgf; kp", "1e-6 N": "uN"},
+    "K": {"1 K": "kelvin", "1 degC": "c; deg c; degc; celsius; grad c"},
+    "m/s": {"1 m/s": "m/sec; m s-1", "1 mm/s": "mm/sec; mm s-1", "1 cm/s": "cm/sec", "1/60 m/s": "m/min"},
+    "rad/s": {
+        "1 rpm": "u/min; 1/min; min-1; min^-1; tr/min; r/min; rev/min; upm",
+        "1 rev/s": "1/s; rps; u/s",
+        "1 rad/s": "rad/sec",
+    },
+    "-": {},
+}
+"""Spellings in logs beyond those of study files, and the size of each."""
+
+_NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
+_COUNTS = frozenset(
+    {"cycle", "cycles", "lap", "laps", "rev", "revs", "revolution", "revolutions", "turn", "turns"}
+    | {"u", "umdr", "tr", "tours", "#", "n", "count"}
+)
+
+
+_UNIT_AT_END = (
+    r"(.+)_([^_\s]+)",
+    r"(.+?)\s*/\s*(\S+)",
+    r"(.+?),\s*(\S.*)",
+    r"(.+)\s+in\s+(\S+)",
+    r"(.+)\s+(\S+)",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """From the unit of a column to SI: value times `factor`, or over `divisor`, plus `offset`."""
+
+    factor: float = 1.0
+    divisor: float = 1.0
+    offset: float = 0.0
+
+
+def plain(name: str) -> str:
+    """A name for comparison: small letters, no accents or signs, "mu" for the Greek letter."""
+    folded = unicodedata.normalize("NFKD", name.casefold().replace("\u00b5", "mu").replace("\u03bc", "mu"))
+    letters = "".join(c for c in folded if not unicodedata.combining(c)).replace("\u00df", "ss")
+    return " ".join(re.sub(r"[^0-9a-z%#]+", " ", letters).split())
+
+
+def scale_of(unit: str, meaning: str) -> Scale | None:
+    """How to bring a column of that meaning to SI; None where the unit is not one of its quantity."""
+    si, spelling = MEANINGS[meaning], unit.strip()
+    if si == "-":
+        fits = spelling.casefold() in _NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
+        return Scale() if fits else None
+    return scale_in(spelling, si)
+
+
+def scale_in(unit: str, si: str) -> Scale | None:
+    """How to bring a value in that unit to the SI unit; None where the unit is not one of its quantity."""
+    sizes, spelling = _sizes(si), _spelled(unit)
+    size = sizes.get(spelling) or sizes.get(spelling.casefold())
+    return None if size is None else _scale(size, si)
+
+
+def known_units(meaning: str) -> str:
+    """Some units of a meaning, for a message."""
+    return units.spellings(MEANINGS[meaning]) if MEANINGS[meaning] != "-" else "-"
+
+
+def header_parts(header: str) -> list[tuple[str, str]]:
+    """Every way to read a header as a name and a unit, the likelier first.
+
+    Examples
+    --------
+    >>> header_parts("Fz [N]")[0], header_parts("Time_s")[1], header_parts("COF")[0]
+    (('Fz', 'N'), ('Time', 's'), ('COF', ''))
+    """
+    text = header.strip().strip('"').strip()
+    bracket = re.fullmatch(r"(.*?)\s*[\[(<{]\s*([^\[\](){}<>]*?)\s*[\])>}]\s*", text)
+    if bracket:
+        return [(bracket[1].strip(), bracket[2])]
+    ways = [(text, "")]
+    patterns = (re.fullmatch(pattern, text) for pattern in _UNIT_AT_END)
+    return ways + [(found[1].strip(), found[2].strip()) for found in patterns if found]
+
+
+def ranks(name: str) -> dict[str, int]:
+    """Meanings that a name may have, each with how far down its list the name stands."""
+    found = {}
+    for meaning, groups in NAMES.items():
+        for rank, group in enumerate(groups):
+            if plain(name) in group.split("; "):
+                found[meaning] = rank
+                break
+    return found
+
+
+def looks_like_friction(header: str) -> bool:
+    """True for a name that has to do with friction, for messages only."""
+    words = plain(header)
+    return any(part in words for part in ("cof", "fric", "reib", "frott")) or "mu" in words.split()
+
+
+def _spelled(unit: str) -> str:
+    text = unit.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00ba", "\u00b0")
+    return text.replace("\u00b2", "2").replace("\u207b\u00b9", "-1").replace("\u22c5", " ").strip()
+
+
+def _sizes(si: str) -> dict[str, str]:
+    sizes = {spelling: f"1 {spelling}" for spelling in units.UNITS[si]}
+    for size, spellings in ALIASES.get(si, {}).items():
+        sizes |= dict.fromkeys(spellings.split("; "), size)
+    return sizes
+
+
+def _scale(size: str, si: str) -> Scale:
+    if size.startswith("1/"):
+        return Scale(divisor=float(size.split(" ")[0][2:]))
+    one = units.parse(size, si)
+    _, unit = size.split(" ", 1)
+    offset = units.parse(f"0 {unit}", si)
+    factor = one - offset
+    if si == "K":
+        factor = round(factor, 12)
+    inverse = round(1.0 / factor)
+    if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
+        return Scale(divisor=float(inverse), offset=offset)
+    return Scale(factor=factor, offset=offset)

@@ -1,0 +1,198 @@
+"""From a table as it stands in a file to a log in SI units: scaled, complete rows only, friction as magnitude."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import ColumnMap
+from separatrix.tribometer.columns import Chosen, Understood, understand
+from separatrix.tribometer.conditions import conditions_of
+from separatrix.tribometer.formats import PLAIN
+from separatrix.tribometer.formats.layout import Layout
+from separatrix.tribometer.log import ABSCISSAE, MEANINGS, RawLog, RawTable
+from separatrix.units import Array, format_quantity, printable
+
+ONE_SIGN = 0.9
+"""Share of the rows in which the normal force must have one sign for it to be that of compression."""
+
+
+def raw_log(
+    table: RawTable,
+    file_name: str,
+    checksum: str,
+    format_name: str,
+    columns: ColumnMap,
+    layout: Layout = PLAIN,
+) -> RawLog:
+    """Log of one table.
+
+    Raises
+    ------
+    InputError
+        A column that is needed cannot be told or has no unit, time runs backwards, fewer than two complete
+        rows: file, line and cure.
+    """
+    source = f"{file_name}, {table.name}" if table.name else file_name
+    given = columns.conditions(file_name)
+    constant = given.get("normal_force")
+    force = constant if isinstance(constant, float) else None
+    understood = understand(
+        table.headers, table.units, source, columns, layout, constant_force=force is not None
+    )
+    notes: list[str] = []
+    arrays = {meaning: _in_si(table, chosen) for meaning, chosen in understood.used.items()}
+    arrays = _without_empty_abscissae(arrays, source, notes)
+    _mend_sign(arrays, understood, source, notes)
+    arrays["friction"] = _friction(arrays, force, notes)
+    kept, missing = _complete(arrays, source, notes)
+    _check_order(arrays, kept, table, source)
+    arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
+    rotation = _speed_from_rotation(arrays, given, notes)
+    conditions, sentences = conditions_of(given, table.metadata, arrays | rotation, source)
+    fields = {meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"}
+    return RawLog(
+        source=source,
+        checksum=checksum,
+        format=format_name,
+        missing=missing,
+        columns=understood.columns,
+        metadata=dict(table.metadata),
+        conditions=conditions,
+        notes=(*notes, *sentences),
+        **fields,  # type: ignore[arg-type]
+    )
+
+
+def _in_si(table: RawTable, chosen: Chosen) -> Array:
+    scale = chosen.scale
+    column = table.columns[chosen.index]
+    if scale.factor != 1.0:
+        column = column * scale.factor
+    if scale.divisor != 1.0:
+        column = column / scale.divisor
+    if scale.offset != 0.0:
+        column = column + scale.offset
+    if chosen.sign < 0:
+        column = -column
+    return column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
+
+
+def _without_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str]) -> dict[str, Array]:
+    empty = [meaning for meaning in ABSCISSAE if meaning in arrays and np.isnan(arrays[meaning]).all()]
+    kept = {meaning: column for meaning, column in arrays.items() if meaning not in empty}
+    if not any(meaning in kept for meaning in ABSCISSAE):
+        raise InputError(source, f"has no value of {' or '.join(empty)} in any row")
+    notes += [f"the column of {meaning} is empty and not used" for meaning in empty]
+    return kept
+
+
+def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, notes: list[str]) -> None:
+    """Make compression positive: the sign of nearly all rows, or that of the column map."""
+    column = arrays.get("normal_force")
+    if column is None or understood.used["normal_force"].sign < 0:
+        return
+    negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
+    if negative > ONE_SIGN * (negative + positive):
+        arrays["normal_force"] = -column
+        notes.append("the normal force is negative in the file: compression counts negative there")
+    elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
+        rule = "has a normal force of both signs, so that compression cannot be told"
+        value = f"{positive} rows above zero, {negative} below"
+        cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
+        if understood.used["normal_force"].why != "column map":
+            raise InputError(source, rule, "", value, cure)
+
+
+def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
+    """Magnitude of the friction: as logged, or tangential over normal force."""
+    if "friction" in arrays:
+        logged = arrays["friction"]
+        negative = int((logged < 0.0).sum())
+        if negative:
+            notes.append(
+                f"friction is negative in {negative} of {len(logged)} rows (strokes there and back, or an "
+                "offset of zero): its magnitude is used"
+            )
+        return np.abs(logged)
+    tangential = np.abs(arrays["tangential_force"])
+    if "normal_force" not in arrays:
+        normal = np.float64(force if force is not None else np.nan)
+        notes.append(
+            f"friction is |tangential force| / {format_quantity(float(normal), 'N')}, the constant given"
+        )
+        return np.asarray(tangential / normal)
+    notes.append("friction is |tangential force| / normal force, row by row")
+    normal_force = arrays["normal_force"]
+    pressed = normal_force > 0.0
+    released = int((normal_force <= 0.0).sum())
+    if released:
+        notes.append(f"{released} rows without compression (normal force zero or pulling) are left out")
+    friction = np.full(len(tangential), np.nan)
+    np.divide(tangential, normal_force, out=friction, where=pressed)
+    return np.where(np.isfinite(friction), friction, np.nan)
+
+
+def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tuple[np.ndarray, int]:  # type: ignore[type-arg]
+    """Rows that have friction and every abscissa, and how many have not."""
+    kept = np.isfinite(arrays["friction"])
+    for meaning in ABSCISSAE:
+        if meaning in arrays:
+            kept &= np.isfinite(arrays[meaning])
+    missing = int(len(kept) - kept.sum())
+    if kept.sum() < 2:
+        value = f"{int(kept.sum())} of {len(kept)} rows"
+        raise InputError(source, "needs at least two rows with a friction and its abscissa", "", value)
+    if missing:
+        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
+    return kept, missing
+
+
+def _check_order(arrays: Mapping[str, Array], kept: np.ndarray, table: RawTable, source: str) -> None:  # type: ignore[type-arg]
+    rows = np.flatnonzero(kept)
+    for meaning in ABSCISSAE:
+        if meaning not in arrays:
+            continue
+        column = arrays[meaning][kept]
+        back = np.flatnonzero(np.diff(column) < 0.0)
+        if len(back):
+            i = int(back[0]) + 1
+            line = table.lines[rows[i]] if table.lines is not None else rows[i] + 1
+            unit = MEANINGS[meaning]
+            shown = f"{format_quantity(float(column[i]), unit, 8)} after {format_quantity(float(column[i - 1]), unit, 8)}"
+            cure = "Split the file there, one test in each; or, if this is no such column, name it in a column map."
+            place = "line" if table.lines is not None else "row"
+            where = f"{source}: {place} {line}"
+            raise InputError(where, f"{meaning} must not run backwards", "", shown, cure)
+
+
+def _speed_from_rotation(
+    arrays: dict[str, Array], given: Mapping[str, str | float], notes: list[str]
+) -> dict[str, Array]:
+    """A column of rotational speed as magnitude; with the radius of the track it gives the slip speed."""
+    rotation = arrays.get("rotational_speed")
+    if rotation is None:
+        return {}
+    radius = given.get("track_radius")
+    if isinstance(radius, float) and "slip_speed" not in arrays:
+        arrays["slip_speed"] = np.abs(rotation) * radius
+        notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
+    return {"rotational_speed": np.abs(rotation)}
+
+
+def shown_conditions(log: RawLog) -> str:
+    """Conditions of a log on one line."""
+    from dataclasses import fields
+
+    from separatrix.units import unit_of
+
+    parts = []
+    for f in fields(log.conditions):
+        value = getattr(log.conditions, f.name)
+        if value is not None:
+            unit = unit_of(type(log.conditions), f.name)
+            text = format_quantity(value, unit) if unit else printable(value, 200)
+            parts.append(f"{f.name.replace('_', ' ')} {text}")
+    return "; ".join(parts) or "none known"

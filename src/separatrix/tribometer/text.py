@@ -1,0 +1,352 @@
+"""Tables of numbers in a text file: where each stands, its headers and units, and its columns as arrays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from io import StringIO
+
+import numpy as np
+
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import TextFormat
+from separatrix.tribometer.dialect import Dialect, dialect_of, fields, is_number
+from separatrix.tribometer.formats.layout import Layout
+from separatrix.tribometer.header import Header, find_header, header_at
+from separatrix.tribometer.log import RawTable
+from separatrix.tribometer.metadata import metadata_of
+from separatrix.units import Array, printable
+
+HEAD = 300
+"""Lines in which the table's separator and decimal sign are looked for first."""
+
+Wanted = Callable[[tuple[str, ...], tuple[str, ...]], Sequence[int]]
+
+
+@dataclass(slots=True)
+class _Lines:
+    """A text and where its lines are."""
+
+    text: bytes
+    starts: np.ndarray[tuple[int], np.dtype[np.int64]]
+    ends: np.ndarray[tuple[int], np.dtype[np.int64]]
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def __getitem__(self, i: int) -> str:
+        return self.text[self.starts[i] : self.ends[i]].decode()
+
+
+@dataclass(slots=True)
+class _Found:
+    """One table: its header, the lines before it, and the stretches of lines that are its rows."""
+
+    header: Header
+    before: list[str]
+    separators: int
+    rows: list[tuple[int, int]] = field(default_factory=list)
+
+    def count(self) -> int:
+        return sum(stop - start for start, stop in self.rows)
+
+
+def read_tables(
+    text: bytes, source: str, form: TextFormat, layout: Layout, wanted: Wanted, *, headless: bool = False
+) -> tuple[list[RawTable], Dialect]:
+    """Every table of a text, and the dialect it is written in.
+
+    Parameters
+    ----------
+    text : bytes
+        UTF-8 with line feeds.
+    source : str
+        Names the file in a refusal.
+    form : TextFormat
+        What the column map says of the text.
+    layout : Layout
+        What is known of the instrument's format.
+    wanted : callable
+        From headers and units to the numbers of the columns to read; the others are left NaN.
+    headless : bool
+        The columns are known by their numbers, so that a table may lack headers.
+
+    Raises
+    ------
+    InputError
+        No table, a row of another length, text in a column of numbers: file, line and cure.
+    """
+    lines = _indexed(text)
+    dialect = _dialect(lines, source, form)
+    found = _tables(lines, source, dialect, form, layout, headless)
+    tables = [_read(table, lines, source, dialect, layout, wanted) for table in found]
+    names = [table.name for table in tables]
+    if len(tables) > 1 and len(set(names)) < len(names):
+        tables = [_named(table, f"table {i}") for i, table in enumerate(tables, 1)]
+    return tables, dialect
+
+
+def _named(table: RawTable, name: str) -> RawTable:
+    return RawTable(
+        name=name,
+        headers=table.headers,
+        units=table.units,
+        columns=table.columns,
+        metadata=table.metadata,
+        lines=table.lines,
+    )
+
+
+def _indexed(text: bytes) -> _Lines:
+    ends = np.flatnonzero(np.frombuffer(text, np.uint8) == 10)
+    if not text.endswith(b"\n"):
+        ends = np.append(ends, len(text))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    return _Lines(text, starts, ends)
+
+
+def _dialect(lines: _Lines, source: str, form: TextFormat) -> Dialect:
+    """Dialect of the head; where that holds no rows yet, of ten times as many lines."""
+    for most in (HEAD, 10 * HEAD):
+        head = [lines[i] for i in range(min(len(lines), most))]
+        try:
+            return dialect_of(
+                head, source, separator=form.separator, decimal=form.decimal, missing=form.missing
+            )
+        except InputError:
+            if len(lines) <= most or most > HEAD:
+                raise
+    raise InputError(source, "has no table")
+
+
+def _separators(lines: _Lines, separator: str) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    """How many separators each line has; with blanks, words less one."""
+    u = np.frombuffer(lines.text, np.uint8)
+    if separator == " ":
+        blank = (u == 32) | (u == 9) | (u == 10)
+        begins = ~blank
+        begins[1:] &= blank[:-1]
+        return np.diff(np.searchsorted(np.flatnonzero(begins), lines.ends), prepend=0) - 1
+    return np.diff(np.searchsorted(np.flatnonzero(u == ord(separator)), lines.ends), prepend=0)
+
+
+def _segments(lines: _Lines, dialect: Dialect) -> Iterator[tuple[int, int, int]]:
+    """Stretches of lines: (first, last + 1, separators) of rows, and separators -2 for other lines."""
+    counts = _separators(lines, dialect.separator)
+    bounds = [0, *(np.flatnonzero(np.diff(counts)) + 1).tolist(), len(lines)]
+    for start, stop in zip(bounds[:-1], bounds[1:], strict=True):
+        n = int(counts[start])
+        first = stop
+        if n >= 1:
+            near = range(start, min(stop, start + 6))
+            first = next((i for i in near if dialect.is_data(lines[i])), stop)
+        if first > start:
+            yield start, first, -2
+        if first < stop:
+            yield first, stop, n
+
+
+def _tables(
+    lines: _Lines, source: str, dialect: Dialect, form: TextFormat, layout: Layout, headless: bool
+) -> list[_Found]:
+    found: list[_Found] = []
+    before: list[int] = []
+    for start, stop, n in _segments(lines, dialect):
+        if n == -2:
+            before += _other_lines(lines, start, stop, layout, bool(found))
+        elif found and not before:
+            if n != found[-1].separators:
+                raise _wrong_row(lines, start, found[-1], source, dialect)
+            found[-1].rows.append((start, stop))
+        else:
+            header = _header(lines, before, n, source, dialect, form, headless and not found)
+            if header is None and not found and stop - start < 2:
+                before += range(start, stop)
+                continue
+            if header is None:
+                raise _no_header(lines, before, start, n, source, dialect, found)
+            found.append(_Found(header, [lines[i] for i in before], n, [(start, stop)]))
+            before = []
+    _check_end(lines, before, found, source, dialect)
+    return _worthwhile(found, source, lines, dialect)
+
+
+def _other_lines(lines: _Lines, start: int, stop: int, layout: Layout, inside: bool) -> list[int]:
+    """Lines that are neither empty nor known to stand between rows."""
+    kept = []
+    for i in range(start, stop):
+        line = lines[i]
+        known = inside and layout.interruption is not None and layout.interruption.match(line)
+        if line.strip() and not known:
+            kept.append(i)
+    return kept
+
+
+def _header(
+    lines: _Lines,
+    before: list[int],
+    n: int,
+    source: str,
+    dialect: Dialect,
+    form: TextFormat,
+    headless: bool,
+) -> Header | None:
+    if form.header_line is not None:
+        return header_at(lines.__getitem__, len(lines), form, n + 1, source, dialect)
+    found = find_header([lines[i] for i in before], n + 1, dialect)
+    if found is None and headless:
+        return Header(tuple(f"column {i + 1}" for i in range(n + 1)), ("",) * (n + 1))
+    return found
+
+
+def _wrong_row(lines: _Lines, i: int, table: _Found, source: str, dialect: Dialect) -> InputError:
+    got, due = len(dialect.fields(lines[i])), table.separators + 1
+    return InputError(
+        f"{source}: line {i + 1}",
+        f"has {got} fields where the rows before it have {due}",
+        "",
+        f'"{printable(lines[i])}"',
+        "Mend or delete this line.",
+    )
+
+
+def _no_header(
+    lines: _Lines,
+    before: list[int],
+    start: int,
+    n: int,
+    source: str,
+    dialect: Dialect,
+    found: list[_Found],
+) -> InputError:
+    if found:
+        cure = "Delete it, or give the second table a line of column names."
+        where = f"{source}: line {before[0] + 1}"
+        return InputError(where, "breaks the table", "", f'"{printable(lines[before[0]])}"', cure)
+    above = fields(lines[before[-1]], dialect.separator) if before else []
+    if dialect.separator == "," and 2 * len(above) == n + 1:
+        rule = f"has {len(above)} names over {n + 1} fields: comma as separator and as decimal sign"
+        return InputError(source, rule, cure="Export it with semicolons or tabs between the columns.")
+    where = f"{source}: line {start + 1}"
+    cure = "Add to the column map, below [format]: header_line = ..., or below [columns]: friction = 2 (a number)."
+    rule = f"begins a table of {n + 1} columns without a line of {n + 1} column names above it"
+    return InputError(where, rule, cure=cure)
+
+
+def _check_end(lines: _Lines, after: list[int], found: list[_Found], source: str, dialect: Dialect) -> None:
+    """A last row that was cut off is not taken for a closing remark."""
+    for i in after if found else []:
+        row = [part for part in dialect.fields(lines[i]) if part]
+        if all(is_number(part) for part in row):
+            raise _wrong_row(lines, i, found[-1], source, dialect)
+
+
+def _worthwhile(found: list[_Found], source: str, lines: _Lines, dialect: Dialect) -> list[_Found]:
+    """Tables of two rows or more; one row under names is metadata of the next table."""
+    if not found:
+        raise InputError(source, "has a header but no rows", cure="Give it at least two rows of numbers.")
+    if all(table.count() < 2 for table in found):
+        line = found[-1].rows[0][0] + 1
+        raise InputError(f"{source}: line {line}", "is the only row", cure="A log has at least two.")
+    kept: list[_Found] = []
+    before: list[str] = []
+    for table in found:
+        before += table.before
+        if table.count() < 2:
+            before.append(lines[table.rows[0][0]])
+        else:
+            table.before, before = before, list(before)
+            kept.append(table)
+    return kept
+
+
+def _read(
+    table: _Found, lines: _Lines, source: str, dialect: Dialect, layout: Layout, wanted: Wanted
+) -> RawTable:
+    header = table.header
+    needed = list(wanted(header.names, header.units))
+    numbers = np.concatenate([np.arange(start, stop) for start, stop in table.rows]) + 1
+    body = b"".join(lines.text[lines.starts[a] : lines.ends[b - 1]] + b"\n" for a, b in table.rows)
+    values = _numbers(body, dialect, needed, lambda row: f"{source}: line {numbers[row]}", header.names)
+    nothing = np.broadcast_to(np.float64(np.nan), (len(numbers),))
+    columns: list[Array] = [nothing] * len(header.names)
+    for place, column in enumerate(needed):
+        columns[column] = values[place]
+    return RawTable(
+        name=layout.table_name(table.before),
+        headers=header.names,
+        units=header.units,
+        columns=columns,
+        metadata=metadata_of(table.before, header.lines),
+        lines=numbers,
+    )
+
+
+def _numbers(
+    body: bytes, dialect: Dialect, needed: list[int], where: Callable[[int], str], names: tuple[str, ...]
+) -> Array:
+    """Columns of the body as numbers, shape (column, row): at once, or with the missing marked as such."""
+    if b'"' in body:
+        body = body.replace(b'"', b"")
+    if dialect.decimal == ",":
+        body = body.translate(bytes.maketrans(b",", b"."))
+    try:
+        return _loaded(body, dialect.separator, needed)
+    except ValueError:
+        marked = _with_missing(body, dialect)
+    try:
+        return _loaded(marked, dialect.separator, needed)
+    except ValueError:
+        raise _no_number(marked, dialect, needed, where, names) from None
+
+
+def _loaded(body: bytes, separator: str, needed: list[int]) -> Array:
+    delimiter = None if separator == " " else separator
+    loaded: Array = np.loadtxt(
+        StringIO(body.decode()), delimiter=delimiter, usecols=needed, comments=None, ndmin=2, unpack=True
+    )
+    return np.ascontiguousarray(loaded)
+
+
+def _with_missing(body: bytes, dialect: Dialect) -> bytes:
+    """The body with ``nan`` for every field that is empty or means that there is no value."""
+    words = sorted((word for word in dialect.missing if word), key=len, reverse=True)
+    marks = b"|".join(re.escape(word.encode()) for word in words)
+    if dialect.separator == " ":
+        return re.sub(rb"(?i)(?<!\S)(?:" + marks + rb")(?!\S)", b"nan", body)
+    separator = re.escape(dialect.separator.encode())
+    if b" " in body:
+        body = re.sub(rb" *([" + separator + rb"\n]) *", rb"\1", body)
+    pattern = rb"(?i)([" + separator + rb"\n])(?:" + marks + rb")?(?=[" + separator + rb"\n])"
+    return re.sub(pattern, rb"\1nan", b"\n" + body)[1:]
+
+
+def _no_number(
+    body: bytes, dialect: Dialect, needed: list[int], where: Callable[[int], str], names: tuple[str, ...]
+) -> InputError:
+    """The first field that is no number, found row by row."""
+    for row, line in enumerate(body.decode().split("\n")):
+        parts = dialect.fields(line)
+        for column in needed:
+            text = parts[column] if column < len(parts) else ""
+            if text != "nan" and not _is_float(text):
+                name = printable(names[column]) or f"number {column + 1}"
+                cure = f"If that means a missing value, add below [format] in the column map: missing = [{_toml(text)}]."
+                return InputError(
+                    f'{where(row)}, column "{name}"', "must be a number", "", f'"{printable(text)}"', cure
+                )
+    return InputError(where(0), "cannot be read as numbers")
+
+
+def _is_float(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return "_" not in text
+
+
+def _toml(text: str) -> str:
+    plain = printable(text).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{plain}"'

@@ -1,0 +1,186 @@
+"""Synthetic raw logs: one writer per format, from its documented layout. No vendor's file is copied.
+
+Each writer takes arrays in SI units (friction without a unit) and gives the bytes of a file. Numbers are
+written with `digits` decimals in the unit of the format, so that a reader can be compared to the last digit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+CODES = {"utf-8-sig": b"", "utf-16-le-mark": b"\xff\xfe", "utf-16-be-mark": b"\xfe\xff"}
+
+
+def anton_paar(
+    friction,
+    time,
+    *,
+    distance=None,
+    laps=None,
+    radius: float = 0.015,
+    speed: float = 0.1,
+    load: float = 5.0,
+    temperature: float = 295.15,
+    nano: bool = False,
+    decimal: str = ".",
+    encoding: str = "cp1252",
+    newline: str = "\r\n",
+    digits: int = 6,
+    missing: str = "",
+    sample: str = "A1",
+) -> bytes:
+    """Anton Paar / CSM TRB: ``key : value [unit]`` lines, one line of headers, tabs between the columns."""
+    distance = time * speed if distance is None else distance
+    laps = distance / (2 * np.pi * radius) if laps is None else laps
+    force, unit = (1e3, "mN") if nano else (1.0, "N")
+    head = [
+        "Nano Tribometer" if nano else "TRB3 Tribometer",
+        f"Sample name\t: {sample}",
+        f"Radius\t: {radius * 1e3:.2f} [mm]",
+        f"Lin. Speed\t: {speed * 100:.2f} [cm/s]",
+        f"Normal load\t: {load * force:.2f} [{unit}]",
+        f"Temperature\t: {temperature - 273.15:.2f} [\u00b0C]",
+        "Single-way mode",
+        "",
+    ]
+    header = (
+        f"Time [s]\tDistance [m]\tLaps\tSequence ID\tCycle ID\tMax Linear Speed [m/s]\tNominal Load [{unit}]\t"
+        f"\u00b5\tAngle [\u00b0]\tFriction Force [{unit}]\tPenetration Depth [\u00b5m]"
+    )
+    one = np.ones_like(time)
+    columns = [time, distance, laps, one, np.floor(laps), speed * one, load * force * one, friction]
+    columns += [laps % 1.0 * 360.0, friction * load * force, time * 1e-3]
+    text = rows(columns, "\t", digits, missing)
+    head = [line.replace(".", decimal) if ":" in line else line for line in head]
+    head[3] = head[3].replace(f"Lin{decimal}", "Lin.")
+    return encoded([*head, header, *[line.replace(".", decimal) for line in text]], encoding, newline)
+
+
+def rtec(
+    friction,
+    time,
+    *,
+    normal_force=None,
+    speed_rpm: float = 120.0,
+    steps: Sequence[int] | None = None,
+    metadata: bool = True,
+    encoding: str = "utf-8",
+    newline: str = "\r\n",
+    digits: int = 6,
+    total: str = "00:01:08.25",
+) -> bytes:
+    """Rtec MFT: a line of keys over one of values, headers and rows that end in a comma, and a total time."""
+    one = np.ones_like(time)
+    load = 10.0 * one if normal_force is None else normal_force
+    number = one if steps is None else np.asarray(steps, float)
+    head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"] if metadata else []
+    header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
+    columns = [number, time, number, load, friction * load, friction, speed_rpm * one, time * 1e-4]
+    text = [line + "," for line in rows(columns, ",", digits, "")]
+    tail = ["TotalTime", total] if total else []
+    return encoded([*head, header, *text, *tail], encoding, newline)
+
+
+def umt(
+    friction,
+    time,
+    *,
+    normal_force=None,
+    reciprocating: bool = False,
+    steps: int = 1,
+    unit: str = "g",
+    encoding: str = "utf-8",
+    newline: str = "\r\n",
+    digits: int = 6,
+) -> bytes:
+    """Bruker (CETR) UMT: for each step its keys, short headers, a line of units, an empty line, and the rows.
+
+    Forces are in gram-force with compression negative; `steps` divides the rows evenly, time begins anew.
+    """
+    size = {"g": 9.80665e-3, "N": 1.0}[unit]
+    load = np.full_like(time, 2.0) if normal_force is None else normal_force
+    head = ["Created by CETR Data Viewer ver.2.19 01/02/26 10:00:00", "Total number of runs - 1"]
+    head += [f"Total number of steps = {steps}", "", "Run # 1", "Run date 01 Feb 2026 10:00:00"]
+    lines = head
+    for i, part in enumerate(np.array_split(np.arange(len(time)), steps), 1):
+        f, t, n = friction[part], time[part] - time[part][0], load[part]
+        stroke = np.sign(np.sin(2 * np.pi * t + 0.1)) if reciprocating else np.ones_like(t)
+        keys = [f"Step No. {i}", "", "Step Type Code: 0", "Radius       = 15.000", "Velocity     = 240"]
+        keys += [f"Set Force    = {-n[0] / size:.0f}", f"Data Count   = {len(t)}", ""]
+        header = ["Fx,Fz,Z,T,Ff,COF", f"{unit},{unit},mm,sec,{unit},", ""]
+        columns = [stroke * f * n / size, -n / size, -t * 1e-3, t, f * n / size, f]
+        lines = [*lines, *keys, *header, *rows(columns, ",", digits, ""), "", ""]
+    return encoded(lines, encoding, newline)
+
+
+def compend(
+    friction,
+    time,
+    *,
+    normal_force=None,
+    fast_data_every: int = 0,
+    coefficient: bool = True,
+    encoding: str = "cp1252",
+    newline: str = "\r\n",
+    digits: int = 6,
+) -> bytes:
+    """Phoenix Compend: rows that begin and end with a tab, with lines that name files of fast data between."""
+    load = np.full_like(time, 20.0) if normal_force is None else normal_force
+    names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)"]
+    columns = [time, load, friction * load, np.floor(time * 2), 0 * time]
+    if coefficient:
+        names, columns = [*names, "CoF"], [*columns, friction]
+    text = ["\t" + line + "\t" for line in rows(columns, "\t", digits, "")]
+    if fast_data_every:
+        for n, i in enumerate(range(len(text) - 1, 0, -fast_data_every)):
+            text.insert(i, f'Fast data in \t=HYPERLINK("test-h{n:03d}.tsv")')
+    head = ["COMPEND 2000", "Test file\ttest.tsv", "", "Test started at 10:00:00"]
+    header = "\t" + "\t".join(names) + "\t"
+    return encoded([*head, header, *text, "Test finished at 11:00:00"], encoding, newline)
+
+
+def plain_csv(
+    columns: dict[str, np.ndarray],
+    *,
+    separator: str = ",",
+    decimal: str = ".",
+    units: Sequence[str] = (),
+    head: Sequence[str] = (),
+    tail: Sequence[str] = (),
+    encoding: str = "utf-8",
+    newline: str = "\n",
+    digits: int = 6,
+    missing: str = "",
+) -> bytes:
+    """A table with its header, perhaps a line of units below it, and lines before and after."""
+    lines = [*head, separator.join(columns)]
+    if units:
+        lines.append(separator.join(units))
+    text = rows(list(columns.values()), separator, digits, missing)
+    if decimal != ".":
+        text = [line.replace(".", decimal) for line in text]
+    return encoded([*lines, *text, *tail], encoding, newline)
+
+
+def rows(columns: Sequence[np.ndarray], separator: str, digits: int, missing: str) -> list[str]:
+    """Rows of numbers; NaN is written as `missing`."""
+    texts = [
+        [missing if value != value else f"{value:.{digits}f}" for value in np.asarray(column, float).tolist()]
+        for column in columns
+    ]
+    return [separator.join(row) for row in zip(*texts, strict=True)]
+
+
+def encoded(lines: Sequence[str], encoding: str, newline: str) -> bytes:
+    """The lines in an encoding; ``utf-16-le-mark`` and its like with a byte order mark."""
+    text = newline.join(lines) + newline
+    if encoding in CODES and encoding != "utf-8-sig":
+        return CODES[encoding] + text.encode(encoding.removesuffix("-mark"))
+    return text.encode(encoding)
+
+
+def as_written(values: np.ndarray, digits: int = 6) -> np.ndarray:
+    """The numbers that a reader must give back for values written with so many decimals."""
+    return np.array([float(f"{value:.{digits}f}") for value in np.asarray(values, float).tolist()])
