@@ -96,15 +96,17 @@ def _names(axes: Axes, data: xr.Dataset, top: float) -> None:
     """Write rank, name and friction of every candidate at the right; on top those not measured."""
     ranks = _ranks(data["material_rank"].values)
     labels = []
-    for name, rank, friction, verdict in zip(
+    for name, rank, friction, verdict, untested in zip(
         data["material"].values,
         ranks,
         data["material_friction"].values,
         data["material_verdict"].values,
+        data["material_extrapolation"].values.astype(str),
         strict=True,
     ):
         measured = np.isfinite(friction)
-        text = f"{rank}  {name}  {friction:.3g}" if measured else f"{rank}  {name}  not measured"
+        mark = MARK if untested else ""
+        text = f"{rank}  {name}  {friction:.3g}{mark}" if measured else f"{rank}  {name}  not measured"
         labels.append((1.0, friction if measured else top, text, VERDICT_COLOURS.get(str(verdict), GREY)))
     label_lines(axes, labels, gap=0.05, colour=BLACK)
 
@@ -122,9 +124,22 @@ def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
             [], [], marker, color=VERDICT_COLOURS[verdict], ms=5, label=f"{verdict} at this bearing's $\\eta$"
         )
     axes.plot([], [], "o", mfc="white", mec=GREY, ms=4.5, label="threshold with its 95 % interval")
+    _untested(axes, data["material_extrapolation"])
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
     statement = textwrap.fill(str(data["paper_statement"].values), 110)
     axes.text(0, 1.09, statement, transform=axes.transAxes, fontsize=6.5, color=GREY, va="bottom")
+
+
+MARK = "*"
+"""After a friction that was asked for where nothing was tested."""
+
+
+def _untested(axes: Axes, sentences: xr.DataArray) -> None:
+    """Say in the legend what was not tested, each sentence once."""
+    texts = (str(text).split("; ") for text in sentences.values.ravel())
+    for text in dict.fromkeys(one for several in texts for one in several if one):
+        label = textwrap.fill(f"not tested: {text}", 60)
+        axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
 
 
 ABSENT_AT, VERDICT_AT, RIGHT = 1.06, 1.13, 1.32
@@ -150,6 +165,7 @@ def overview(data: xr.Dataset) -> Figure:
     chain_lines(axes, data)
     _paper_line(axes, data)
     _rows(axes, data, places)
+    _untested(axes, data["overall_extrapolation"])
     axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure

@@ -55,7 +55,7 @@ def held(
         if value is None:
             continue
         if limits is None:
-            sentences.append(f"{WORDS[name]} of the tests is not stated; asked for {_text(value, name)}")
+            sentences.append(f"{WORDS[name]} of the tests is not stated (asked for {_text(value, name)})")
             continue
         values[name] = min(max(value, limits[0]), limits[1])
         if _counts_as_tested(value, limits, name):
@@ -84,8 +84,8 @@ def _sentence(value: float, limits: Range, name: str) -> str:
     side = "beyond" if value > limits[1] else "below"
     nearest = limits[1] if value > limits[1] else limits[0]
     return (
-        f"{WORDS[name]} {_text(value, name)} is {side} the tested {in_words(limits, CONDITIONS[name])}; "
-        f"held at {_text(nearest, name)}"
+        f"{WORDS[name]} {_text(value, name)} is {side} the tested {in_words(limits, CONDITIONS[name])} "
+        f"(held at {_text(nearest, name)})"
     )
 
 

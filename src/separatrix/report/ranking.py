@@ -40,7 +40,11 @@ def rank(document: Document) -> list[str]:
     overall = document["overall"]
     return [
         section(
-            "Overall: mean friction over the measured environments", _table(overall), LEGEND, *_gaps(document)
+            "Overall: mean friction over the measured environments",
+            _table(overall),
+            LEGEND,
+            *footnotes(overall),
+            *_gaps(document),
         ),
         section(f"Evidence, overall: {_ensemble(document)}", _evidence(overall), EVIDENCE_LEGEND),
         section("Reasons, overall", *_reasons(overall)),
@@ -55,7 +59,7 @@ def _environment(document: Document, one: Document) -> str:
     """Return verdicts, evidence and reasons of one environment."""
     rows = one["materials"]
     evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
-    return section(_title(one["name"]), _table(rows), "", *evidence, *_reasons(rows))
+    return section(_title(one["name"]), _table(rows), *footnotes(rows), "", *evidence, *_reasons(rows))
 
 
 def _first(rows: Sequence[Document]) -> list[str]:
@@ -94,12 +98,31 @@ def _row(row: Document, *, tied: bool) -> list[str]:
     return [
         ABSENT if row["rank"] is None else f"{row['rank']}{'=' if tied else ''}",
         row["name"],
-        number(row["friction"]),
+        number(row["friction"]) + (MARK if row["extrapolation"] else ""),
         _with_interval(row, "restitution_threshold", "restitution_threshold"),
         ABSENT if row["margin"] is None else f"{row['margin']:+.2f}",
         _with_interval(row, "probability_stable", "probability"),
         row["verdict"] or ("not measured" if row["friction"] is None else "not finished"),
     ]
+
+
+MARK = "*"
+"""After a friction that was asked for where nothing was tested."""
+
+
+def footnotes(rows: Sequence[Document]) -> list[str]:
+    """Return what was not tested, once for all candidates of whom it is said; nothing if all was."""
+    who: dict[str, list[str]] = {}
+    for row in rows:
+        for sentence in row["extrapolation"]:
+            who.setdefault(sentence, []).append(row["name"])
+    measured = sum(row["friction"] is not None for row in rows)
+    said = [
+        sentence + ("" if len(names) == measured else f" ({', '.join(names)})")
+        for sentence, names in who.items()
+    ]
+    text = f"not tested as the pocket rubs: {'. '.join(said)}."
+    return ["", paragraph(text, first=f"  {MARK} ", indent="    ")] if said else []
 
 
 def _with_interval(row: Document, key: str, ends: str) -> str:
@@ -180,9 +203,31 @@ def _holds_for(document: Document) -> list[tuple[str, str]]:
         *study_facts(document["study"]),
         *chain_facts(document["chain"]),
         *ensemble_facts(document),
+        ("Ball on pocket", _pocket(document["pocket"])),
+        ("Unrepeated tests", _scatter(document)),
         ("The paper's bound", document["paper_statement"]),
         *_disagreement(document),
     ]
+
+
+def _pocket(pocket: Document) -> str:
+    """Return what rubs in the pocket, of which friction was asked for."""
+    low, high = pocket["slip_speed_low"], pocket["slip_speed_high"]
+    slip = f"{pocket['slip_speed']:.3g} m/s"
+    if high > 1.001 * low:
+        slip += f" ({low:.3g} to {high:.3g} around the bearing)"
+    pressure = quantity(float(f"{pocket['pressure']:.3g}"), "Pa")
+    force = quantity(float(f"{pocket['impact_force']:.3g}"), "N")
+    return f"slides at {slip}; mean pressure {pressure} in a blow of {force} (middle kick)"
+
+
+def _scatter(document: Document) -> str:
+    """Return what an unrepeated test is assumed to scatter, where any candidate's friction rests on that."""
+    rows = [row for one in document["environments"] for row in one["materials"]]
+    if not any(row["friction_scatter_assumed"] for row in rows):
+        return "none: every friction has its measured scatter"
+    share = 100.0 * document["friction_scatter"]
+    return f"assumed to scatter by {share:.3g} % of their mean: a guess, [ranking] friction_scatter"
 
 
 def _disagreement(document: Document) -> list[tuple[str, str]]:
