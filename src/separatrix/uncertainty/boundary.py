@@ -81,6 +81,16 @@ class Boundary:
             few, clear = self.surrogate.around(half, restitution_factor, parameters, draw)
         return Limits(stable_up_to=few.min(axis=0), unstable_above=clear.max(axis=0))
 
+    def critical_friction(
+        self, restitution_factor: Array, parameters: Array, draw: int | None = None
+    ) -> Array:
+        """Friction at which half of the runs grow from the middle kick, shape (sample,) [-]."""
+        line = self._line(self.traced.middle, 1, restitution_factor, draw)
+        if self.surrogate is None:
+            return line
+        shift = self.surrogate.shift(restitution_factor, parameters, draw)[self.traced.middle]
+        return np.asarray(line * np.exp(shift))
+
     def _line(self, kick: int, target: int, eta: Array, draw: int | None) -> Array:
         lines = self._lines(draw)
         return np.asarray(np.interp(eta, self.traced.restitution_factors, lines[kick, target]))

@@ -26,7 +26,7 @@ ENDS_90 = (0.05, 0.95)
 SURE: Ratio = 0.95
 """A candidate that beats another in so many of the samples is told apart from it."""
 
-_LEVELS: Array = (np.arange(41) + 0.5) / 41.0
+_LEVELS: Array = np.asarray((np.arange(41) + 0.5) / 41.0, dtype=np.float64)
 _RULE: tuple[Any, Any] = leggauss(400)
 _REACH = 9.0
 
@@ -146,7 +146,7 @@ def sizes(samples: int, first: int = 64) -> list[int]:
     return [*found, samples]
 
 
-def prefix_counts(true: NDArray[np.bool_], ends: Sequence[int]) -> NDArray[np.int_]:
-    """How many of the first so many samples are true, shape (size, case)."""
-    total = np.cumsum(true, axis=0)
+def prefix_counts(true: NDArray[Any], ends: Sequence[int]) -> Array:
+    """How many of the first so many samples are true, or their credit in sum, shape (size, case)."""
+    total = np.cumsum(true, axis=0, dtype=np.float64)
     return np.asarray(total[np.array(ends) - 1])

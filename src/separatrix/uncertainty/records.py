@@ -11,16 +11,17 @@ from separatrix.units import Array, MetrePerSecond, Ratio
 class InputRow:
     """One uncertain number: its name in the study, its distribution in words, and where that comes from.
 
-    `assumed` marks the default scatter of a friction, a guess; `moves_boundary` a number that changes
-    the cage itself, so that the boundary moves with it. Mean and standard deviation are in SI.
+    `source` is "study" where the study gives it, "measured" for the scatter of a measured friction, "assumed"
+    for the default one, a guess; `moves_boundary` marks a number that changes the cage itself, so that the
+    boundary moves with it. Mean and standard deviation are in SI.
     """
 
     name: str
     unit: str
     distribution: str
+    source: str
     mean: float
     standard_deviation: float
-    assumed: bool
     moves_boundary: bool
 
 
@@ -42,8 +43,8 @@ class UncertainMaterial:
         The same of the threshold [-].
     margin, margin_low, margin_high : float or None
         The same of the margin [-].
-    verdict : str or None
-        Of the cage with every input at its central value.
+    verdict, nominal_threshold, nominal_margin
+        Of the cage with every input at its central value; None if not measured.
     probability_stable, probability_stable_low, probability_stable_high : float or None
         Probability of STABLE, and its 95 % interval [-].
     probability_undecided, probability_undecided_low, probability_undecided_high : float or None
@@ -74,6 +75,8 @@ class UncertainMaterial:
     margin_low: Ratio | None = None
     margin_high: Ratio | None = None
     verdict: str | None = None
+    nominal_threshold: Ratio | None = None
+    nominal_margin: Ratio | None = None
     probability_stable: Ratio | None = None
     probability_stable_low: Ratio | None = None
     probability_stable_high: Ratio | None = None
@@ -208,13 +211,13 @@ class BoundaryAnswer:
 class UncertainRanking:
     """Answer of an uncertain ranking.
 
-    `failed` samples have no answer, for the reasons in `failures`; they are left out. `boundary_draws` is the
-    number of boundaries that the runs allow behind every interval.
+    `failed` samples have no answer, for the reasons in `notes`; they are left out. `boundary_draws` is the
+    number of boundaries that the runs allow behind every interval, `runs` all runs that were spent.
     """
 
     samples: int
     failed: int
-    failures: tuple[str, ...]
+    notes: tuple[str, ...]
     default_scatter: Ratio
     inputs: tuple[InputRow, ...]
     environments: tuple[UncertainEnvironment, ...]
