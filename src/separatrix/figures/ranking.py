@@ -138,7 +138,7 @@ def _untested(axes: Axes, sentences: xr.DataArray) -> None:
     """Say in the legend what was not tested, each sentence once."""
     texts = (str(text).split("; ") for text in sentences.values.ravel())
     for text in dict.fromkeys(one for several in texts for one in several if one):
-        label = textwrap.fill(f"not tested: {text}", 60)
+        label = textwrap.fill(f"friction: {text}", 60)
         axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
 
 
