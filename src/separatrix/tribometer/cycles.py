@@ -16,7 +16,10 @@ MOST = 256
 """Spans into which a test is divided for its statistics, at most."""
 
 FEWEST = 12
-"""Spans without which there are no statistics."""
+"""Spans without which there are no statistics, where no cycle is known."""
+
+FEWEST_CYCLES = 8
+"""Whole cycles without which there are none."""
 
 ROWS_OF_A_SPAN = 3
 """Rows in a span, at least, where no cycle is known."""
@@ -39,7 +42,7 @@ class Spans:
     @property
     def centres(self) -> Array:
         """Middle of each span, shape (span,)."""
-        return self.start + self.width * (np.arange(self.means.size) + 0.5)
+        return np.asarray(self.start + self.width * (np.arange(self.means.size) + 0.5), dtype=float)
 
     @property
     def end(self) -> float:
@@ -115,9 +118,12 @@ class Clock:
         return Stretch(source=log.source, along=along[rows], friction=log.friction[rows], done=done)
 
 
+_SILENT: tuple[str, ...] = ()
+
+
 def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
     """Return the cycle of a log, given or, if the options ask, found in its spectrum."""
-    done, notes = turns(log), ()
+    done, notes = turns(log), _SILENT
     if done is None and options.find_cycle:
         done, notes = _found(along, log.friction)
     if done is None or done[-1] <= done[0]:
@@ -127,7 +133,8 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
         return Clock(done=None, cycle=cycle, notes=notes)
     rows = rows_of_a_cycle(done)
     if rows < ROWS_OF_A_CYCLE:
-        note = f"The log has {format_number(rows, 2)} rows a cycle: what changes within a cycle is not averaged out."
+        count = format_number(rows, 2)
+        note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
         return Clock(done=None, cycle=cycle, notes=(*notes, note))
     return Clock(done=done, cycle=cycle, notes=notes)
 
@@ -138,7 +145,8 @@ def _found(along: Array, friction: Array) -> tuple[Array | None, tuple[str, ...]
     found = oscillation(along[half:], friction[half:], None)
     if found.frequency <= 0.0:
         return None, ("No line stands out of the spectrum: no cycle was found, and none is averaged over.",)
-    note = f"The cycle was found in the spectrum, as asked: {format_number(found.frequency)} per unit of the abscissa."
+    rate = format_number(1.0 / found.frequency)
+    note = f"The cycle was found in the spectrum, as asked: one in {rate} of the abscissa's SI unit."
     return np.asarray((along - along[0]) * found.frequency, dtype=float), (note,)
 
 
@@ -220,9 +228,9 @@ def means(abscissa: Array, values: Array, start: float, end: float, count: int) 
         last = abscissa.size
     width = (end - start) / count
     place = np.clip(((abscissa[first:last] - start) / width).astype(np.int64), 0, count - 1)
-    counts = np.bincount(place, minlength=count).astype(float)
-    sums = np.bincount(place, weights=values[first:last], minlength=count)
-    return Spans(start=start, width=width, means=_bridged(sums, counts), counts=counts)
+    held = np.asarray(np.bincount(place, minlength=count), dtype=np.float64)
+    sums = np.asarray(np.bincount(place, weights=values[first:last], minlength=count), dtype=np.float64)
+    return Spans(start=start, width=width, means=_bridged(sums, held), counts=held)
 
 
 def _bridged(sums: Array, counts: Array) -> Array:
@@ -266,8 +274,8 @@ def cycle_spans(done: Array, values: Array, first: int, last: int, source: str) 
     """
     size = max(1, -(-(last - first) // MOST))
     count = (last - first) // size
-    if count < FEWEST:
-        rule = f"needs at least {FEWEST} whole cycles of steady friction"
+    if count < FEWEST_CYCLES:
+        rule = f"needs at least {FEWEST_CYCLES} whole cycles of steady friction"
         cure = "Take a longer log, an earlier run_in_end, or whole_cycles = false."
         raise InputError(source, rule, "", str(max(0, last - first)), cure)
     return means(done, values, float(last - count * size), float(last), count)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from separatrix.tribometer.cycles import Spans
@@ -56,7 +57,7 @@ def row_events(log: RawLog, options: ReductionOptions) -> tuple[Event, ...]:
 
 
 def kept_rows(events: tuple[Event, ...], rows: int) -> tuple[int, int]:
-    """Return the first row after loading, and the one where a seizure or the loss of the load ends the test."""
+    """Return the first row after loading, and the one where a seizure or a lost load ends the test."""
     start = max((event.row for event in events if event.kind == "loading"), default=0)
     ends = [event.row for event in events if event.kind in ("seizure", "force lost")]
     return start, min([row for row in ends if row > start], default=rows)
@@ -108,7 +109,7 @@ def _force_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
             yield Event(kind="force lost", row=first, until=last, size=least, usual=usual)
 
 
-def _stretches(flag: Array) -> list[tuple[int, int]]:
+def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return first row and row after the last of each stretch of true ones."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(np.int8)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

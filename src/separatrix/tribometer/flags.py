@@ -70,14 +70,15 @@ def oscillation_flag(
     if found.amplitude <= 0.0 or found.amplitude < options.stick_slip_ratio * abs(mean):
         return
     rate = format_number(found.frequency, 3)
+    power = format_number(found.signal_to_noise, 2)
     where = {"time": f"at {rate} Hz", "distance": f"{rate} times per m", "cycles": f"{rate} times per cycle"}
     what = (
         "stick-slip" if is_cycle_known else "stick-slip, or once per turn or stroke (no cycle time is known)"
     )
     yield (
         f"Friction oscillates {where[axis]} by {format_number(found.amplitude, 2)} from peak to peak, "
-        f"{100 * found.amplitude / abs(mean):.0f} % of its mean, with {format_number(found.signal_to_noise, 2)} "
-        f"times the power of all the rest: {what}."
+        f"{100 * found.amplitude / abs(mean):.0f} % of its mean, with {power} times "
+        f"the power of all the rest: {what}."
     )
 
 
@@ -103,8 +104,8 @@ def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | Non
     """Tell of steps in friction or wear depth, each with its place as text and its size."""
     if friction is not None:
         place, size = friction
-        word = "rises" if size > 0 else "falls"
-        yield f"Friction {word} in one step by {format_number(abs(size), 2)} at {place}: wear event or new surface."
+        word = f"{'rises' if size > 0 else 'falls'} in one step by {format_number(abs(size), 2)}"
+        yield f"Friction {word} at {place}: a wear event, or a new surface."
     if wear is not None:
         place, size = wear
         yield f"Wear depth jumps by {format_quantity(abs(size), 'm', 2)} at {place}: a wear event."
@@ -127,9 +128,10 @@ def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) 
 def range_flag(mean: float, low: float, high: float) -> Iterator[str]:
     """Tell of friction that no dry contact has."""
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
+        numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
-            f"Friction lies outside 0 to 2 (mean {format_number(mean, 3)}, rows from {format_number(low, 3)} to "
-            f"{format_number(high, 3)}): check zero, sign and units of the forces."
+            "Friction lies outside 0 to 2 (mean {}, rows from {} to {}): "
+            "check zero, sign and units of the forces.".format(*numbers)
         )
 
 

@@ -1,13 +1,13 @@
 """Where running-in ends: a fall fitted in correlated noise, cut where what is left of it does not count.
 
 A straight line and an exponential excess, A exp(-x/L), are fitted by generalised least squares with noise
-whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. If the excess is believed, the test is
-cut where the part of it that stays in the mean is a tenth of the standard error of that mean. What is left
+whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. If the excess is believed, the test
+is cut where the part of it that stays in the mean is 15 % of the standard error of that mean. What is left
 is asked again, so that a peak or a fall that is no exponential is cut in pieces.
 
 References
 ----------
-.. [1] P. J. Blau, "On the nature of running-in", Tribology International 38 (2005) 1007-1012: shapes of running-in.
+.. [1] P. J. Blau, "On the nature of running-in", Tribology International 38 (2005) 1007-1012: its shapes.
 .. [2] D. Cochrane and G. H. Orcutt, "Application of least squares regression to relationships containing
    auto-correlated error terms", Journal of the American Statistical Association 44 (1949) 32-61.
 """
@@ -20,7 +20,7 @@ import numpy as np
 
 from separatrix.units import Array, Ratio
 
-METHOD = "exponential excess in correlated noise, cut where its rest is a tenth of the standard error"
+METHOD = "exponential excess in correlated noise, cut where its rest no longer counts"
 
 LENGTHS = np.geomspace(0.002, 0.3, 26)
 """Lengths in which the excess of friction falls to 1/e, tried as shares of what is looked at."""
@@ -31,7 +31,7 @@ CORRELATIONS = np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97])
 GAIN = 9.0
 """Fall of -2 ln(likelihood) from which an excess is believed: 1 % for a free size and length."""
 
-SHARE = 0.1
+SHARE = 0.15
 """Of the standard error of the mean; a smaller rest of the excess does not count."""
 
 LATEST = 0.75
@@ -68,50 +68,60 @@ def run_in(values: Array) -> RunIn:
     found = RunIn(end=0.0, amplitude=0.0, length=0.0, rest=0.0, ends=True)
     latest = int(LATEST * n)
     for _ in range(PASSES):
-        fall = _fall(values[first:])
-        if fall is None:
+        falls = _falls(values[first:])
+        if falls is None:
             break
         left = n - first
-        cut, ends = _cut(fall, left, latest - first)
+        cut, rest, ends = _cut(falls, left, latest - first)
         first += cut
-        found = RunIn(
-            end=first / n,
-            amplitude=fall.amplitude,
-            length=fall.length * left / n,
-            rest=float(_rest(fall, cut / left)),
-            ends=ends,
-        )
+        amplitude, length = falls.best
+        share = length * left / n
+        found = RunIn(end=first / n, amplitude=amplitude, length=share, rest=rest, ends=ends)
         if not ends:
             break
     return found
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Fall:
-    amplitude: float
-    length: float
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Falls:
+    """Falls that may be, one for each correlation and length tried."""
+
+    weights: Array
+    """How likely each is, all together one, shape (correlation, length)."""
+    amplitudes: Array
+    """Shape (correlation, length) [-]."""
     density: float
     """Spectral density of the noise at zero frequency, one span being the unit of time."""
 
+    def rest(self, share: Array) -> Array:
+        """Return the root mean square of what they add to the mean behind each cut, shape (cut,)."""
+        length = LENGTHS[:, None]
+        tail = length * (np.exp(-share / length) - np.exp(-1.0 / length)) / (1.0 - share)
+        return np.asarray(np.sqrt((self.weights * self.amplitudes**2).sum(axis=0) @ tail**2), dtype=float)
 
-def _fall(values: Array) -> _Fall | None:
-    """Return the fall that fits best, if it fits better than none."""
+    @property
+    def best(self) -> tuple[float, float]:
+        """Amplitude and length of the most likely one."""
+        row, column = np.unravel_index(int(np.argmax(self.weights)), self.weights.shape)
+        return float(self.amplitudes[row, column]), float(LENGTHS[column])
+
+
+def _falls(values: Array) -> _Falls | None:
+    """Return the falls that may be, if the best fits better than none."""
     n = values.size
     x = (np.arange(n) + 0.5) / n
     half = 0.5 / n / LENGTHS[:, None]
     falls = np.exp(-x / LENGTHS[:, None]) * np.sinh(half) / half
     straight = np.stack([np.ones(n), x - 0.5])
     designs = np.concatenate([np.broadcast_to(straight, (LENGTHS.size, 2, n)), falls[:, None]], axis=1)
-    without = _fits(straight[None], values)
-    with_it = _fits(designs, values)
-    if without[0].min() - with_it[0].min() < GAIN:
+    without, _, _ = _fits(straight[None], values)
+    deviance, coefficients, variances = _fits(designs, values)
+    if without.min() - deviance.min() < GAIN:
         return None
-    row, column = np.unravel_index(int(np.argmin(with_it[0])), with_it[0].shape)
-    rho = CORRELATIONS[row]
-    density = with_it[2][row, column] / (1.0 - rho) ** 2
-    return _Fall(
-        amplitude=float(with_it[1][row, column, -1]), length=float(LENGTHS[column]), density=float(density)
-    )
+    weights = np.exp(-0.5 * (deviance - deviance.min()))
+    weights /= weights.sum()
+    density = float((weights * variances / (1.0 - CORRELATIONS[:, None]) ** 2).sum())
+    return _Falls(weights=weights, amplitudes=coefficients[..., -1], density=density)
 
 
 def _fits(designs: Array, values: Array) -> tuple[Array, Array, Array]:
@@ -137,15 +147,10 @@ def _whitened(values: Array, rho: float) -> Array:
     return out
 
 
-def _rest(fall: _Fall, share: Array | float) -> Array:
-    """Return what the fall adds to the mean behind each cut."""
-    tail = np.exp(-np.asarray(share) / fall.length) - np.exp(-1.0 / fall.length)
-    return np.asarray(fall.amplitude * fall.length * tail / (1.0 - share))
-
-
-def _cut(fall: _Fall, count: int, latest: int) -> tuple[int, bool]:
-    """Return the first span after which the rest of the fall does not count, and whether there is one."""
+def _cut(falls: _Falls, count: int, latest: int) -> tuple[int, float, bool]:
+    """Return the first span after which the rest does not count, that rest, and whether it is so."""
     cuts = np.arange(1, max(latest, 1) + 1)
-    error = np.sqrt(fall.density / (count - cuts))
-    small = np.abs(_rest(fall, cuts / count)) <= SHARE * error
-    return (int(cuts[np.argmax(small)]), True) if small.any() else (int(cuts[-1]), False)
+    rest = falls.rest(cuts / count)
+    small = rest <= SHARE * np.sqrt(falls.density / (count - cuts))
+    place = int(np.argmax(small)) if small.any() else cuts.size - 1
+    return int(cuts[place]), float(rest[place]), bool(small.any())

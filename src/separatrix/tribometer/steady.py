@@ -1,11 +1,12 @@
 """Mean of a steady stretch and its standard error, when neighbouring values are alike and drift.
 
-The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns over
-the stretch. Each projection has the variance of the spectral density at its frequency, and nearly none is
+The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns
+over the stretch. Each projection has the variance of the spectral density at its frequency, and hardly any is
 correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
 the mean, with as many degrees of freedom as there are of them, less one for the line [1]_. How many are low
-enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part
-with one time of correlation. Its remaining fall over the cosines used is corrected.
+enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part with one
+time of correlation. What these spectra still fall over the cosines used is corrected, each with the weight of
+its likelihood.
 
 References
 ----------
@@ -26,8 +27,8 @@ from separatrix.units import Array, Ratio
 LEVEL = 0.95
 """Of the interval."""
 
-CORNERS = np.geomspace(3.0, 4096.0, 32)
-"""Half turns of the stretch at which the correlated part has fallen to half: from a tenth of the
+CORNERS = np.geomspace(2.0, 4096.0, 34)
+"""Half turns of the stretch at which the correlated part has fallen to half: from a sixth of the
 stretch to none."""
 
 FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])
@@ -40,6 +41,10 @@ FEWEST_COSINES, MOST_COSINES = 6, 60
 
 LONG = 4.5
 """Corner below which the correlation is too long for the stated interval: 7 % of the stretch."""
+
+
+MIXED = 0.2
+"""White part from which the correlated one is no more than a guess."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -81,7 +86,7 @@ class SteadyMean:
     @property
     def is_long(self) -> bool:
         """Whether the correlation is too long for the error to be trusted."""
-        return self.corner < LONG and self.floor < 1.0
+        return self.corner < LONG and self.floor < MIXED
 
 
 def half_width(standard_error: float, degrees_of_freedom: int) -> float:
@@ -98,10 +103,11 @@ def steady_mean(values: Array) -> SteadyMean:
         Means over equal spans, shape (span,), at least twelve.
     """
     power = cosines(values) ** 2
-    corner, floor = fitted_shape(power)
-    shape = spectrum(np.arange(1, power.size + 1), corner, floor)
-    count = int(np.clip((shape >= FLAT).sum(), FEWEST_COSINES, min(MOST_COSINES, power.size // 2 + 1)))
-    density = float(power[:count].sum() / shape[1:count].sum())
+    shapes, weights, best = fitted_shapes(power)
+    flat = 1 + int((shapes[best] >= FLAT).sum())
+    count = int(np.clip(flat, FEWEST_COSINES, min(MOST_COSINES, power.size // 2 + 1)))
+    heights = power[:count].sum() / shapes[..., : count - 1].sum(axis=-1)
+    density = float((weights * heights).sum())
     n, x = values.size, _places(values.size)
     return SteadyMean(
         mean=float(values.mean()),
@@ -109,8 +115,8 @@ def steady_mean(values: Array) -> SteadyMean:
         degrees_of_freedom=count - 1,
         change=float(x @ values / (x @ x)),
         change_error=float(np.sqrt(density / (x @ x))),
-        corner=corner,
-        floor=floor,
+        corner=float(CORNERS[best[0]]),
+        floor=float(FLOORS[best[1]]),
         power=power,
         density=density,
     )
@@ -126,23 +132,39 @@ def cosines(values: Array) -> Array:
     return np.asarray(dct(level - x * (x @ level) / (x @ x), type=2, norm="ortho")[1:], dtype=float)
 
 
+def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
+    """Return spectra that may be, one at zero frequency, how likely each is, and the most likely one's place.
+
+    The first cosine is left out, for the straight line has taken it.
+
+    Parameters
+    ----------
+    power : ndarray
+        Squares of the projections on cosines 1, 2, ..., shape (cosine,).
+
+    Returns
+    -------
+    tuple
+        Spectra at cosines 2, 3, ..., shape (corner, floor, cosine - 1); Whittle's likelihood of each, its
+        height at its best, all together one, shape (corner, floor); place of the largest.
+    """
+    shapes = spectra(np.arange(2.0, power.size + 1.0))
+    height = np.maximum((power[1:] / shapes).mean(axis=-1), 1e-300)
+    loss = np.log(height) * (power.size - 1) + np.log(shapes).sum(axis=-1)
+    weights = np.exp(-0.5 * (loss - loss.min()))
+    corner, floor = np.unravel_index(int(np.argmin(loss)), loss.shape)
+    return shapes, np.asarray(weights / weights.sum(), dtype=float), (int(corner), int(floor))
+
+
+def spectra(cosine: Array) -> Array:
+    """Return the spectra tried, one at zero frequency, shape (corner, floor, cosine)."""
+    fall = 1.0 / (1.0 + (cosine / CORNERS[:, None, None]) ** 2)
+    return np.asarray(FLOORS[:, None] + (1.0 - FLOORS[:, None]) * fall, dtype=float)
+
+
 def spectrum(cosine: Array, corner: float, floor: float) -> Array:
     """Return the spectrum of a corner and a floor at some cosines, one at zero, shape (cosine,)."""
     return np.asarray(floor + (1.0 - floor) / (1.0 + (cosine / corner) ** 2), dtype=float)
-
-
-def fitted_shape(power: Array) -> tuple[float, float]:
-    """Return corner and floor of the spectrum that fits best, by Whittle's likelihood.
-
-    The first cosine is left out, for the straight line has taken it.
-    """
-    place = np.arange(2, power.size + 1)
-    fall = 1.0 / (1.0 + (place / CORNERS[:, None, None]) ** 2)
-    shape = FLOORS[:, None] + (1.0 - FLOORS[:, None]) * fall
-    scale = np.maximum((power[1:] / shape).mean(axis=-1), 1e-300)
-    fit = np.log(scale) * place.size + np.log(shape).sum(axis=-1)
-    corner, floor = np.unravel_index(int(np.argmin(fit)), fit.shape)
-    return float(CORNERS[corner]), float(FLOORS[floor])
 
 
 def _places(count: int) -> Array:

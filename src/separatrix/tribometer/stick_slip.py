@@ -63,7 +63,7 @@ def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillati
     step = span / (along.size - 1)
     even = np.interp(along[0] + step * np.arange(along.size), along, friction)
     length = int(np.clip(along.size // SEGMENTS, SHORTEST, LONGEST))
-    frequencies, density = welch(even, 1.0 / step, nperseg=length, detrend="linear")
+    frequencies, density = welch(even, 1.0 / step, nperseg=length, detrend="constant")
     found = _line(frequencies, density, cycle, averages=2 * even.size / length - 1)
     if found is None:
         return _of(0.0, 0.0, 0.0, frequencies, density)
