@@ -9,7 +9,7 @@ from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.map import stability_map
 from separatrix.report.ranking import rank
-from separatrix.report.study import check
+from separatrix.report.study import at_their_means, check
 from separatrix.report.tables import heading, paragraph
 
 REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
@@ -22,6 +22,9 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "simulate": simulate,
     "rank": rank,
 }
+
+DRAWS = ("check", "sensitivity")
+"""Verbs that show uncertain inputs as what they are."""
 
 
 def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
@@ -37,10 +40,17 @@ def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
         Folder of the figures and the dataset, if they are written.
     """
     blocks = [heading(document["title"]), *REPORTS[verb](document)]
-    blocks += [paragraph(note, first="Note: ", indent="      ") for note in document["warnings"]]
+    notes = [*_means(verb, document), *document["warnings"]]
+    blocks += [paragraph(note, first="Note: ", indent="      ") for note in notes]
     if where is not None:
         blocks.append(_where(verb, document, where))
     return "\n\n".join(blocks) + "\n"
+
+
+def _means(verb: str, document: Mapping[str, Any]) -> list[str]:
+    """Return that uncertain inputs stand at their means, for a verb that does not draw them."""
+    uncertain = document.get("study", {}).get("uncertain_inputs")
+    return [at_their_means(uncertain)] if uncertain and verb not in DRAWS else []
 
 
 def _where(verb: str, document: Mapping[str, Any], folder: str) -> str:

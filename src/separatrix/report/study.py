@@ -26,6 +26,8 @@ def check(document: Entry) -> list[str]:
             blocks.append(section("Room of the cage", facts(room(study["cage"]))))
     if study["ranking"] is not None:
         blocks.append(section("[ranking] ball/cage friction", _frictions(study["ranking"])))
+    if uncertain := study.get("uncertain_inputs"):
+        blocks.append(section("Uncertain inputs, their means above", _uncertain(uncertain)))
     blocks.append(section("Sources of the materials", *_sources(study)))
     absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if study[name] is None]
     blocks.append("The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else ""))
@@ -37,6 +39,18 @@ def _values(part: Entry) -> str:
         [name, shown(entry), entry["origin"]] for name, entry in part.items() if isinstance(entry, Mapping)
     ]
     return table(("", "value", "from"), rows, left=3)
+
+
+def _uncertain(inputs: Sequence[Entry]) -> str:
+    rows = [[one["name"], one["words"], one["written"] or "given in Python"] for one in inputs]
+    return table(("", "distribution", "written"), rows, left=3)
+
+
+def at_their_means(inputs: Sequence[Entry]) -> str:
+    """Return the sentence of a verb that takes one value of each input."""
+    names = ", ".join(one["name"] for one in inputs[:6]) + (", ..." if len(inputs) > 6 else "")
+    several = f"{len(inputs)} uncertain inputs stand at their means"
+    return f"{several if len(inputs) > 1 else 'An uncertain input stands at its mean'}: {names}."
 
 
 def shown(entry: Entry) -> str:

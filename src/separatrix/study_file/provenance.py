@@ -6,7 +6,9 @@ from dataclasses import fields
 from enum import Enum
 from typing import Any
 
+from separatrix.distribution import Distribution, described
 from separatrix.study import Candidate, Film, Friction, Material, Study
+from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
 _WITHOUT = {
@@ -34,8 +36,10 @@ def resolved(study: Study) -> dict[str, Any]:
     """Resolved inputs as plain nested dicts: numbers, text, lists and None only.
 
     Each quantity is ``{"value": ..., "unit": ..., "origin": ...}``, in SI. The origin is the place and text
-    in the study file, or ``"default"``. Each material has its source and confidence, and the whole record of
-    the library behind it, with the checksum of its file: a later change of the library changes nothing here.
+    in the study file, or ``"default"``. An uncertain one has its mean as value, and a ``"distribution"``;
+    all of these are in ``"uncertain_inputs"`` too. Each material has its source and confidence, and the whole
+    record of the library behind it, with the checksum of its file: a later change of the library changes
+    nothing here.
     """
     parts = {name: _part(study, name) for name in _PARTS}
     kinematics = {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})}
@@ -45,7 +49,23 @@ def resolved(study: Study) -> dict[str, Any]:
         **parts,
         "kinematics": kinematics,
         "ranking": _ranking(study),
+        "uncertain_inputs": _uncertain(study),
     }
+
+
+def _uncertain(study: Study) -> list[dict[str, Any]]:
+    """Every number that the study gives as a distribution; the parts above hold its mean."""
+    known = study_numbers(study) if study.distributions else {}
+    return [
+        {"name": key, "unit": known[key].unit or None, **_distribution(one, known[key].unit)}
+        for key, one in study.distributions.items()
+    ]
+
+
+def _distribution(one: Distribution, unit: str) -> dict[str, Any]:
+    names = ("kind", "mean", "standard_deviation", "low", "high")
+    item = {name: getattr(one, name) for name in names}
+    return {**item, "words": described(one, unit), "written": one.text or None}
 
 
 def _part(study: Study, section: str) -> dict[str, Any] | None:
@@ -62,11 +82,13 @@ def _value(study: Study, record: object, section: str, name: str) -> dict[str, A
     value = getattr(record, name)
     unit = unit_of(type(record), name)
     if isinstance(value, Material):
-        return _origin(study, f"{section}.{name}", _material(value))
+        return _origin(study, f"{section}.{name}", _uncertain_material(study, section, name, value))
     plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
     item = {"value": plain, **({"unit": unit} if unit else {})}
     if (key := f"{section}.{name}") in study.records:
         item["record"] = study.records[key]
+    if key in study.distributions:
+        item["distribution"] = _distribution(study.distributions[key], unit)
     return _origin(study, key, item)
 
 
@@ -77,6 +99,17 @@ def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
         origin = "default" if study.origins else "given in Python"
         origin = _WITHOUT.get(key, origin) if item.get("value", 0) in (None, []) else origin
     return {**item, "origin": origin}
+
+
+def _uncertain_material(study: Study, section: str, name: str, material: Material) -> dict[str, Any]:
+    """A material, its uncertain properties with what is known of them."""
+    item = _material(material)
+    prefix = section if section == "film" else f"{section}.{name}"
+    for key in ("elastic_modulus", "poisson_ratio", "density"):
+        one = study.distributions.get(f"{prefix}.{key}")
+        if one is not None:
+            item[key] = {**item[key], "distribution": _distribution(one, item[key]["unit"])}
+    return item
 
 
 def _material(material: Material) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Uncertain inputs through the chain: sampling, samples of the chain, probabilities."""
