@@ -4,8 +4,10 @@ Every question is asked of a model, `records.Question`; it does not matter what 
 """
 
 from separatrix.sensitivity.design import Design, sampled_design, sampled_values
+from separatrix.sensitivity.fit import FitError, fitted_question, with_fit_error
 from separatrix.sensitivity.inverse import allowed_friction
 from separatrix.sensitivity.next_test import default_measurements, next_test
+from separatrix.sensitivity.of_model import question_of, reducible_shares
 from separatrix.sensitivity.records import (
     AllowedFriction,
     Case,
@@ -41,6 +43,7 @@ __all__ = [
     "Estimate",
     "Factor",
     "FilmAxis",
+    "FitError",
     "Input",
     "Measurement",
     "NextTest",
@@ -53,16 +56,20 @@ __all__ = [
     "allowed_friction",
     "allowed_sentence",
     "default_measurements",
+    "fitted_question",
     "friction_grid",
     "indices_of",
     "input_words",
     "modulus_grid",
     "next_test",
     "next_test_sentences",
+    "question_of",
+    "reducible_shares",
     "region_sentences",
     "sampled_design",
     "sampled_values",
     "sobol_indices",
     "sobol_sentence",
     "stable_regions",
+    "with_fit_error",
 ]

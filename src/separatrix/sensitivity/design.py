@@ -119,8 +119,9 @@ def is_stable(found: Evaluated) -> NDArray[np.bool_]:
 
 
 def central_values(question: Question) -> Array:
-    """Means of all inputs, shape (1, input)."""
-    return np.array([[float(one.distribution.mean) for one in question.inputs]])
+    """Central values of all inputs, shape (1, input)."""
+    found = [one.distribution.mean if one.central is None else one.central for one in question.inputs]
+    return np.array([found], float)
 
 
 def sampled_values(question: Question, samples: int, *, seed: int = 0) -> Array:

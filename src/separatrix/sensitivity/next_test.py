@@ -49,6 +49,7 @@ class _Asked:
     margin: Array
     stable: Array
     undecided: NDArray[np.bool_]
+    borderline: NDArray[np.bool_]
 
 
 def next_test(
@@ -75,16 +76,17 @@ def next_test(
     asked = _asked(question, design)
     found = [_gain(asked, one, place) for place, one in enumerate(tests)]
     return NextTest(
-        undecided=tuple(
-            (case.candidate, case.environment)
-            for case, open_ in zip(question.cases, asked.undecided, strict=True)
-            if open_
-        ),
+        undecided=_names(question, asked.undecided),
+        borderline=_names(question, asked.borderline),
         cases=len(question.cases),
         environments=len({case.environment for case in question.cases}),
-        tests=tuple(sorted(found, key=lambda one: (-one.settled.value, -one.choice.value))),
+        tests=tuple(sorted(found, key=lambda one: (-one.settled.value, -one.avoided.value))),
         samples=asked.margin.shape[0] * asked.margin.shape[1],
     )
+
+
+def _names(question: Question, chosen: NDArray[np.bool_]) -> tuple[tuple[str, str], ...]:
+    return tuple((question.cases[c].candidate, question.cases[c].environment) for c in np.flatnonzero(chosen))
 
 
 def default_measurements(
@@ -94,7 +96,9 @@ def default_measurements(
     repeats: int = REPEATS,
     reducible: Mapping[int, Ratio] | None = None,
 ) -> tuple[Measurement, ...]:
-    """Every input measured to 10 %; every friction by three more tests that scatter as it does itself.
+    """Every input measured to 10 %; every friction by three more tests.
+
+    Single tests scatter as the irreducible part of the friction does, or as all of it where all is reducible.
 
     Parameters
     ----------
@@ -112,7 +116,7 @@ def default_measurements(
     return tuple(
         Measurement(
             input=i,
-            error=_own_scatter(question, i) if i in frictions else error,
+            error=_of_one_test(question, i, shares.get(i, 1.0)) if i in frictions else error,
             repeats=repeats if i in frictions else 1,
             reducible=shares.get(i, 1.0),
         )
@@ -120,14 +124,19 @@ def default_measurements(
     )
 
 
-def _own_scatter(question: Question, i: int) -> Ratio:
+def _of_one_test(question: Question, i: int, reducible: Ratio) -> Ratio:
     known = question.inputs[i].distribution
-    return known.standard_deviation / abs(known.mean) if known.mean else ERROR
+    if known.mean == 0.0:
+        return ERROR
+    share = 1.0 - reducible if reducible < 1.0 else 1.0
+    return float(share**0.5 * known.standard_deviation / abs(known.mean))
 
 
-def is_undecided(probability_stable: Array) -> NDArray[np.bool_]:
-    """Whether probabilities of STABLE are neither low nor high enough to count as settled."""
-    return (probability_stable > SETTLED_LOW) & (probability_stable < SETTLED_HIGH)
+def standing(low: Array, high: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which cases are undecided, and which are on the border, by the ends of the interval of P(STABLE)."""
+    undecided = (low > SETTLED_LOW) & (high < SETTLED_HIGH)
+    settled = (high <= SETTLED_LOW) | (low >= SETTLED_HIGH)
+    return undecided, ~undecided & ~settled
 
 
 def _require_inputs(question: Question, tests: Sequence[Measurement]) -> None:
@@ -139,13 +148,16 @@ def _require_inputs(question: Question, tests: Sequence[Measurement]) -> None:
 
 def _asked(question: Question, design: Design) -> _Asked:
     stable = _in_blocks(design.stable.astype(float))
+    share, half = jackknife(stable.mean(axis=1) / BLOCKS, np.asarray)
+    undecided, borderline = standing(share - half, share + half)
     return _Asked(
         question=question,
         design=design,
         entering=question.entering(),
         margin=_in_blocks(design.margin),
         stable=stable,
-        undecided=is_undecided(stable.mean(axis=(0, 1))),
+        undecided=undecided,
+        borderline=borderline,
     )
 
 
@@ -161,14 +173,15 @@ def _gain(asked: _Asked, test: Measurement, place: int) -> TestGain:
     x = _in_blocks(asked.design.values[:, :, test.input])
     sums = _weighted(asked, test, x, cases, place)
     groups = _environments(asked.question)
-    open_ = asked.undecided[cases]
+    open_, firm = asked.undecided[cases], ~(asked.undecided | asked.borderline)[cases]
 
     def quantities(of: Array) -> Array:
         stable, means = _posteriors(of, cases)
         high, low = share_above(stable, SETTLED_HIGH), share_above(1.0 - stable, 1.0 - SETTLED_LOW)
-        settled = high + low
-        totals = [settled[open_].sum(), (1.0 - settled)[~open_].sum(), best_choices(means, groups)]
-        return np.array([*totals, *high, *low])
+        settled, average = high + low, stable.mean(axis=0)
+        avoided = np.minimum(average, 1.0 - average) - np.minimum(stable, 1.0 - stable).mean(axis=0)
+        totals = [settled[open_].sum(), (1.0 - settled)[firm].sum(), avoided.sum()]
+        return np.array([*totals, best_choices(means, groups), *high, *low])
 
     value, half = jackknife(sums, quantities)
     known = asked.question.inputs[test.input]
@@ -180,9 +193,10 @@ def _gain(asked: _Asked, test: Measurement, place: int) -> TestGain:
         measurement=test,
         settled=estimate(value[0], half[0], 0.0, float(open_.sum())),
         unsettled=estimate(value[1], half[1], 0.0, most),
-        choice=estimate(value[2], half[2], 0.0),
+        avoided=estimate(value[2], half[2], 0.0),
+        choice=estimate(value[3], half[3], 0.0),
         choice_perfect=estimate(perfect, perfect_half, 0.0),
-        cases=_case_gains(asked, cases, value[3:].reshape(2, -1)),
+        cases=_case_gains(asked, cases, value[4:].reshape(2, -1)),
     )
 
 

@@ -58,12 +58,15 @@ class Input:
         SI unit of its values, ``"-"`` for a ratio.
     distribution : Distribution
         What is known of it.
+    central : float, optional
+        Its value where nothing is uncertain; by default the mean.
     """
 
     name: str
     words: str
     unit: str
     distribution: Distribution
+    central: float | None = None
 
     def __post_init__(self) -> None:
         _check.settle(_check.printable_text(self, "name"), _check.printable_text(self, "words"))
@@ -277,8 +280,9 @@ class TestGain:
     """What one test is expected to bring.
 
     `settled` is the expected number of undecided cases that it would settle; `unsettled` that of decided ones
-    which it would open again. `choice` is the expected rise of the margin of the material chosen by mean
-    margin, summed over the environments [-]; `choice_perfect` the same if the input were known exactly.
+    which it would open again; `avoided` the expected number of wrong verdicts that it would save, if each
+    case is taken for what is likelier. `choice` is the expected rise of the margin of the material chosen by
+    mean margin, summed over the environments [-]; `choice_perfect` the same if the input were known exactly.
     """
 
     __test__ = False  # pytest must not collect it
@@ -288,6 +292,7 @@ class TestGain:
     measurement: Measurement
     settled: Estimate
     unsettled: Estimate
+    avoided: Estimate
     choice: Estimate
     choice_perfect: Estimate
     cases: tuple[CaseGain, ...]
@@ -295,9 +300,15 @@ class TestGain:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NextTest:
-    """Tests ranked by the number of undecided cases they are expected to settle."""
+    """Tests ranked by the number of undecided cases they are expected to settle.
+
+    `undecided` holds candidate and environment of those whose probability of STABLE lies between 5 and 95 %
+    with its whole interval; `borderline` of those whose interval holds 5 or 95 %: with so many samples it
+    cannot be said whether anything would settle them.
+    """
 
     undecided: tuple[tuple[str, str], ...]
+    borderline: tuple[tuple[str, str], ...]
     cases: int
     environments: int
     tests: tuple[TestGain, ...]

@@ -147,10 +147,10 @@ def stable_regions(
     nominal = (question.nominal or question.evaluate)(centre)
     sampled = evaluated(question, values)
     ratio, ratio_nominal = (
-        _damping_ratios(found.threshold - found.margin) / _of_the_grid(question, grid, at)[:, None]
+        damping_ratios(found.threshold - found.margin) / _of_the_grid(question, grid, at)[:, None]
         for found, at in ((sampled, values), (nominal, centre))
     )
-    zeta = _damping_ratios(grid.restitution_factor)
+    zeta = damping_ratios(grid.restitution_factor)
     share = np.array([[_stable_share(question, values, sampled, z * ratio) for z in row] for row in zeta])
     margin = nominal.threshold[0] - restitution_factors(zeta[:, :, None] * ratio_nominal[0])
     return tuple(
@@ -193,7 +193,7 @@ def _stable_share(question: Question, values: Array, sampled: Evaluated, zeta: A
 def _of_the_grid(question: Question, grid: RestitutionGrid, values: Array) -> Array:
     """Damping ratio of the grid at each sample's own film, shape (sample,); held beyond the grid's edges."""
     x, y = (_own(question, axis, values) for axis in (grid.x, grid.y))
-    zeta = _damping_ratios(grid.restitution_factor)
+    zeta = damping_ratios(grid.restitution_factor)
     along = np.array([np.interp(x, grid.x.values, row) for row in zeta])
     place = np.interp(y, grid.y.values, np.arange(len(zeta)))
     low = np.minimum(place.astype(int), len(zeta) - 2)
@@ -213,7 +213,7 @@ def restitution_factors(damping_ratio: Array) -> Array:
     return np.where(damping_ratio < 1.0, below, 0.0)
 
 
-def _damping_ratios(restitution_factor: Array) -> Array:
+def damping_ratios(restitution_factor: Array) -> Array:
     """Damping ratios of restitution factors, as `restitution.damping_ratio_for`; 1 where nothing returns."""
     log = np.log(np.clip(restitution_factor, 1e-300, 1.0 - 1e-12))
     return np.where(restitution_factor > 0.0, -log / np.hypot(np.pi, log), 1.0)

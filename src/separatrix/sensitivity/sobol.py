@@ -24,6 +24,9 @@ from separatrix.units import Array
 
 ALWAYS = "every sample is stable"
 NEVER = "no sample is stable"
+FEWEST = 30
+"""Samples of the rarer verdict without which its indices are not told."""
+
 CONSTANT = "the margin is the same in every sample"
 
 
@@ -66,7 +69,7 @@ def _case(question: Question, design: Design, c: int) -> CaseSobol:
     margin, stable = design.margin[:, :, c], design.stable[:, :, c].astype(float)
     first_two = margin[:2]
     lone = float(np.ptp(first_two)) == 0.0
-    share = float(np.mean(stable[:2]))
+    rare = _too_few(stable[:2])
     return CaseSobol(
         candidate=question.cases[c].candidate,
         environment=question.cases[c].environment,
@@ -74,10 +77,21 @@ def _case(question: Question, design: Design, c: int) -> CaseSobol:
         margin_mean=_mean(margin),
         margin_deviation=float(np.std(first_two)),
         margin=() if lone else _indices(design, c, margin),
-        verdict=() if share in (0.0, 1.0) else _indices(design, c, stable),
+        verdict=() if rare else _indices(design, c, stable),
         margin_reason=CONSTANT if lone else "",
-        verdict_reason={0.0: NEVER, 1.0: ALWAYS}.get(share, ""),
+        verdict_reason=rare,
     )
+
+
+def _too_few(stable: Array) -> str:
+    """Why the verdict's doubt cannot be shared out; empty if it can."""
+    count = round(float(stable.sum()))
+    if count in (0, stable.size):
+        return ALWAYS if count else NEVER
+    if min(count, stable.size - count) >= FEWEST:
+        return ""
+    few, kind = (count, "") if count < FEWEST else (stable.size - count, "not ")
+    return f"only {few} of {stable.size} samples {'is' if few == 1 else 'are'} {kind}stable"
 
 
 def _mean(values: Array, low: float = -np.inf, high: float = np.inf) -> Estimate:

@@ -29,6 +29,7 @@ NOTHING_UNDECIDED = (
     "Nothing is undecided: every probability of STABLE is at most 5 % or at least 95 %. "
     "No test is needed for the verdicts."
 )
+ONLY_BORDERLINE = "Nothing else is undecided: no test can be told to settle anything."
 
 
 _WORDS = {
@@ -86,17 +87,45 @@ def _and(parts: Sequence[str]) -> str:
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
+def _or(parts: Sequence[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} or {parts[-1]}"
+
+
 def next_test_sentences(answer: NextTest) -> tuple[str, ...]:
     """Ranked list in words, the best test first; one sentence if nothing is undecided or no test helps."""
+    border = _border(answer)
     if not answer.undecided:
-        return (NOTHING_UNDECIDED,)
-    best = answer.tests[0] if answer.tests else None
-    if best is None:
-        return ("No test was asked about.",)
-    listed = tuple(test_sentence(one, answer) for one in answer.tests if _number(one.settled.value) != "0")
+        return (*border, ONLY_BORDERLINE) if border else (NOTHING_UNDECIDED,)
+    if not answer.tests:
+        return ("No test was asked about.", *border)
+    best, told = answer.tests[0], [one for one in answer.tests if _is_worth_telling(one)]
     if best.settled.value >= LEAST_WORTH:
-        return listed
-    return (_none_settles(best, answer), *listed[1:])
+        listed = tuple(test_sentence(one, answer) for one in told)
+    else:
+        others = (test_sentence(one, answer) for one in told if one is not best)
+        listed = (_none_settles(best, answer), *others)
+    return (*listed, *_rest(answer, told), *border)
+
+
+def _is_worth_telling(test: TestGain) -> bool:
+    return test.settled.low > 0.0 and _number(test.settled.value) != "0"
+
+
+def _rest(answer: NextTest, told: Sequence[TestGain]) -> tuple[str, ...]:
+    """Say of which tests nothing can be said, or that they settle nothing."""
+    rest = [one.words for one in answer.tests if one not in told]
+    return (f"Next to nothing would be settled by measuring {_or(rest)}.",) if rest and told else ()
+
+
+def _border(answer: NextTest) -> tuple[str, ...]:
+    if not answer.borderline:
+        return ()
+    names = [case_name(*one) for one in answer.borderline]
+    verb = "stands" if len(names) == 1 else "stand"
+    return (
+        f"{_and(names)} {verb} so near 5 or 95 % that {answer.samples} samples do not tell whether "
+        f"{'it is' if len(names) == 1 else 'they are'} undecided.",
+    )
 
 
 def _none_settles(best: TestGain, answer: NextTest) -> str:
@@ -106,15 +135,27 @@ def _none_settles(best: TestGain, answer: NextTest) -> str:
     if _number(best.settled.value) == "0":
         return f"{first}."
     name = act(best.measurement, best.words)
-    expected = _expected(best.settled, answer)
-    return f"{first}; the best, {name[0].lower()}{name[1:]}, would settle {expected} on average."
+    verb = "would settle" if count > 1 else "would do so"
+    expected = f"{_expected(best.settled, answer)} on average" if count > 1 else _chance(best.settled)
+    return f"{first}; the best, {name[0].lower()}{name[1:]}, {verb} {expected}."
+
+
+def _the_one(settled: Estimate, answer: NextTest) -> str:
+    name = case_name(*answer.undecided[0])
+    return f"the one undecided {_noun(answer, 1)}, {name}, {_chance(settled)}"
+
+
+def _chance(settled: Estimate) -> str:
+    """Probability of settling the only one."""
+    low, high = percent(settled.low), percent(settled.high)
+    return f"with a probability of {percent(settled.value)} (95 % interval {low} to {high})"
 
 
 def test_sentence(test: TestGain, answer: NextTest) -> str:
     """What one test is expected to settle."""
+    if len(answer.undecided) == 1:
+        return f"{act(test.measurement, test.words)} would settle {_the_one(test.settled, answer)}."
     text = f"{act(test.measurement, test.words)} would settle {_expected(test.settled, answer)} on average"
-    if len(answer.undecided) == 1 or not test.cases:
-        return f"{text}."
     likely = [one for one in test.cases if one.settles >= 0.05][:NAMED]
     parts = [f"{case_name(one.candidate, one.environment)} {percent(one.settles)}" for one in likely]
     return f"{text}: {', '.join(parts)}." if parts else f"{text}."
@@ -176,7 +217,7 @@ def _row(region: StableRegion, row: RegionRow) -> str:
         nominal = f"; nominally {_stretches(row.nominal, x.unit)} would do" if row.nominal else ""
         return f"{at} no {x.words} is stable with a probability of {percent(region.probability)}{nominal}."
     if len(row.probable) == 1 and row.probable[0].from_edge and row.probable[0].to_edge:
-        return f"{at} every {x.words} searched is stable."
+        return f"{at} every {x.words} up to {format_quantity(row.probable[0].high, x.unit, 3)} is stable."
     nominal = f" (nominally {_stretches(row.nominal, x.unit)})" if row.nominal else ""
     return f"{at} stable at a {x.words} of {_stretches(row.probable, x.unit)}{nominal}."
 
