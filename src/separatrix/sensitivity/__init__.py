@@ -8,17 +8,15 @@ from separatrix.sensitivity.fit import FitError, fitted_question, with_fit_error
 from separatrix.sensitivity.inverse import allowed_friction
 from separatrix.sensitivity.next_test import default_measurements, next_test
 from separatrix.sensitivity.of_model import question_of, reducible_shares
+from separatrix.sensitivity.question import Case, Input, Question
 from separatrix.sensitivity.records import (
     AllowedFriction,
-    Case,
     CaseSobol,
     Estimate,
     Factor,
     FilmAxis,
-    Input,
     Measurement,
     NextTest,
-    Question,
     RestitutionGrid,
     SobolAnswer,
     SobolIndex,

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.errors import InputError
-from separatrix.sensitivity.records import STABLE, Evaluated, Factor, Question
+from separatrix.sensitivity.question import STABLE, Evaluated, Question
+from separatrix.sensitivity.records import Factor
 from separatrix.units import Array, shown
 
 BLOCKS = 16

@@ -24,14 +24,8 @@ import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.sensitivity.design import is_stable
-from separatrix.sensitivity.records import (
-    CaseSobol,
-    Estimate,
-    Evaluated,
-    Question,
-    SobolAnswer,
-    SobolIndex,
-)
+from separatrix.sensitivity.question import Evaluated, Question
+from separatrix.sensitivity.records import CaseSobol, Estimate, SobolAnswer, SobolIndex
 from separatrix.sensitivity.region import damping_ratios, restitution_factors
 from separatrix.units import Array, Ratio
 

@@ -9,13 +9,8 @@ from scipy.special import ndtri
 
 from separatrix.errors import InputError
 from separatrix.sensitivity.design import BLOCKS, central_values, evaluated, is_stable
-from separatrix.sensitivity.records import (
-    AllowedFriction,
-    Estimate,
-    Evaluated,
-    Question,
-    Span,
-)
+from separatrix.sensitivity.question import Evaluated, Question
+from separatrix.sensitivity.records import AllowedFriction, Estimate, Span
 from separatrix.sensitivity.scatter import by_block, jackknife
 from separatrix.sensitivity.spans import largest, spans_above
 from separatrix.stability import SEARCHED_FRICTION

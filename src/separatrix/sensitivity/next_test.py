@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from separatrix.errors import InputError
 from separatrix.sensitivity.design import BLOCKS, Design
 from separatrix.sensitivity.likelihood import likelihood
+from separatrix.sensitivity.question import Question
 from separatrix.sensitivity.records import (
     SETTLED_HIGH,
     SETTLED_LOW,
     CaseGain,
     Measurement,
     NextTest,
-    Question,
     TestGain,
 )
 from separatrix.sensitivity.scatter import estimate, jackknife

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.sensitivity.records import Case, Evaluated, Input, Question, Verdicts
+from separatrix.sensitivity.question import Case, Evaluated, Input, Question, Verdicts
 from separatrix.sensitivity.words import input_words
 from separatrix.study import Friction
 from separatrix.uncertainty.model import Case as ModelCase

@@ -13,14 +13,8 @@ from separatrix.errors import InputError
 from separatrix.lubrication import FILM_THICKNESSES, RACE_FRICTIONS, LubricationCurve, lubrication_curve
 from separatrix.sensitivity.design import central_values, evaluated, is_stable
 from separatrix.sensitivity.inverse import PROBABILITY, require_within
-from separatrix.sensitivity.records import (
-    Evaluated,
-    FilmAxis,
-    Question,
-    RegionRow,
-    RestitutionGrid,
-    StableRegion,
-)
+from separatrix.sensitivity.question import Evaluated, Question
+from separatrix.sensitivity.records import FilmAxis, RegionRow, RestitutionGrid, StableRegion
 from separatrix.sensitivity.spans import spans_above
 from separatrix.study import Film, Material, Study
 from separatrix.units import Array, Metre, Pascal, Ratio

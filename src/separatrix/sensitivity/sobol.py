@@ -11,14 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from separatrix.sensitivity.design import BLOCKS, Design, sampled_design
-from separatrix.sensitivity.records import (
-    CaseSobol,
-    Estimate,
-    Factor,
-    Question,
-    SobolAnswer,
-    SobolIndex,
-)
+from separatrix.sensitivity.question import Question
+from separatrix.sensitivity.records import CaseSobol, Estimate, Factor, SobolAnswer, SobolIndex
 from separatrix.sensitivity.scatter import by_block, estimate, jackknife
 from separatrix.units import Array
 
