@@ -260,9 +260,8 @@ def described(distribution: Distribution, unit: str) -> str:
         return f"{len(distribution.values)} samples from {' to '.join(ends)}"
     if isinstance(distribution, Uniform | LogUniform):
         return f"{distribution.kind} between {' and '.join(ends)}"
-    middle, deviation = (
-        format_quantity(x, unit, 4) for x in (distribution.mean, distribution.standard_deviation)
-    )
+    middle = format_quantity(distribution.mean, unit, 7)
+    deviation = format_quantity(distribution.standard_deviation, unit, 4)
     if unit == "K":  # a difference of temperatures is written as one
         deviation = f"{distribution.standard_deviation:.4g} K"
     return f"{distribution.kind}, mean {middle}, standard deviation {deviation}"

@@ -42,8 +42,7 @@ def _values(part: Entry) -> str:
 
 
 def _uncertain(inputs: Sequence[Entry]) -> str:
-    rows = [[one["name"], one["words"], one["written"] or "given in Python"] for one in inputs]
-    return table(("", "distribution", "written"), rows, left=3)
+    return facts([(one["name"], one["words"]) for one in inputs])
 
 
 def at_their_means(inputs: Sequence[Entry]) -> str:
