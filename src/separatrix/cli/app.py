@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from separatrix.cli import materials
 from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
@@ -44,6 +45,8 @@ EPILOGS = {
     "With --json and no --out nothing is kept.",
     "simulate": "A run that ends early says why: decided, or STALLED (too many impacts in no time). "
     "--animate mp4 needs the extra animation.",
+    "tribometer": "What is read is shown before it is trusted: without --out nothing is written. A file that "
+    "exists is never overwritten.",
     "stability": "Beside the curve: its sub-critical band, each kick's own curve, the linear and the "
     "hard-impact limit, and the critical friction at the bearing's own restitution factor.",
 }
@@ -161,6 +164,63 @@ def _compare(
     return compare(first, second, folder(out), as_json=json)
 
 
+def _tribometer(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILES...", help="Raw logs of a tribometer; the format is told.")
+    ],
+    out: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Friction file to write, say friction.toml [default: none]."),
+    ] = None,
+    column_map: Annotated[
+        Path | None,
+        typer.Option("--map", metavar="FILE", help="What the logs do not say: columns, units, conditions."),
+    ] = None,
+    plots: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR", help="Folder of a page for each test [default: beside the friction file]."
+        ),
+    ] = None,
+    run_in: Annotated[
+        str | None,
+        typer.Option(metavar="END", help='Where running-in ends, for instance "200 m" [default: found].'),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    from separatrix.cli.tribometer import TribometerOptions, tribometer
+
+    asked = TribometerOptions(
+        out=None if out is None else Path(named(out, "--out", "a file")),
+        map=column_map,
+        plots=None if plots is None else Path(named(plots, "--plots", "a folder")),
+        run_in=run_in,
+        json=json,
+        quiet=quiet,
+        jobs=threads(jobs),
+    )
+    try:
+        with Interruptible():
+            return tribometer(files, asked)
+    except KeyboardInterrupt:  # here, for typer would swallow it
+        return interrupted("no friction file was written.")
+
+
+def named(text: str, option: str, what: str) -> str:
+    """Return the name that an option gives; an empty one, as from an unset variable, is refused.
+
+    Raises
+    ------
+    InputError
+        The name is empty.
+    """
+    if not text.strip() or "\0" in text:
+        raise InputError(option, f"needs the name of {what}", value='""')
+    return text
+
+
 def _new(
     path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
     json: Json = False,
@@ -183,7 +243,13 @@ def _application() -> typer.Typer:
     for verb in VERBS:
         function = OWN.get(verb.name) or _command(verb)
         app.command(verb.name, help=verb.help, epilog=EPILOGS.get(verb.name))(function)
+    app.command(
+        "tribometer",
+        help="Friction with its scatter from raw logs of tests.",
+        epilog=EPILOGS["tribometer"],
+    )(_tribometer)
     app.command("compare", help="Two saved answers of simulate, side by side.")(_compare)
+    app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
 
@@ -199,7 +265,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(["new", *VERB, "compare"])
+        verbs = ", ".join(["new", *VERB, "compare", "materials"])
         raise InputError("The command line", f"lacks a verb: {verbs}", cure='Try "separatrix --help".')
 
 

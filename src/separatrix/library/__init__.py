@@ -17,6 +17,7 @@ from separatrix.library.collection import (
 )
 from separatrix.library.reading import Content, library_of_text, read_library
 from separatrix.library.records import KINDS, Choice, Datum, FrictionTable, LibraryFile, Record, choose
+from separatrix.library.writing import add_records
 from separatrix.study import Material
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Library",
     "LibraryFile",
     "Record",
+    "add_records",
     "as_material",
     "bearing_material",
     "beside",

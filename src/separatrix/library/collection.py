@@ -123,10 +123,11 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     chosen = {key: choose(data, temperature, PROPERTIES[key].words) for key, data in record.data.items()}
     words = {key: PROPERTIES[key].words for key in chosen}
     sources = [f"{words[key]}: {choice.datum.source}" for key, choice in chosen.items()]
-    remark = [(record.remark or "").rstrip(".")] if record.remark else []
+    composition = [f"Composition: {record.composition}"] if record.composition else []
+    remark = [record.remark.rstrip(".")] if record.remark else []
     return Material(
         name=record.name,
-        source=". ".join([*remark, *sources]),
+        source=". ".join([*composition, *remark, *sources]),
         confidence=", ".join(f"{words[key]}: {choice.datum.confidence}" for key, choice in chosen.items()),
         record=_whole(record, chosen, temperature),
         cautions=tuple(

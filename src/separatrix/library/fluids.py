@@ -56,13 +56,13 @@ def contradictions(record: Mapping[str, Any], temperature: Kelvin) -> Iterator[s
     if phase == "liquid" and critical is not None and temperature > critical:
         limit = format_quantity(critical, "K")
         yield (
-            f"[operation] fluid {name}: at {at} there is no liquid at any pressure, the critical temperature "
+            f"{name}: at {at} there is no liquid at any pressure, the critical temperature "
             f"is {limit}. Correct the fluid or the temperature."
         )
     if triple is not None and temperature < triple:
         limit = format_quantity(triple, "K")
         yield (
-            f"[operation] fluid {name}: at {at} it is solid, or a thin vapour; the triple point is {limit}. "
+            f"{name}: at {at} it is solid, or a thin vapour; the triple point is {limit}. "
             "Correct the fluid or the temperature."
         )
 

@@ -41,7 +41,7 @@ def _materials(study: Study) -> Iterator[str]:
         if material.cautions:
             said.setdefault((where, *material.cautions), {})[material.name] = None
     for (where, *cautions), names in said.items():
-        yield f"{where} {', '.join(names)}: {'; '.join(cautions)}. A value for that temperature would be better."
+        yield f"{where} {', '.join(names)}: {'; '.join(cautions)}. Better give a value for it."
 
 
 def _acting(study: Study) -> Iterator[tuple[str, Material]]:
@@ -63,7 +63,7 @@ def _fluid(study: Study) -> Iterator[str]:
     """A fluid that cannot be what its name says at the temperature of the study."""
     record, temperature = study.records.get("operation.fluid"), study.operation.temperature
     if record is not None and temperature is not None:
-        yield from contradictions(record, temperature)
+        yield from (f"[operation] fluid {sentence}" for sentence in contradictions(record, temperature))
 
 
 def _leaning_pocket(study: Study) -> Iterator[str]:

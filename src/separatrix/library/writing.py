@@ -1,0 +1,148 @@
+"""Adding records to a library file of the user: appended, checked as a whole, put in place at once."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from separatrix.errors import InputError
+from separatrix.library.collection import joined, library_files
+from separatrix.library.reading import LIBRARY, SECTIONS, Content, library_of_text, read_library
+from separatrix.toml_text import label_of, parsed, path_text, read_text
+
+FOLDER = "materials"
+"""Name of the folder beside a study whose files are all read."""
+
+
+def add_records(source: Path, library: Path) -> Content:
+    """Add the records of a file to a library file, which is made if it does not exist.
+
+    What the library holds already stays as it is, byte for byte; the records of `source` are appended in one
+    plain form. The whole is checked before it takes the place of the old file, at once or not at all.
+
+    Returns
+    -------
+    Content
+        What was added.
+
+    Raises
+    ------
+    InputError
+        Either file is wrong, a name exists already, or the library cannot be written.
+    """
+    target = _target(library, source)
+    added = read_library(source)
+    before = read_text(target, LIBRARY) if target.exists() else ""
+    held = [library_of_text(before, label_of(target))] if before.strip() else []
+    joined([*_others(target), *held, added])
+    data, _ = parsed(read_text(source, LIBRARY), label_of(source), LIBRARY)
+    separator = "\n\n" if before.strip() else ""
+    after = before.rstrip("\n") + separator + as_toml(data)
+    _refuse_unlike(library_of_text(after, label_of(target)), [*held, added], target)
+    _replace(target, after)
+    return added
+
+
+def _target(library: Path, source: Path) -> Path:
+    """The file to write, links followed; refused where it cannot be one of the user's libraries."""
+    where = path_text(library)
+    if library.is_dir():
+        raise InputError(where, "is a folder", cure=f'Name a file in it: "{library / "ours.toml"}".')
+    if library.suffix != ".toml":
+        raise InputError(where, "must end in .toml", cure="A library is a TOML file.")
+    target = library.resolve()
+    if Path(str(files("separatrix"))).resolve() in target.parents:
+        raise InputError(where, "belongs to separatrix", cure="Add to a library of your own.")
+    if source.exists() and target == source.resolve():
+        raise InputError(where, "is the file to add itself")
+    if not target.parent.is_dir():
+        raise InputError(where, "lies in a folder that does not exist", cure="Make the folder first.")
+    return target
+
+
+def _others(target: Path) -> list[Content]:
+    """Libraries that are read together with the target because they share a folder of libraries."""
+    if target.parent.name != FOLDER:
+        return []
+    return [read_library(path) for path in library_files(target.parent) if path.resolve() != target]
+
+
+def _refuse_unlike(after: Content, parts: Iterable[Content], target: Path) -> None:
+    """See that the new text holds what its parts held, and nothing else."""
+    wanted = {(record.kind, record.name) for part in parts for record in part.records}
+    if {(record.kind, record.name) for record in after.records} != wanted:
+        raise InputError(label_of(target), "cannot be added to: its form is unusual", cure="Add by hand.")
+
+
+def _replace(target: Path, text: str) -> None:
+    """Write beside the target and rename over it."""
+    try:
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".separatrix-", suffix=".tmp")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+                file.write(text)
+            if target.exists():
+                shutil.copymode(target, name)
+            else:
+                Path(name).chmod(0o666 & ~_umask())
+            Path(name).replace(target)
+        except BaseException:
+            with suppress(OSError):
+                Path(name).unlink()
+            raise
+    except OSError as error:
+        raise InputError(path_text(target), f"cannot be written ({error.strerror or error})") from error
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def as_toml(data: Mapping[str, Any]) -> str:
+    """Records of a library file as TOML, each under its own header."""
+    blocks = [
+        _record(f"{section}.{_key(name)}", record)
+        for section in SECTIONS
+        for name, record in data.get(section, {}).items()
+    ]
+    return "\n".join(blocks)
+
+
+def _record(header: str, record: Mapping[str, Any]) -> str:
+    plain = {key: value for key, value in record.items() if key != "friction"}
+    lines = [f"[{header}]", *(f"{_key(key)} = {_value(value)}" for key, value in plain.items())]
+    for name, row in record.get("friction", {}).items():
+        lines += ["", f"[{header}.friction.{_key(name)}]"]
+        lines += [f"{_key(environment)} = {_value(value)}" for environment, value in row.items()]
+    return "\n".join([*lines, ""])
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _text(key)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{_key(key)} = {_value(item)}' for key, item in value.items())} }}"
+    if isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        return "\n".join(["[", *(f"  {_value(item)}," for item in value), "]"])
+    return f"[{', '.join(map(_value, value))}]" if isinstance(value, list) else repr(value)
+
+
+def _text(text: str) -> str:
+    """A basic string of TOML; what JSON escapes, TOML escapes alike."""
+    return json.dumps(text, ensure_ascii=False)
