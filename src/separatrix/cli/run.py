@@ -111,10 +111,14 @@ def _summary(verb: Verb, document: dict[str, Any], folder: Path | None) -> str:
 def _write_files(
     verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str], *, quiet: bool
 ) -> None:
-    """Write texts, dataset and pictures."""
+    """Write texts, workbook, dataset and pictures."""
     for suffix, text in texts.items():
         path = folder / f"{verb.name}{suffix}"
         path.write_text(text, encoding="utf-8", errors="backslashreplace")
+    if verb.has_workbook:
+        from separatrix.workbook import results_workbook
+
+        results_workbook(document, folder / f"{verb.name}.xlsx")
     if verb.writes_files:
         data = _write_data(verb, document, folder)
         if verb.draw is not None:

@@ -30,7 +30,7 @@ class Verb:
     `needs` are the sections of a study that may be left out but not for this question. How the record is
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
     `keeps_points` is for an answer whose parts are kept in its folder as they are finished; `draw` is for
-    pictures beside the figures.
+    pictures beside the figures; `has_workbook` for an answer that is also written as a workbook.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Verb:
     writes_files: bool = True
     keeps_points: bool = False
     draw: Draw | None = None
+    has_workbook: bool = False
 
 
 VERBS: tuple[Verb, ...] = (
@@ -88,6 +89,7 @@ VERBS: tuple[Verb, ...] = (
         name="rank",
         help="Rank the cage materials: verdict, margin, reason.",
         compute=answers.rank,
+        has_workbook=True,
         needs=("cage", "ranking"),
     ),
 )

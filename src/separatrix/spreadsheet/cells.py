@@ -11,14 +11,14 @@ class Cell:
     """One cell that is not empty.
 
     `value` is a number, a text or a truth value; None where a formula was saved without a value. `error` is
-    what it shows instead (``#REF!``), `formula` its formula, `is_date` whether its number is formatted as a
-    date or a time of day.
+    what it shows instead (``#REF!``), `formula` its formula, `format` how its number is shown: ``"date"``
+    for a date or a time of day, ``"percent"``, or nothing special.
     """
 
     value: float | str | bool | None
     formula: str = ""
     error: str = ""
-    is_date: bool = False
+    format: str = ""
 
 
 Row = tuple[int, dict[int, Cell]]
@@ -47,7 +47,9 @@ def column_number(letters: str) -> int:
     return number
 
 
-def is_date_format(code: str) -> bool:
-    """Whether a number format shows a date or a time of day: ``is_date_format("hh:mm:ss")``."""
-    plain = re.sub(r'"[^"]*"|\\.|_.|\*.|\[(?![hms]+\])[^\]]*\]', "", code.casefold())
-    return re.search(r"[dmyhs]", plain.replace("general", "")) is not None
+def format_kind(code: str) -> str:
+    """Return what a number format shows: ``"date"`` (or a time of day), ``"percent"``, or nothing special."""
+    plain = re.sub(r'"[^"]*"|\\.|_.|\*.|\[(?![hms]+\])[^\]]*\]', "", code.casefold()).replace("general", "")
+    if re.search(r"[dmyhs]", plain):
+        return "date"
+    return "percent" if "%" in plain else ""

@@ -138,7 +138,7 @@ class SheetReader:
         if kind == "e":
             return Cell(None, formula, error=text)
         if kind == "n":
-            return Cell(self._float(text), formula, is_date=self._is_date())
+            return Cell(self._float(text), formula, format=self._format())
         if kind == "s":
             return Cell(self._shared(text), formula)
         if kind == "b":
@@ -157,10 +157,11 @@ class SheetReader:
             raise self._damaged(f"there is no text number {printable(text)}")
         return strings[int(text)]
 
-    def _is_date(self) -> bool:
+    def _format(self) -> str:
         style = self._attributes.get("s", "")
-        dates = self._workbook.dates if style else []
-        return style.isdecimal() and len(style) < 9 and int(style) < len(dates) and dates[int(style)]
+        formats = self._workbook.formats if style else []
+        known = style.isdecimal() and len(style) < 9 and int(style) < len(formats)
+        return formats[int(style)] if known else ""
 
     def _damaged(self, why: str) -> InputError:
         sheet = printable(self._sheet)

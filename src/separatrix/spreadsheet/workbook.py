@@ -9,15 +9,16 @@ from pathlib import Path
 
 from separatrix.archive import Archive, open_archive
 from separatrix.errors import InputError
-from separatrix.spreadsheet.cells import Row, is_date_format
+from separatrix.spreadsheet.cells import Row, format_kind
 from separatrix.spreadsheet.parts import SAVE, Attributes, Guard, feed, local, parse, parser_of, relations
 from separatrix.spreadsheet.sheet import SheetReader, TextReader
 from separatrix.units import printable
 
 MOST_SHEETS = 500
 _OLE_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-_DATE_IDS = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
-"""Built-in number formats of dates and times."""
+_BUILT_IN = dict.fromkeys((*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)), "date")
+_BUILT_IN |= {9: "percent", 10: "percent"}
+"""Number formats that have a number instead of a code (ECMA-376, part 1, 18.8.30)."""
 
 
 @dataclass
@@ -46,9 +47,9 @@ class Workbook:
         return _shared_strings(self) if "sharedStrings" in self.parts else []
 
     @cached_property
-    def dates(self) -> list[bool]:
-        """Whether each cell style is one of dates."""
-        return _date_styles(self) if "styles" in self.parts else []
+    def formats(self) -> list[str]:
+        """What each style of cells shows a number as, in the words of `Cell`."""
+        return _formats(self) if "styles" in self.parts else []
 
     def rows(self, sheet: str) -> Iterator[Row]:
         """Yield the rows of a sheet that have any cell, from the top.
@@ -157,9 +158,9 @@ def _shared_strings(workbook: Workbook) -> list[str]:
     return found
 
 
-def _date_styles(workbook: Workbook) -> list[bool]:
+def _formats(workbook: Workbook) -> list[str]:
     codes: dict[int, str] = {}
-    found: list[bool] = []
+    found: list[str] = []
     inside = False
 
     def start(tag: str, attributes: Attributes) -> None:
@@ -171,7 +172,7 @@ def _date_styles(workbook: Workbook) -> list[bool]:
         if name == "numFmt":
             codes[identity] = attributes.get("formatCode", "")
         elif name == "xf" and inside:
-            found.append(identity in _DATE_IDS or is_date_format(codes.get(identity, "")))
+            found.append(_BUILT_IN.get(identity, format_kind(codes.get(identity, ""))))
 
     parse(workbook.archive, workbook.parts["styles"], start)
     return found

@@ -42,9 +42,9 @@ def plain_numbers(workbook: Workbook, sheet: str, first_row: int, columns: list[
     text = b"".join(Guard(workbook.label, part)(workbook.archive.pieces(part)))
     begin = re.search(rb'<row (?:[a-zA-Z]+="[^"<>]*" )*?r="%d"' % first_row, text)
     end = text.find(b"</sheetData>")
-    if begin is None or end < 0 or workbook.has_links or len(workbook.dates) > MOST_STYLES:
+    if begin is None or end < 0 or workbook.has_links or len(workbook.formats) > MOST_STYLES:
         return None
-    pattern = _pattern(columns, workbook.dates)
+    pattern = _pattern(columns, workbook.formats)
     blocks: list[Array] = []
     at = begin.start()
     while at < end:
@@ -58,9 +58,9 @@ def plain_numbers(workbook: Workbook, sheet: str, first_row: int, columns: list[
     return list(np.concatenate(blocks).T.copy()) if blocks else None
 
 
-def _pattern(columns: list[int], dates: list[bool]) -> re.Pattern[bytes]:
+def _pattern(columns: list[int], formats: list[str]) -> re.Pattern[bytes]:
     """Pattern of a row whose cells are these columns, each a number without a type or a formula, or empty."""
-    styles = "|".join(str(i) for i, is_date in enumerate(dates) if not is_date)
+    styles = "|".join(str(i) for i, kind in enumerate(formats) if kind != "date")
     style = f'(?: s="(?:{styles})")?'
     filled = rf"{style}(?: t=\"n\")?><v>([-+.0-9eE]+)</v></c>"
     cells = "".join(f'(?:<c r="{column_name(n)}[0-9]+"(?:{filled}|{style}/>))?' for n in columns)

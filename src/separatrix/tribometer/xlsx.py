@@ -204,7 +204,7 @@ class _Columns:
             _check_formula(self._sheet, row, column, cell)
         if isinstance(cell.value, float):
             self._count[column] += 1
-            self._dates[column] += cell.is_date
+            self._dates[column] += cell.format == "date"
             return cell.value
         if _is_missing(cell):
             return np.nan

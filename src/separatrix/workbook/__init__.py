@@ -1,0 +1,35 @@
+"""The answer of a ranking as a workbook, made from the saved document alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+__all__ = ["results_workbook"]
+
+
+def results_workbook(document: Mapping[str, Any], path: Path) -> None:
+    """Write a ranking, as `rank.json` holds it, as a workbook.
+
+    One sheet for all environments and one for each, the stability curve, the inputs with where each was
+    given, the materials and frictions with their sources, and what made the answer. The same document gives
+    the same bytes.
+
+    Parameters
+    ----------
+    document : mapping
+        What ``separatrix rank --json`` prints.
+    path : Path
+        The file to write.
+    """
+    from separatrix.spreadsheet.writing import new_workbook, workbook_bytes
+    from separatrix.workbook import about, curve, inputs, materials, ranking
+
+    book = new_workbook()
+    ranking.add(book, document)
+    curve.add(book, document)
+    inputs.add(book, document)
+    materials.add(book, document)
+    about.add(book, document)
+    path.write_bytes(workbook_bytes(book))

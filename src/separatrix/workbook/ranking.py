@@ -1,0 +1,114 @@
+"""Sheets of a ranking: one for all environments together, and one for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from separatrix.results.labels import unit_of
+from separatrix.spreadsheet.writing import PLAIN, WRAPPED, Look, add_sheet, headings, put, widths
+
+if TYPE_CHECKING:
+    from openpyxl import Workbook
+    from openpyxl.worksheet.worksheet import Worksheet
+
+Row = Mapping[str, Any]
+
+VERDICT_FILLS = {"STABLE": "CCE3F0", "UNSTABLE": "F7DFCC", "UNDECIDED": "FAECCC"}
+"""Light tints of the colours that the figures give the verdicts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """One quantity of a candidate: its key in the document, its heading, and how it is shown."""
+
+    key: str
+    heading: str
+    number_format: str = "0.000"
+    factor: float = 1.0
+    """From the SI unit of the document to that of the heading."""
+    width: float = 11.0
+
+
+COLUMNS = (
+    Column(key="rank", heading="rank", number_format="0", width=6),
+    Column(key="name", heading="material", width=24),
+    Column(key="verdict", heading="verdict", width=13),
+    Column(key="friction", heading="friction (-)"),
+    Column(key="friction_error", heading="standard error of the friction (-)", width=13),
+    Column(key="restitution_threshold", heading="restitution threshold (-)", width=13),
+    Column(key="restitution_threshold_low", heading="threshold, low end of 95 % (-)", width=13),
+    Column(key="restitution_threshold_high", heading="threshold, high end of 95 % (-)", width=13),
+    Column(key="margin", heading="margin (-)", number_format="+0.000;-0.000;0.000"),
+    Column(key="probability_stable", heading="probability of stable (-)", width=13),
+    Column(key="probability_low", heading="probability, low end of 95 % (-)", width=13),
+    Column(key="probability_high", heading="probability, high end of 95 % (-)", width=13),
+    Column(key="probability_best", heading="probability of being best (-)", width=13),
+    Column(key="restitution_factor", heading="restitution factor of the bearing (-)", width=13),
+    Column(key="cage_motion", heading="motion of the cage centre", width=13),
+    Column(key="growth_rate", heading="growth rate (1/s)", number_format="0.00"),
+    Column(key="growth_rate_low", heading="growth rate, low end (1/s)", number_format="0.00"),
+    Column(key="growth_rate_high", heading="growth rate, high end (1/s)", number_format="0.00"),
+    Column(key="largest_offset", heading="largest offset (mm)", factor=1e3),
+    Column(key="largest_contact_force", heading="largest pocket force (N)", number_format="0.0"),
+    Column(key="largest_land_force", heading="largest land force (N)", number_format="0.0"),
+    Column(key="whirl_frequency", heading="whirl (Hz)", number_format="0.00"),
+    Column(key="whirl_ratio", heading="whirl ratio (-)"),
+    Column(key="ball_cage_stiffness", heading="pocket stiffness (N/um)", number_format="0.00", factor=1e-6),
+    Column(key="runs", heading="runs", number_format="0", width=7),
+)
+ELSEWHERE = frozenset({"reason", "within_reach"})
+REASON_WIDTH = 90.0
+
+
+def add(book: Workbook, document: Mapping[str, Any]) -> None:
+    """Add the sheets of a ranking."""
+    _candidates(add_sheet(book, "overall"), document["overall"])
+    for one in document["environments"]:
+        _candidates(add_sheet(book, one["name"]), one["materials"])
+
+
+def _candidates(sheet: Worksheet, rows: Sequence[Row]) -> None:
+    """Write one line for each candidate, best first."""
+    columns = [*(c for c in COLUMNS if _is_given(rows, c.key)), *_others(rows)]
+    headings(sheet, [*(c.heading for c in columns), "reason"], keep_columns=2)
+    for number, row in enumerate(rows, 2):
+        for place, column in enumerate(columns, 1):
+            _cell(sheet, number, place, row, column)
+        put(sheet, number, len(columns) + 1, row.get("reason"), WRAPPED)
+    widths(sheet, *(column.width for column in columns), REASON_WIDTH)
+    last = sheet.cell(len(rows) + 1, len(columns) + 1).coordinate
+    sheet.auto_filter.ref = f"A1:{last}"
+
+
+def _cell(sheet: Worksheet, row: int, column: int, record: Row, shown: Column) -> None:
+    value = record.get(shown.key)
+    if shown.key == "verdict" and value is None:
+        value = "not measured" if record.get("friction") is None else "not finished"
+    if isinstance(value, float):
+        value *= shown.factor
+    fill = VERDICT_FILLS.get(str(value), "") if shown.key == "verdict" else ""
+    look = Look(number_format=shown.number_format, bold=shown.key in ("rank", "name"), fill=fill)
+    put(sheet, row, column, value, look if isinstance(value, int | float) or fill or look.bold else PLAIN)
+
+
+def _is_given(rows: Sequence[Row], key: str) -> bool:
+    return any(row.get(key) is not None for row in rows)
+
+
+def _others(rows: Sequence[Row]) -> list[Column]:
+    """Columns for what the document says of a candidate beyond the table above, in SI units."""
+    known = {column.key for column in COLUMNS} | ELSEWHERE
+    keys = dict.fromkeys(key for row in rows for key in row if key not in known)
+    return [_other(key) for key in keys if any(_is_plain(row.get(key)) for row in rows)]
+
+
+def _other(key: str) -> Column:
+    unit = unit_of(key)
+    heading = key.replace("_", " ") + (f" ({unit})" if unit else "")
+    return Column(key=key, heading=heading, number_format="0.000E+00" if unit != "-" else "0.000", width=14)
+
+
+def _is_plain(value: object) -> bool:
+    return isinstance(value, str | int | float)
