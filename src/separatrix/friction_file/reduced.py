@@ -19,7 +19,7 @@ def friction_test(test: TestFriction, version: str) -> FrictionTest:
     """
     known = test.conditions
     if missing := [name for name in NEEDED if getattr(known, name) is None]:
-        cure = "Give it under [conditions] of a column map: --map map.toml."
+        cure = "Give it under [test] of a column map: --map map.toml."
         raise InputError(test.source, f"does not say: {', '.join(missing)}", cure=cure)
     return FrictionTest(
         material=str(known.material),

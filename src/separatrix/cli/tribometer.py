@@ -1,0 +1,244 @@
+"""The verb `tribometer`: raw logs to friction with its scatter, a friction file and pages of plots."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from separatrix.cli.console import answer, progress_bar
+from separatrix.cli.files import staged, writable_folder
+from separatrix.errors import InputError
+from separatrix.units import printable, shown
+
+if TYPE_CHECKING:
+    from separatrix.friction_fit import FrictionTest
+    from separatrix.friction_fit.fit import FrictionFit
+    from separatrix.tribometer.column_map import ColumnMap
+    from separatrix.tribometer.options import ReductionOptions
+    from separatrix.tribometer.reduction import Reduction
+
+SUFFIX = ".toml"
+MOST_FILES = 10_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TribometerOptions:
+    """What follows the files on the command line."""
+
+    out: Path | None
+    map: Path | None
+    plots: Path | None
+    run_in: str | None
+    json: bool
+    quiet: bool
+    jobs: int
+
+    @property
+    def plots_folder(self) -> Path | None:
+        """Folder of the pages: as asked for, or beside the friction file."""
+        beside = None if self.out is None else self.out.with_name(f"{self.out.stem}-plots")
+        return beside if self.plots is None else self.plots
+
+
+def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
+    """Read and reduce logs, show what was read, write what was asked for; return the exit status.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The logs, each of one or several tests.
+    options : TribometerOptions
+        Where the answer goes.
+
+    Raises
+    ------
+    InputError
+        An option or a file is wrong: the first one, and how many others are; nothing is written.
+    """
+    _refuse(paths, options)
+    chosen = _column_map(options.map)
+    with contextlib.ExitStack() as folders:
+        if options.out is not None:
+            folders.enter_context(writable_folder(options.out.parent))
+        if options.plots_folder is not None:
+            folders.enter_context(writable_folder(options.plots_folder))
+        reductions = _reductions(paths, chosen, _reduction_options(options), options)
+        tests = _tests(reductions, required=options.out is not None)
+        _deliver(reductions, tests, options)
+    return 0
+
+
+def _refuse(paths: Sequence[Path], options: TribometerOptions) -> None:
+    """Refuse what is wrong with the command line itself, before any file is read."""
+    if len(paths) > MOST_FILES:
+        raise InputError("FILES", f"must be at most {MOST_FILES}", "", str(len(paths)))
+    known: dict[Path, Path] = {}
+    for path in paths:
+        if path.resolve() in known:
+            raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
+        known[path.resolve()] = path
+    if options.out is None:
+        return
+    if options.out.suffix != SUFFIX or options.out.is_dir():
+        cure = 'Name a file like "friction.toml".'
+        raise InputError(
+            "--out", f"must name a file that ends in {SUFFIX}", "", shown(str(options.out)), cure
+        )
+    if options.out.exists() or options.out.is_symlink():
+        from separatrix.friction_file import exists_already
+
+        raise exists_already(options.out)
+
+
+def _column_map(path: Path | None) -> ColumnMap | None:
+    from separatrix.tribometer.column_map import read_column_map
+
+    return None if path is None else read_column_map(path)
+
+
+def _reduction_options(options: TribometerOptions) -> ReductionOptions:
+    from separatrix.tribometer.options import ReductionOptions
+
+    try:
+        return ReductionOptions(run_in_end=options.run_in)
+    except InputError as error:
+        raise InputError("--run-in", error.rule, error.unit, error.value, error.cure) from None
+
+
+def _reductions(
+    paths: Sequence[Path], chosen: ColumnMap | None, how: ReductionOptions, options: TribometerOptions
+) -> list[Reduction]:
+    """Every test of every file, in their order; or the refusal of the first that is wrong."""
+    found: list[Reduction] = []
+    wrong: list[InputError] = []
+    with progress_bar("tribometer", quiet=options.quiet) as progress, _threads(options.jobs) as pool:
+        attempts = [pool.submit(_of_file, path, chosen, how) for path in paths]
+        for done, attempt in enumerate(attempts, 1):
+            try:
+                found.extend(attempt.result())
+            except InputError as error:
+                wrong.append(error)
+            if progress is not None:
+                progress(done, len(paths))
+    if wrong:
+        raise _with_others(wrong)
+    _refuse_copies(found)
+    return found
+
+
+@contextlib.contextmanager
+def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads that begin nothing new once the work is interrupted."""
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _of_file(path: Path, chosen: ColumnMap | None, how: ReductionOptions) -> list[Reduction]:
+    from separatrix.tribometer.reading import read_log
+    from separatrix.tribometer.reduction import reduction
+
+    return [reduction(log, how) for log in read_log(path, chosen)]
+
+
+def _with_others(wrong: Sequence[InputError]) -> InputError:
+    """The first refusal, and how many other files are refused."""
+    first, others = wrong[0], len(wrong) - 1
+    if not others:
+        return first
+    more = f"{others} other file{'s are' if others > 1 else ' is'} refused too."
+    return InputError(first.where, first.rule, first.unit, first.value, f"{first.cure} {more}".strip())
+
+
+def _refuse_copies(reductions: Sequence[Reduction]) -> None:
+    """Refuse the same content under two names: it would count as a repeated test."""
+    names: dict[str, set[str]] = {}
+    for one in reductions:
+        names.setdefault(one.log.checksum, set()).add(one.log.source.partition(",")[0])
+    sources: dict[str, str] = {}
+    for one in reductions:
+        first = sources.setdefault(one.log.checksum, one.log.source)
+        if len(names[one.log.checksum]) > 1 and first != one.log.source:
+            cure = "A test counts once; leave one of them out."
+            raise InputError(one.log.source, f"has the same content as {first}", cure=cure)
+
+
+def _tests(reductions: Sequence[Reduction], *, required: bool) -> list[FrictionTest] | None:
+    """Tests as a friction file keeps them; None where some do not say what slid on what.
+
+    Raises
+    ------
+    InputError
+        A friction file is asked for, and a test cannot stand in it.
+    """
+    from separatrix import __version__
+    from separatrix.friction_file.reduced import friction_test
+
+    found: list[FrictionTest] = []
+    wrong: list[InputError] = []
+    for one in reductions:
+        try:
+            found.append(friction_test(one.test, __version__))
+        except InputError as error:
+            wrong.append(error)
+    if wrong and required:
+        raise _with_others(wrong)
+    return None if wrong else found
+
+
+def _deliver(
+    reductions: Sequence[Reduction], tests: list[FrictionTest] | None, options: TribometerOptions
+) -> None:
+    """Write the files, then the answer."""
+    from separatrix.friction_fit import fit_friction
+    from separatrix.report.tribometer import tribometer as in_words
+    from separatrix.results.tribometer import tribometer as document
+
+    fit: FrictionFit | None = None if tests is None else fit_friction(tests)
+    written = None if options.out is None else str(options.out)
+    found = document([r.log for r in reductions], [r.test for r in reductions], fit, written=written)
+    if options.plots_folder is not None:
+        _draw(reductions, options.plots_folder)
+    if options.out is not None and tests is not None:
+        _write(tests, options.out)
+    plots = None if options.plots_folder is None else str(options.plots_folder)
+    text = (
+        json.dumps(found, indent=1, allow_nan=False) + "\n" if options.json else in_words(found, plots=plots)
+    )
+    answer(text)
+
+
+def _write(tests: Sequence[FrictionTest], out: Path) -> None:
+    """Write the friction file aside, then rename it into place; a file that came meanwhile stays."""
+    from separatrix.friction_file import exists_already, friction_text
+
+    with staged(out.parent) as stage:
+        (stage / out.name).write_text(friction_text(tests), encoding="utf-8")
+        if out.exists():
+            raise exists_already(out)
+
+
+def _draw(reductions: Sequence[Reduction], folder: Path) -> None:
+    """Write a page of plots for each test."""
+    from separatrix.figures import save
+    from separatrix.figures.tribometer import page
+
+    names: dict[str, int] = {}
+    with staged(folder) as stage:
+        for one in reductions:
+            name = file_name(one.log.source)
+            names[name] = number = names.get(name, 0) + 1
+            save(page(one), stage / f"{name if number == 1 else f'{name}-{number}'}.png")
+
+
+def file_name(source: str) -> str:
+    """Name of a test as the name of a file: letters, digits, dots and dashes."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "._-") else "-" for c in source)
+    return "-".join(part for part in plain.split("-") if part).strip(".")[:100] or "test"
