@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from separatrix.distribution import described
 from separatrix.errors import InputError
-from separatrix.ranking import ranking_question
+from separatrix.ranking import probability_lowest, ranking_question
+from separatrix.ranking.friction import frictions_seen
 from separatrix.ranking.reason import not_measured
 from separatrix.study import Study
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, VERDICTS, Boundary, own_draws
 from separatrix.uncertainty.model import Case, Evaluated, Factors, Model, Stage, uncertain_model
 from separatrix.uncertainty.probability import (
     best_credit,
-    lowest_friction,
     mixed_interval,
     prefix_counts,
     quantiles,
@@ -117,12 +117,34 @@ def uncertain_ranking(
     if samples < FEWEST_SAMPLES:
         cure = "Powers of two spread most evenly: 4096."
         raise InputError("--samples", f"must be at least {FEWEST_SAMPLES}", value=str(samples), cure=cure)
-    draws = sample(study, samples)
+    asked = as_pockets_see(study)
+    draws = sample(asked, samples)
     told = stage or (lambda _: None)
-    model = uncertain_model(study, jobs=jobs, stage=told, stop=stop)
+    model = uncertain_model(asked, jobs=jobs, stage=told, stop=stop)
     factors = model.factors(draws.values, progress=told("chain"), stop=stop)
     found = _sampled(model, draws.values[factors.solved], factors, told)
     return _answer(model, draws, factors, found), model, draws
+
+
+def as_pockets_see(study: Study) -> Study:
+    """Return the study with frictions that are known over the conditions asked for at those of the pockets."""
+    asked = ranking_question(study)
+    if not any(
+        one is not None and one.law is not None for c in asked.candidates for one in c.friction.values()
+    ):
+        return study
+    seen = ranking_question(frictions_seen(study)).candidates
+    candidates = tuple(
+        replace(
+            candidate,
+            friction={
+                name: seen[place].friction[name] if one is not None and one.law is not None else one
+                for name, one in candidate.friction.items()
+            },
+        )
+        for place, candidate in enumerate(asked.candidates)
+    )
+    return replace(study, ranking=replace(asked, candidates=candidates))
 
 
 def _sampled(model: Model, values: Array, factors: Factors, stage: Stage) -> Sampled:
@@ -219,9 +241,8 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
         numbers |= _probability(f"probability_{name}", counts, samples)
     numbers |= _probability("probability_best", found.orders.sum(axis=1), samples)
     lowest, groups = np.zeros(cases), np.zeros(cases, dtype=np.int_)
-    for own in by_environment(model.cases).values():
-        mean, spread = found.friction[:, own].mean(axis=0), found.friction[:, own].std(axis=0)
-        lowest[own] = _lowest(found.friction[:, own], mean, spread)
+    for environment, own in by_environment(model.cases).items():
+        lowest[own] = _lowest(model, environment, own, found.friction[:, own])
         groups[own] = tie_groups(found.threshold[:, own], numbers["probability_best"][own])
     nominal = _nominal(model)
     rows = [
@@ -251,11 +272,14 @@ def _nominal(model: Model) -> Evaluated:
     return model.judge(model.central_values, factors)
 
 
-def _lowest(friction: Array, mean: Array, spread: Array) -> Array:
-    """Probability of the lowest friction: exact for normal ones, by the samples where one has no scatter."""
-    if (spread > 0.0).all():
-        return np.array(lowest_friction(mean.tolist(), spread.tolist()))
-    return np.asarray(best_credit(-friction).mean(axis=0))
+def _lowest(model: Model, environment: str, own: Sequence[int], friction: Array) -> Array:
+    """Probability of the lowest friction: in an environment that of `rank`, over all of them by the samples."""
+    asked = ranking_question(model.study)
+    if not environment:
+        return np.asarray(best_credit(-friction).mean(axis=0))
+    table = {candidate.name: candidate.friction.get(environment) for candidate in asked.candidates}
+    found = probability_lowest(table, asked.friction_scatter).probabilities
+    return np.array([found[model.cases[i].candidate] for i in own])
 
 
 def _interval(name: str, values: Array) -> dict[str, Array]:
@@ -271,7 +295,15 @@ def _probability(name: str, counts: Array, samples: int) -> dict[str, Array]:
 def _row(model: Model, place: int, numbers: dict[str, Any]) -> UncertainMaterial:
     case = model.cases[place]
     assumed = any(model.inputs[column].source == "assumed" for column in case.columns)
-    return UncertainMaterial(name=case.candidate, friction_assumed=assumed, **numbers)
+    friction = ranking_question(model.study).candidates[case.place].friction
+    asked = [friction.get(case.environment)] if case.environment else list(friction.values())
+    words = [text for one in asked if one is not None for text in one.extrapolation]
+    return UncertainMaterial(
+        name=case.candidate,
+        friction_assumed=assumed,
+        extrapolation=tuple(dict.fromkeys(words)),
+        **numbers,
+    )
 
 
 def _reason(row: UncertainMaterial) -> str:

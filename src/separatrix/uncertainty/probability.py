@@ -1,4 +1,4 @@
-"""Probabilities out of samples: of a verdict, of having the lowest friction, of being best, and who is tied.
+"""Probabilities out of samples: of a verdict, of being best, and who is tied.
 
 An interval of a probability holds two doubts: so many samples only, and a boundary that only so many runs
 have told. Samples give a share for each boundary that the runs allow; each share has Jeffreys' interval
@@ -10,15 +10,12 @@ the careful side.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import betaincinv, ndtr
+from scipy.special import betaincinv
 
-from separatrix.errors import InputError
 from separatrix.units import Array, Ratio
 
 ENDS_95 = (0.025, 0.975)
@@ -27,17 +24,6 @@ SURE: Ratio = 0.95
 """A candidate that beats another in so many of the samples is told apart from it."""
 
 _LEVELS: Array = np.asarray((np.arange(41) + 0.5) / 41.0, dtype=np.float64)
-_RULE: tuple[Any, Any] = leggauss(400)
-_REACH = 9.0
-
-
-@dataclass(frozen=True, slots=True)
-class Probability:
-    """A probability with its 95 % interval [-]."""
-
-    value: Ratio
-    low: Ratio
-    high: Ratio
 
 
 def mixed_interval(counts: Array, samples: int) -> tuple[Array, Array, Array]:
@@ -62,39 +48,6 @@ def mixed_interval(counts: Array, samples: int) -> tuple[Array, Array, Array]:
     value = known.mean(axis=0) / samples
     low, high = np.where(value <= 0.0, 0.0, low), np.where(value >= 1.0, 1.0, high)
     return value, np.minimum(low, value), np.maximum(high, value)
-
-
-def as_probabilities(counts: Array, samples: int) -> list[Probability]:
-    """Return records of `mixed_interval` for counts of shape (draw, case)."""
-    columns = zip(*(part.tolist() for part in mixed_interval(counts, samples)), strict=True)
-    return [Probability(*row) for row in columns]
-
-
-def lowest_friction(mean: Sequence[Ratio], deviation: Sequence[Ratio]) -> list[Ratio]:
-    """Probability of each candidate that its friction is the lowest, if each is normal by itself.
-
-    Parameters
-    ----------
-    mean, deviation : sequence of float
-        Of each candidate [-].
-
-    Notes
-    -----
-    The integral of its density times the probability that all others lie above, by Gauss and Legendre's
-    rule.
-    """
-    if len(mean) != len(deviation) or any(sd <= 0.0 for sd in deviation):
-        raise InputError("The frictions", "need a standard deviation > 0 each")
-    nodes, weights = _RULE
-    middle, spread = np.array(mean, dtype=np.float64), np.array(deviation, dtype=np.float64)
-    shares = []
-    for i in range(middle.size):
-        z = _REACH * nodes
-        above = ndtr((middle[:, None] - (middle[i] + spread[i] * z)) / spread[:, None])
-        above[i] = 1.0
-        density = np.exp(-0.5 * z * z) / np.sqrt(2.0 * np.pi)
-        shares.append(float(_REACH * np.sum(weights * density * above.prod(axis=0))))
-    return shares
 
 
 def best_credit(thresholds: Array) -> Array:

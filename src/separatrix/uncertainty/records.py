@@ -37,6 +37,8 @@ class UncertainMaterial:
         Mean and standard deviation of the friction of the next cage [-].
     friction_assumed : bool or None
         Whether that scatter is the default one, a guess.
+    extrapolation : tuple of str
+        In what respect the friction was asked for where nothing was tested, in words.
     restitution_factor, restitution_factor_low, restitution_factor_high : float or None
         Median of the samples, and the ends between which nine in ten of them lie [-].
     restitution_threshold, restitution_threshold_low, restitution_threshold_high : float or None
@@ -65,6 +67,7 @@ class UncertainMaterial:
     friction: Ratio | None = None
     friction_deviation: Ratio | None = None
     friction_assumed: bool | None = None
+    extrapolation: tuple[str, ...] = ()
     restitution_factor: Ratio | None = None
     restitution_factor_low: Ratio | None = None
     restitution_factor_high: Ratio | None = None
