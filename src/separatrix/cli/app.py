@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from separatrix.cli import materials
 from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
@@ -248,6 +249,7 @@ def _application() -> typer.Typer:
         epilog=EPILOGS["tribometer"],
     )(_tribometer)
     app.command("compare", help="Two saved answers of simulate, side by side.")(_compare)
+    app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
 
@@ -263,7 +265,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(["new", *VERB, "tribometer", "compare"])
+        verbs = ", ".join(["new", *VERB, "tribometer", "compare", "materials"])
         raise InputError("The command line", f"lacks a verb: {verbs}", cure='Try "separatrix --help".')
 
 
