@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from separatrix.errors import InputError, together
-from separatrix.library.records import FLUID, PROPERTIES, SOLID, Datum, Record
+from separatrix.library.records import ELASTIC, FLUID, SOLID, Datum, Property, Record
 from separatrix.library.words import BLANK, confidence_of, in_range, long_text, raw, span, yes_or_no
 from separatrix.toml_values import nearest, ratio, table, text
 from separatrix.units import format_quantity, parse, printable, shown
@@ -34,12 +34,12 @@ def material(
             if key in words:
                 given[key] = words[key](value, where)
             elif key in numbers:
-                data[key] = _data(key, value, where)
+                data[key] = _data(numbers[key], value, where)
             else:
                 raise InputError(where, f"is no key of a {kind}", cure=nearest(key, [*numbers, *words]))
         except InputError as error:
             problems.extend(error.problems or (error,))
-    required = ("substance", "phase") if kind == "fluid" else SOLID[:2]
+    required = ("substance", "phase") if kind == "fluid" else ELASTIC
     if missing := [key for key in required if key not in item]:
         problems.append(InputError(at, f"lacks: {', '.join(missing)}"))
     if problems:
@@ -48,13 +48,13 @@ def material(
     return Record(kind=kind, data=data, facts=facts, **given, **common)
 
 
-def _data(key: str, value: Any, where: str) -> tuple[Datum, ...]:
+def _data(known: Property, value: Any, where: str) -> tuple[Datum, ...]:
     """Read one datum, or several of one property under different conditions."""
     if not isinstance(value, list):
-        return (_datum(key, value, where),)
+        return (_datum(known, value, where),)
     if not 0 < len(value) <= MOST_DATA:
         raise InputError(where, f"must hold 1 to {MOST_DATA} data", "", f"{len(value)} of them", BLANK)
-    data = tuple(_datum(key, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
+    data = tuple(_datum(known, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
     conditions = [(d.temperature, d.pressure, d.medium, d.form) for d in data]
     if len(set(conditions)) < len(conditions):
         rule = "holds two data for the same temperature, pressure, medium and form"
@@ -62,14 +62,13 @@ def _data(key: str, value: Any, where: str) -> tuple[Datum, ...]:
     return data
 
 
-def _datum(key: str, value: Any, where: str) -> Datum:
+def _datum(known: Property, value: Any, where: str) -> Datum:
     if not isinstance(value, dict):
         example = '{ value = "5 GPa", source = "our test 12", confidence = "measured" }'
         raise InputError(
             where, "must be a number with its source", "", shown(value), f"Write it like {example}."
         )
     given = table(value, where, dict.fromkeys(_DATUM, raw), ("value", "source", "confidence"))
-    unit = PROPERTIES[key].unit
     words: dict[str, Any] = {
         name: long_text(given[name], f"{where}.{name}") for name in _WORDS if name in given
     }
@@ -77,17 +76,16 @@ def _datum(key: str, value: Any, where: str) -> Datum:
         words["temperature"] = span("K", given["temperature"], f"{where}.temperature", 1e-3, 5000.0)
     if "pressure" in given:
         words["pressure"] = in_range("Pa", given["pressure"], f"{where}.pressure", 1e-9, 1e11)
-    number = _number(key, given["value"], f"{where}.value")
-    expected = _expected(key, given["range"], f"{where}.range", number) if "range" in given else None
+    number = _number(known, given["value"], f"{where}.value")
+    expected = _expected(known, given["range"], f"{where}.range", number) if "range" in given else None
     confidence = confidence_of(given["confidence"], f"{where}.confidence")
     source = long_text(given["source"], f"{where}.source")
     if len(source.strip()) < 3:
         raise InputError(f"{where}.source", "must name a source", "", shown(source), _WHO)
-    return Datum(value=number, unit=unit, range=expected, source=source, confidence=confidence, **words)
+    return Datum(value=number, unit=known.unit, range=expected, source=source, confidence=confidence, **words)
 
 
-def _number(key: str, value: Any, where: str) -> float:
-    known = PROPERTIES[key]
+def _number(known: Property, value: Any, where: str) -> float:
     number = ratio(value, where) if known.unit == "-" else parse(value, known.unit, where)
     if not known.low <= number <= known.high:
         low, high = (format_quantity(bound, known.unit) for bound in (known.low, known.high))
@@ -96,10 +94,10 @@ def _number(key: str, value: Any, where: str) -> float:
     return number
 
 
-def _expected(key: str, value: Any, where: str, number: float) -> tuple[float, float]:
+def _expected(known: Property, value: Any, where: str, number: float) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(where, "must be a list of the lowest and the highest value", "", shown(value))
-    low, high = (_number(key, bound, where) for bound in value)
+    low, high = (_number(known, bound, where) for bound in value)
     if not low <= number <= high:
         raise InputError(where, "must hold the value between its ends, the lower one first", "", shown(value))
     return low, high

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from separatrix.study import Friction
@@ -31,7 +31,7 @@ class Property:
 
 PROPERTIES = {
     "elastic_modulus": Property(unit="Pa", words="modulus", low=1e5, high=5e12),
-    "poisson_ratio": Property(unit="-", words="Poisson's ratio", low=0.0, high=0.4999),
+    "poisson_ratio": Property(unit="-", words="Poisson's ratio", low=0.001, high=0.499),
     "density": Property(unit="kg/m3", words="density", low=1e-6, high=1e5),
     "viscosity": Property(unit="Pa s", words="viscosity", low=1e-8, high=1e3),
     "heat_capacity": Property(unit="J/kg/K", words="heat capacity", low=1.0, high=1e6),
@@ -42,8 +42,12 @@ PROPERTIES = {
 }
 """Every number that a record may hold."""
 
-SOLID = ("elastic_modulus", "poisson_ratio", "density")
-FLUID = tuple(key for key in PROPERTIES if key not in ("elastic_modulus", "poisson_ratio"))
+ELASTIC = ("elastic_modulus", "poisson_ratio")
+SOLID = {key: PROPERTIES[key] for key in ELASTIC} | {"density": replace(PROPERTIES["density"], low=1.0)}
+"""Numbers of a solid; its density is no gas's."""
+
+FLUID = {key: known for key, known in PROPERTIES.items() if key not in ELASTIC}
+"""Numbers of a fluid."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,6 @@ from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
-from separatrix.library import Library
 from separatrix.study import (
     BallBearing,
     CageDesign,
@@ -100,7 +99,9 @@ def build_study(document: Document, name: str) -> Study:
         With everything that is wrong, on one line.
     """
     title = attempt(document, _title, document, name)
-    library = attempt(document, library_of, document) or Library()
+    library = attempt(document, library_of, document)
+    if library is None:
+        raise together(document.problems)
     with values.using(library, _temperature(document)):
         parts = _parts(document)
     if missing := [f"[{section}]" for section in _REQUIRED_SECTIONS if section not in document.sections]:
