@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
+import textwrap
 import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,6 +28,9 @@ EVALUATED = "=+-@＝＋－＠"
 HEADER = "1F3864"
 BAND = "F2F2F2"
 INPUT = "FFF9E5"
+LINE_HEIGHT = 15.0
+"""Points."""
+
 _STAMP = re.compile(rb"(<dcterms:(created|modified)[^>]*>)[^<]*(</dcterms:)")
 _FIXED = b"2000-01-01T00:00:00Z"
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
@@ -74,8 +78,14 @@ def sheet_title(name: str, taken: Sequence[str]) -> str:
 
 
 def add_sheet(book: Workbook, name: str) -> Worksheet:
-    """Add a sheet at the end."""
+    """Add a sheet at the end; it prints across, as wide as the page."""
+    from openpyxl.worksheet.properties import PageSetupProperties
+
     sheet: Worksheet = book.create_sheet(sheet_title(name, book.sheetnames))
+    sheet.page_setup.orientation = "landscape"
+    sheet.page_setup.fitToHeight = 0
+    sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
+    sheet.print_title_rows = "1:1"
     return sheet
 
 
@@ -115,7 +125,9 @@ def _dress(cell: Any, look: Look) -> None:
 
     cell.number_format = look.number_format
     if look.bold or look.italic or look.colour:
-        cell.font = Font(bold=look.bold, italic=look.italic, color=look.colour or "000000")
+        cell.font = Font(
+            name="Calibri", size=11, bold=look.bold, italic=look.italic, color=look.colour or "000000"
+        )
     if look.fill:
         cell.fill = PatternFill("solid", fgColor=look.fill)
     cell.alignment = Alignment(wrap_text=look.wrap, vertical="top")
@@ -129,9 +141,20 @@ def headings(sheet: Worksheet, names: Sequence[str], *, row: int = 1, keep_colum
 
 
 def widths(sheet: Worksheet, *sizes: float) -> None:
-    """Give the columns their widths, in characters."""
+    """Give the columns their widths, in characters, and the rows the height that their wrapped texts need."""
     for column, size in enumerate(sizes, 1):
         sheet.column_dimensions[column_name(column)].width = size
+    for number, row in enumerate(sheet.iter_rows(max_col=len(sizes)), 1):
+        lines = max(_lines(cell, size) for cell, size in zip(row, sizes, strict=True))
+        if lines > 1:
+            sheet.row_dimensions[number].height = LINE_HEIGHT * lines
+
+
+def _lines(cell: Any, width: float) -> int:
+    """Lines that a cell's text takes, if it is wrapped."""
+    if not isinstance(cell.value, str) or not cell.alignment.wrap_text:
+        return 1
+    return len(textwrap.wrap(cell.value, max(int(width * (0.85 if cell.font.bold else 1.0)), 1)))
 
 
 def workbook_bytes(book: Workbook) -> bytes:

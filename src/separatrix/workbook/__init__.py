@@ -12,9 +12,9 @@ __all__ = ["results_workbook"]
 def results_workbook(document: Mapping[str, Any], path: Path) -> None:
     """Write a ranking, as `rank.json` holds it, as a workbook.
 
-    One sheet for all environments and one for each, the stability curve, the inputs with where each was
-    given, the materials and frictions with their sources, and what made the answer. The same document gives
-    the same bytes.
+    One sheet for all environments and one for each, the stability curve, the evidence of the verdicts, the
+    inputs with where each was given, the materials and frictions with their sources, and what made the
+    answer. The same document gives the same bytes.
 
     Parameters
     ----------
@@ -29,6 +29,7 @@ def results_workbook(document: Mapping[str, Any], path: Path) -> None:
     book = new_workbook()
     ranking.add(book, document)
     curve.add(book, document)
+    ranking.add_evidence(book, document)
     inputs.add(book, document)
     materials.add(book, document)
     about.add(book, document)

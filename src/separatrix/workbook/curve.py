@@ -83,6 +83,8 @@ def _chart(sheet: Worksheet, points: int, candidates: int) -> ScatterChart:
     for axis in (chart.x_axis, chart.y_axis):
         axis.delete = False
         axis.scaling.min = 0.0
+        axis.number_format = "0.0#"
+        axis.majorGridlines = None
     chart.x_axis.scaling.max = 1.0
     eta = Reference(sheet, min_col=1, min_row=2, max_row=points + 1)
     for column, colour in LINES.items():
@@ -107,4 +109,5 @@ def _points(sheet: Worksheet, count: int) -> Any:
     series.marker.symbol, series.marker.size = "diamond", 8
     series.marker.graphicalProperties.solidFill = POINT
     series.graphicalProperties.line.noFill = True
+    series.smooth = False
     return series

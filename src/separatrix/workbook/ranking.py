@@ -1,4 +1,4 @@
-"""Sheets of a ranking: one for all environments together, and one for each."""
+"""Sheets of a ranking: one for all environments together, one for each, and one of the evidence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from separatrix.results.labels import unit_of
-from separatrix.spreadsheet.writing import PLAIN, WRAPPED, Look, add_sheet, headings, put, widths
+from separatrix.spreadsheet.cells import cell_name
+from separatrix.spreadsheet.writing import Look, add_sheet, headings, put, widths
 
 if TYPE_CHECKING:
     from openpyxl import Workbook
@@ -46,6 +47,9 @@ COLUMNS = (
     Column(key="probability_high", heading="probability, high end of 95 % (-)", width=13),
     Column(key="probability_best", heading="probability of being best (-)", width=13),
     Column(key="restitution_factor", heading="restitution factor of the bearing (-)", width=13),
+    Column(key="reason", heading="reason", width=90),
+)
+EVIDENCE = (
     Column(key="cage_motion", heading="motion of the cage centre", width=13),
     Column(key="growth_rate", heading="growth rate (1/s)", number_format="0.00"),
     Column(key="growth_rate_low", heading="growth rate, low end (1/s)", number_format="0.00"),
@@ -58,28 +62,40 @@ COLUMNS = (
     Column(key="ball_cage_stiffness", heading="pocket stiffness (N/um)", number_format="0.00", factor=1e-6),
     Column(key="runs", heading="runs", number_format="0", width=7),
 )
-ELSEWHERE = frozenset({"reason", "within_reach"})
-REASON_WIDTH = 90.0
+WHICH = (
+    Column(key="environment", heading="environment", width=28),
+    Column(key="name", heading="material", width=24),
+)
+OVERALL = "overall"
+ELSEWHERE = frozenset({"within_reach"})
 
 
 def add(book: Workbook, document: Mapping[str, Any]) -> None:
     """Add the sheets of a ranking."""
-    _candidates(add_sheet(book, "overall"), document["overall"])
+    _candidates(add_sheet(book, OVERALL), document[OVERALL], COLUMNS)
     for one in document["environments"]:
-        _candidates(add_sheet(book, one["name"]), one["materials"])
+        _candidates(add_sheet(book, one["name"]), one["materials"], COLUMNS)
 
 
-def _candidates(sheet: Worksheet, rows: Sequence[Row]) -> None:
-    """Write one line for each candidate, best first."""
-    columns = [*(c for c in COLUMNS if _is_given(rows, c.key)), *_others(rows)]
-    headings(sheet, [*(c.heading for c in columns), "reason"], keep_columns=2)
+def add_evidence(book: Workbook, document: Mapping[str, Any]) -> None:
+    """Add the sheet of the evidence behind every verdict."""
+    groups = [(OVERALL, document[OVERALL])]
+    groups += [(one["name"], one["materials"]) for one in document["environments"]]
+    rows = [{**row, "environment": name} for name, materials in groups for row in materials]
+    rows = [row for row in rows if row.get("verdict") is not None]
+    _candidates(add_sheet(book, "evidence"), rows, (*WHICH, *EVIDENCE, *_others(rows)))
+
+
+def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]) -> None:
+    """Write one line for each candidate, and the columns in which any has a value."""
+    given = [column for column in columns if _is_given(rows, column.key)]
+    headings(sheet, [column.heading for column in given], keep_columns=2)
     for number, row in enumerate(rows, 2):
-        for place, column in enumerate(columns, 1):
+        for place, column in enumerate(given, 1):
             _cell(sheet, number, place, row, column)
-        put(sheet, number, len(columns) + 1, row.get("reason"), WRAPPED)
-    widths(sheet, *(column.width for column in columns), REASON_WIDTH)
-    last = sheet.cell(len(rows) + 1, len(columns) + 1).coordinate
-    sheet.auto_filter.ref = f"A1:{last}"
+    widths(sheet, *(column.width for column in given))
+    if given:
+        sheet.auto_filter.ref = f"A1:{cell_name(len(rows) + 1, len(given))}"
 
 
 def _cell(sheet: Worksheet, row: int, column: int, record: Row, shown: Column) -> None:
@@ -89,8 +105,9 @@ def _cell(sheet: Worksheet, row: int, column: int, record: Row, shown: Column) -
     if isinstance(value, float):
         value *= shown.factor
     fill = VERDICT_FILLS.get(str(value), "") if shown.key == "verdict" else ""
-    look = Look(number_format=shown.number_format, bold=shown.key in ("rank", "name"), fill=fill)
-    put(sheet, row, column, value, look if isinstance(value, int | float) or fill or look.bold else PLAIN)
+    number_format = shown.number_format if isinstance(value, int | float) else "General"
+    look = Look(number_format=number_format, bold=shown.key == "name", fill=fill, wrap=shown.key == "reason")
+    put(sheet, row, column, value, look)
 
 
 def _is_given(rows: Sequence[Row], key: str) -> bool:
@@ -99,7 +116,7 @@ def _is_given(rows: Sequence[Row], key: str) -> bool:
 
 def _others(rows: Sequence[Row]) -> list[Column]:
     """Columns for what the document says of a candidate beyond the table above, in SI units."""
-    known = {column.key for column in COLUMNS} | ELSEWHERE
+    known = {column.key for column in (*COLUMNS, *WHICH, *EVIDENCE)} | ELSEWHERE
     keys = dict.fromkeys(key for row in rows for key in row if key not in known)
     return [_other(key) for key in keys if any(_is_plain(row.get(key)) for row in rows)]
 
