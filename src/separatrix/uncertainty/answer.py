@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from separatrix.distribution import described
 from separatrix.errors import InputError
+from separatrix.friction_fit import TestedFriction
 from separatrix.ranking import probability_lowest, ranking_question
 from separatrix.ranking.friction import frictions_seen
 from separatrix.ranking.reason import not_measured
-from separatrix.study import Study
+from separatrix.study import Friction, Study
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, VERDICTS, Boundary, own_draws
 from separatrix.uncertainty.model import Case, Evaluated, Factors, Model, Stage, uncertain_model
 from separatrix.uncertainty.probability import (
@@ -127,24 +128,28 @@ def uncertain_ranking(
 
 
 def as_pockets_see(study: Study) -> Study:
-    """Return the study with frictions that are known over the conditions asked for at those of the pockets."""
+    """Return the study with the frictions of its tests asked for at the conditions of the pockets.
+
+    A friction that is stated without its tests keeps its scatter, that of an unrepeated test if none is
+    given: by how much it differs in the pocket nobody knows. What was not tested is said of both.
+    """
     asked = ranking_question(study)
-    if not any(
-        one is not None and one.law is not None for c in asked.candidates for one in c.friction.values()
-    ):
+    every = [one for candidate in asked.candidates for one in candidate.friction.values()]
+    if all(one is None or one.law is None for one in every):
         return study
     seen = ranking_question(frictions_seen(study)).candidates
     candidates = tuple(
-        replace(
-            candidate,
-            friction={
-                name: seen[place].friction[name] if one is not None and one.law is not None else one
-                for name, one in candidate.friction.items()
-            },
-        )
-        for place, candidate in enumerate(asked.candidates)
+        replace(old, friction={name: _seen(one, new.friction[name]) for name, one in old.friction.items()})
+        for old, new in zip(asked.candidates, seen, strict=True)
     )
     return replace(study, ranking=replace(asked, candidates=candidates))
+
+
+def _seen(stated: Friction | None, seen: Friction | None) -> Friction | None:
+    """Friction of the tests as the pocket sees it; a stated one as it is, with what was not tested."""
+    if stated is None or seen is None or isinstance(stated.law, TestedFriction):
+        return seen
+    return replace(stated, extrapolation=seen.extrapolation)
 
 
 def _sampled(model: Model, values: Array, factors: Factors, stage: Stage) -> Sampled:
@@ -273,7 +278,7 @@ def _nominal(model: Model) -> Evaluated:
 
 
 def _lowest(model: Model, environment: str, own: Sequence[int], friction: Array) -> Array:
-    """Probability of the lowest friction: in an environment that of `rank`, over all of them by the samples."""
+    """Probability of the lowest friction: in an environment as `rank` has it; over all, by the samples."""
     asked = ranking_question(model.study)
     if not environment:
         return np.asarray(best_credit(-friction).mean(axis=0))
