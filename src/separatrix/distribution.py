@@ -178,10 +178,13 @@ class LogUniform:
 
     @property
     def standard_deviation(self) -> float:
-        """The standard uncertainty."""
+        """The standard uncertainty; of a narrow one by its series, for the two terms nearly cancel."""
         w = math.log(self.high / self.low)
-        spread = math.expm1(2.0 * w) / (2.0 * w) - (math.expm1(w) / w) ** 2 if w > 0.01 else w * w / 12.0
-        return self.low * math.sqrt(spread)
+        if w > 0.1:
+            variance = math.expm1(2.0 * w) / (2.0 * w) - (math.expm1(w) / w) ** 2
+        else:
+            variance = math.exp(w) * w * w * (1.0 / 12.0 + w * w * (1.0 / 180.0 + w * w / 6720.0))
+        return self.low * math.sqrt(variance)
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""

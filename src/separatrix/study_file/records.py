@@ -92,7 +92,9 @@ def _relocated(document: Document, problem: InputError) -> InputError:
     if section is None:
         return problem
     entry = document.sections.get(section, {}).get(key)
-    value = problem.value
-    if value and entry is not None and isinstance(entry.value, (str, int, float)):
+    value, uncertain = problem.value, document.distributions.get(f"{section}.{key}")
+    if value and uncertain is not None:
+        value = f"{uncertain.text}, whose mean is {value}"
+    elif value and entry is not None and isinstance(entry.value, (str, int, float)):
         value = shown(entry.value)
     return InputError(where(document, section, key), problem.rule, problem.unit, value, problem.cure)
