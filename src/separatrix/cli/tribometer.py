@@ -229,13 +229,17 @@ def _draw(reductions: Sequence[Reduction], folder: Path) -> None:
     """Write a page of plots for each test."""
     from separatrix.figures import save
     from separatrix.figures.tribometer import page
+    from separatrix.results import labelled
+    from separatrix.results.friction_tests import page_data
 
     names: dict[str, int] = {}
     with staged(folder) as stage:
         for one in reductions:
             name = file_name(one.log.source)
             names[name] = number = names.get(name, 0) + 1
-            save(page(one), stage / f"{name if number == 1 else f'{name}-{number}'}.png")
+            data, place = page_data(one), stage / (name if number == 1 else f"{name}-{number}")
+            labelled.save(data, place.with_name(f"{place.name}.nc"))
+            save(page(data), place.with_name(f"{place.name}.png"))
 
 
 def file_name(source: str) -> str:

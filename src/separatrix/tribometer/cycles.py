@@ -95,6 +95,11 @@ class Stretch:
         first, last = round(spans.start), round(spans.end)
         return means(self.done, self.friction, float(first), float(last), last - first).means
 
+    def within(self, spans: Spans) -> Array:
+        """Return friction of the rows that the spans hold, shape (row,)."""
+        first = int(np.searchsorted(self.ruler, spans.start))
+        return self.friction[first : int(np.searchsorted(self.ruler, spans.end, side="right"))]
+
     def place(self, ruled: float) -> float:
         """Return where along the abscissa a place of the ruler is."""
         if self.done is None:

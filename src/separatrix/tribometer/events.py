@@ -23,6 +23,9 @@ LASTING = 0.1
 CHUNKS = 256
 """Stretches whose means say what the usual friction is."""
 
+NOISE = 7.0
+"""Standard deviations above its mean that noise does not reach."""
+
 ONSET = 0.1
 """Share of the rise to the limit at which a seizure is said to begin."""
 
@@ -76,7 +79,7 @@ def _friction_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
     if usual <= 0.0 or log.rows < 4 * SMOOTHED:
         return
     smooth = median_filter(log.friction, SMOOTHED, mode="nearest")
-    for first, last in _stretches(smooth > options.seizure_ratio * usual):
+    for first, last in _stretches(smooth > max(options.seizure_ratio * usual, _reach_of_noise(smooth))):
         if first == 0 or last - first < SMOOTHED:
             continue
         stays = last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows
@@ -93,6 +96,16 @@ def _friction_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
         )
         if stays:
             return
+
+
+def _reach_of_noise(smooth: Array) -> float:
+    """Return the friction that noise does not reach, told from the lower fifth: no seizure can lift it.
+
+    The quantiles of 2.5 % and 20 % of a normal distribution lie 1.96 and 0.84 standard deviations below
+    its mean.
+    """
+    low, fifth = np.percentile(smooth, (2.5, 20.0))
+    return float(fifth + (0.84 + NOISE) * (fifth - low) / (1.96 - 0.84))
 
 
 def _force_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:

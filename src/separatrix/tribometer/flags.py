@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from separatrix.tribometer.cycles import Spans
 from separatrix.tribometer.events import Event
@@ -10,13 +12,16 @@ from separatrix.tribometer.options import ReductionOptions
 from separatrix.tribometer.run_in import RunIn
 from separatrix.tribometer.steady import SteadyMean
 from separatrix.tribometer.stick_slip import Oscillation
-from separatrix.units import format_number, format_quantity
+from separatrix.units import Array, format_number, format_quantity
 
 RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
 """Size and words in which a drift is told, by the abscissa."""
 
 CHANCE = 0.01
 """Probability without any drift below which a drift is told."""
+
+CLEAR = 0.25
+"""Power of an oscillation over that of all the rest from which it is told."""
 
 HALF = 0.5
 """Share of a test beyond which running-in is told to be long."""
@@ -67,7 +72,8 @@ def oscillation_flag(
     found: Oscillation, mean: float, axis: str, is_cycle_known: bool, options: ReductionOptions
 ) -> Iterator[str]:
     """Tell of an oscillation that is large enough and stands out of the noise."""
-    if found.amplitude <= 0.0 or found.amplitude < options.stick_slip_ratio * abs(mean):
+    small = found.amplitude < options.stick_slip_ratio * abs(mean)
+    if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
         return
     rate = format_number(found.frequency, 3)
     power = format_number(found.signal_to_noise, 2)
@@ -82,8 +88,16 @@ def oscillation_flag(
     )
 
 
-def event_flag(event: Event, begin: str, end: str) -> str:
-    """Tell of an event that the rows show, at two places along the abscissa."""
+def spike_flag(spikes: Sequence[Event], place: str) -> Iterator[str]:
+    """Tell of friction that rises far in the steady part and comes back; the place is of the largest."""
+    if spikes:
+        usual, size = format_number(spikes[0].usual, 3), format_number(max(e.size for e in spikes), 3)
+        often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
+        yield f"Friction spikes {often} at {place}: from {usual} to {size}, and comes back."
+
+
+def event_flag(event: Event, begin: str) -> str:
+    """Tell of an event that begins or ends the test, at a place along the abscissa."""
     usual = format_number(event.usual, 3)
     if event.kind == "loading":
         force = format_quantity(event.usual, "N")
@@ -92,12 +106,10 @@ def event_flag(event: Event, begin: str, end: str) -> str:
         low, force = format_quantity(event.size, "N"), format_quantity(event.usual, "N")
         return f"The normal force falls from {force} to {low} at {begin}: the steady part ends before it."
     size = format_number(event.size, 3)
-    if event.kind == "seizure":
-        return (
-            f"Seizure or a failed film: friction rises from {usual} to {size} at {begin} and stays up; "
-            "the steady part ends before it."
-        )
-    return f"Friction rises from {usual} to {size} between {begin} and {end}, and comes back: a spike."
+    return (
+        f"Seizure or a failed film: friction rises from {usual} to {size} at {begin} and stays up; "
+        "the steady part ends before it."
+    )
 
 
 def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | None) -> Iterator[str]:
@@ -125,12 +137,13 @@ def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) 
         )
 
 
-def range_flag(mean: float, low: float, high: float) -> Iterator[str]:
-    """Tell of friction that no dry contact has."""
+def range_flag(mean: float, friction: Array) -> Iterator[str]:
+    """Tell of friction that no dry contact has, in the mean or in one of a hundred rows."""
+    low, high = (float(value) for value in np.percentile(friction, (1.0, 99.0)))
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
         numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
-            "Friction lies outside 0 to 2 (mean {}, rows from {} to {}): "
+            "Friction lies outside 0 to 2 (mean {}, 98 % of its rows from {} to {}): "
             "check zero, sign and units of the forces.".format(*numbers)
         )
 

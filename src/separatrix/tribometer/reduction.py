@@ -47,6 +47,11 @@ class Reduction:
     oscillation: Oscillation
     events: tuple[Event, ...] = ()
 
+    @property
+    def steady_friction(self) -> Array:
+        """Friction of the rows of the steady part, shape (row,)."""
+        return self.stretch.within(self.spans)
+
 
 def reduce_log(log: RawLog, options: ReductionOptions = DEFAULTS) -> TestFriction:
     """Return the friction of a log with its error; `reduction` gives also what it was made from."""
@@ -203,14 +208,18 @@ class _Parts:
         """Yield what a reader should know."""
         low, high = self.ends
         for event in self.events:
-            yield flags.event_flag(event, self.told_row(event.row), self.told_row(event.until - 1))
+            if event.kind != "spike":
+                yield flags.event_flag(event, self.told_row(event.row))
         yield from flags.run_in_flags(self.run_in, float(self.stretch.along[0]), high, low, self.axis)
         yield from flags.drift_flag(self.mean, high - low, self.axis, self.options)
         known = self.clock.cycle is not None
         yield from flags.oscillation_flag(self.oscillation, self.mean.mean, self.axis, known, self.options)
+        spikes = [e for e in self.events if e.kind == "spike" and low <= self.along[e.row] <= high]
+        largest = max(spikes, key=lambda event: event.size, default=None)
+        yield from flags.spike_flag(spikes, "" if largest is None else self.told_row(largest.row))
         yield from flags.step_flags(self.told(friction_step(self.spans)), self.told(self.wear()))
         yield from flags.length_flags(self.mean, self.effective, self.options)
-        yield from flags.range_flag(self.mean.mean, float(self.friction.min()), float(self.friction.max()))
+        yield from flags.range_flag(self.mean.mean, self.friction)
         yield from flags.gap_flag(self.spans)
         yield from self.clock.notes
 
@@ -243,10 +252,7 @@ class _Parts:
     @cached_property
     def friction(self) -> Array:
         """Friction of the rows of the steady part, shape (row,)."""
-        ruler = self.stretch.ruler
-        first = int(np.searchsorted(ruler, self.spans.start))
-        last = int(np.searchsorted(ruler, self.spans.end, side="right"))
-        return self.stretch.friction[first:last]
+        return self.stretch.within(self.spans)
 
     @cached_property
     def ends(self) -> tuple[float, float]:

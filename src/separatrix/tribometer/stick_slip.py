@@ -23,6 +23,9 @@ CHANCE = 1e-4
 BESIDE = 8
 """Places on each side of a line from which the noise is told; the two next to it are left out."""
 
+LOWEST = 12
+"""First place of a spectrum where a line is looked for: below there is no noise to its left."""
+
 HARMONICS = 12
 """Multiples of the cycle that are its own."""
 
@@ -103,7 +106,7 @@ def _line(
     noise = np.maximum(beside(density), 1e-300)
     ratio = np.where(_own(frequencies, cycle), 0.0, density / noise)
     place = np.arange(ratio.size)
-    ratio[(place < 4) | (place > ratio.size - 2)] = 0.0
+    ratio[(place < LOWEST) | (place > ratio.size - 2)] = 0.0
     strongest = int(np.argmax(ratio * density * (ratio > _limit(ratio.size, averages))))
     return (strongest, noise) if ratio[strongest] > _limit(ratio.size, averages) else None
 
