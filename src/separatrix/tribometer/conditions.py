@@ -35,7 +35,7 @@ KEYS: dict[str, str] = {
 """Keys of metadata that are conditions, in English, German and French."""
 
 AGREE = 0.01
-"""How far two ways to the same condition may lie apart: rig set points are written with two or three digits."""
+"""How far two ways to one condition may lie apart: set points are written with two or three digits."""
 
 _VALUE = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"

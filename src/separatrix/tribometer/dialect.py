@@ -43,7 +43,7 @@ class Dialect:
         return fields(line, self.separator)
 
     def is_data(self, line: str) -> bool:
-        """True for a row of the table: at least two numbers, and nothing that is no number, word or date."""
+        """True for a row of the table: numbers or their absence, and no more words or dates than numbers."""
         return _is_data(self.fields(line), self.missing)
 
 
@@ -91,17 +91,19 @@ def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> st
 
 
 def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
-    numbers = words = 0
+    numbers = words = absent = 0
     for field in row:
         if field.casefold() in missing:
-            continue
-        if is_number(field):
+            absent += 1
+        elif is_number(field):
             numbers += 1
         elif _WORD.fullmatch(field):
             words += 1
         elif not _GROUPED.fullmatch(field) and not _several_signs(field):
             return False
-    return numbers >= 2 and words <= numbers
+    if numbers < 2:
+        return numbers == 1 and absent > 0 and words == 0
+    return words <= numbers
 
 
 def _several_signs(field: str) -> bool:

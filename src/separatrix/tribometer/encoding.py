@@ -23,6 +23,7 @@ _OTHERS = {
     b"\x89HDF": ("an HDF5 file", "Export the log as text."),
     b"MATLAB 5": ("a MATLAB file", "Export the log as text."),
 }
+_ASCII_BELOW = ("utf-8", "cp1252", "latin-1", "cp1250")
 _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 
 
@@ -41,7 +42,7 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
         _refuse_binary(raw, source)
     body, known = _without_mark(raw)
     chosen = encoding or known or _by_rule(body, source)
-    text = body if chosen == "utf-8" and body.isascii() else _recoded(body, chosen, source)
+    text = _in_utf8(body, chosen, source)
     if text[:65536].translate(None, _CONTROLS) != text[:65536]:
         raise _binary(source)
     return _line_feeds(text), chosen
@@ -84,6 +85,16 @@ def _utf16_without_mark(raw: bytes, source: str) -> str:
     raise _binary(source)
 
 
+def _in_utf8(raw: bytes, encoding: str, source: str) -> bytes:
+    """Only the lines before the plain ASCII of the rows are recoded, where the encoding allows."""
+    if encoding not in _ASCII_BELOW:
+        return _recoded(raw, encoding, source)
+    cut = raw.find(b"\n", 16384) + 1
+    if cut == 0 or not raw[cut:].isascii():
+        return _recoded(raw, encoding, source)
+    return _recoded(raw[:cut], encoding, source) + raw[cut:]
+
+
 def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
     try:
         return raw.decode(encoding).encode("utf-8")
@@ -96,9 +107,12 @@ def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
 
 
 def _line_feeds(text: bytes) -> bytes:
-    if b"\r" in text:
-        text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return text
+    returns = text.count(b"\r")
+    if returns == 0:
+        return text
+    if returns == text.count(b"\r\n"):
+        return text.translate(None, b"\r")
+    return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def _binary(source: str) -> InputError:

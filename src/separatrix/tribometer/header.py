@@ -13,7 +13,10 @@ from separatrix.tribometer.dialect import Dialect, is_number
 from separatrix.tribometer.names import ALIASES, ranks
 from separatrix.units import printable
 
-_OTHER_UNITS = "% %rh v mv a ma w kw hz khz deg \u00b0 rad g kg nm mm2 mm3 um3 um2 bar mbar pa kpa mpa l/min ml/min ohm ohms db"
+_OTHER_UNITS = (
+    "% %rh v mv a ma w kw hz khz deg \u00b0 rad g kg nm mm2 mm3 um3 um2 bar mbar pa kpa mpa l/min ml/min "
+    "ohm ohms db"
+)
 _UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
@@ -51,7 +54,7 @@ def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header |
     matching: list[tuple[str, list[str]]] = []
     for line in reversed(before[-8:]):
         row = _row(line, count, dialect)
-        if row is not None and any(part and not is_number(part) for part in row):
+        if row is not None and _is_words(row, dialect):
             matching.append((line, row))
     if not matching:
         return None
@@ -79,6 +82,13 @@ def header_at(
     return Header(tuple(rows[0]), tuple(_bare(unit) for unit in rows[1]))
 
 
+def _is_words(row: Sequence[str], dialect: Dialect) -> bool:
+    """True where more fields are words than numbers; a mark for a missing value is neither."""
+    filled = [field for field in row if field.casefold() not in dialect.missing]
+    numbers = sum(is_number(field) for field in filled)
+    return len(filled) > 2 * numbers or is_units(row)
+
+
 def is_units(row: Sequence[str]) -> bool:
     """True for a row of units: at least two of them, and nothing that could be a name."""
     bare = [_bare(field) for field in row]
@@ -97,7 +107,7 @@ def _bare(unit: str) -> str:
 
 def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
     """Fields of a line if there are `count`, not counting an empty one that a last separator makes."""
-    for row in _splits(line, count, dialect):
+    for row in _splits(line, dialect):
         if len(row) == count:
             return row
         if len(row) == count + 1 and not row[-1]:
@@ -107,7 +117,7 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
     return None
 
 
-def _splits(line: str, count: int, dialect: Dialect) -> list[list[str]]:
+def _splits(line: str, dialect: Dialect) -> list[list[str]]:
     if dialect.separator != " ":
         return [dialect.fields(line)]
     wide = [part.strip() for part in re.split(r"\t| {2,}", line.strip())]

@@ -1,4 +1,4 @@
-"""From a table as it stands in a file to a log in SI units: scaled, complete rows only, friction as magnitude."""
+"""From a table of a file to a log in SI units: scaled, complete rows only, friction as magnitude."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import numpy as np
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import ColumnMap
 from separatrix.tribometer.columns import Chosen, Understood, understand
-from separatrix.tribometer.conditions import conditions_of
+from separatrix.tribometer.conditions import KEYS, conditions_of
 from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, MEANINGS, RawLog, RawTable
+from separatrix.tribometer.names import header_parts, plain
 from separatrix.units import Array, format_quantity, printable
+
+Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 ONE_SIGN = 0.9
 """Share of the rows in which the normal force must have one sign for it to be that of compression."""
@@ -51,7 +54,8 @@ def raw_log(
     _check_order(arrays, kept, table, source)
     arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
     rotation = _speed_from_rotation(arrays, given, notes)
-    conditions, sentences = conditions_of(given, table.metadata, arrays | rotation, source)
+    metadata = _without_stroke_speed(table, arrays, notes)
+    conditions, sentences = conditions_of(given, metadata, arrays | rotation, source)
     fields = {meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"}
     return RawLog(
         source=source,
@@ -62,7 +66,7 @@ def raw_log(
         metadata=dict(table.metadata),
         conditions=conditions,
         notes=(*notes, *sentences),
-        **fields,  # type: ignore[arg-type]
+        **fields,
     )
 
 
@@ -135,7 +139,7 @@ def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]
     return np.where(np.isfinite(friction), friction, np.nan)
 
 
-def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tuple[np.ndarray, int]:  # type: ignore[type-arg]
+def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tuple[Rows, int]:
     """Rows that have friction and every abscissa, and how many have not."""
     kept = np.isfinite(arrays["friction"])
     for meaning in ABSCISSAE:
@@ -150,7 +154,7 @@ def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tup
     return kept, missing
 
 
-def _check_order(arrays: Mapping[str, Array], kept: np.ndarray, table: RawTable, source: str) -> None:  # type: ignore[type-arg]
+def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
     rows = np.flatnonzero(kept)
     for meaning in ABSCISSAE:
         if meaning not in arrays:
@@ -161,11 +165,27 @@ def _check_order(arrays: Mapping[str, Array], kept: np.ndarray, table: RawTable,
             i = int(back[0]) + 1
             line = table.lines[rows[i]] if table.lines is not None else rows[i] + 1
             unit = MEANINGS[meaning]
-            shown = f"{format_quantity(float(column[i]), unit, 8)} after {format_quantity(float(column[i - 1]), unit, 8)}"
-            cure = "Split the file there, one test in each; or, if this is no such column, name it in a column map."
+            here, before = (format_quantity(float(column[j]), unit, 8) for j in (i, i - 1))
+            cure = "Split the file there; or, if this column is another, say so in a column map."
             place = "line" if table.lines is not None else "row"
             where = f"{source}: {place} {line}"
-            raise InputError(where, f"{meaning} must not run backwards", "", shown, cure)
+            raise InputError(where, f"{meaning} must not run backwards", "", f"{here} after {before}", cure)
+
+
+def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list[str]) -> dict[str, str]:
+    """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
+    strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
+    speeds = [
+        key for key in table.metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"].split("; ")
+    ]
+    if strokes and (speeds or "slip_speed" in arrays):
+        arrays.pop("slip_speed", None)
+        notes.append(
+            "these are strokes there and back: the file gives their greatest speed, which is not used; give "
+            "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
+        )
+        return {key: value for key, value in table.metadata.items() if key not in speeds}
+    return dict(table.metadata)
 
 
 def _speed_from_rotation(

@@ -91,7 +91,7 @@ def _content(path: Path, name: str) -> bytes:
         raw = path.read_bytes()
     except OSError as problem:
         raise InputError(name, "cannot be read", "", problem.strerror or type(problem).__name__) from None
-    if not raw.strip():
+    if not raw[:65536].strip():
         raise InputError(name, "is empty")
     return raw
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -26,7 +27,7 @@ def split_by_step(table: RawTable, layout: Layout) -> list[RawTable]:
         return [table]
     steps = table.columns[found.pop()]
     bounds = [0, *(np.flatnonzero(np.diff(steps) != 0.0) + 1).tolist(), len(steps)]
-    pieces = [(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True) if b - a >= 2]
+    pieces = [(a, b) for a, b in pairwise(bounds) if b - a >= 2]
     if len(bounds) == 2 or not pieces:
         return [table]
     names = [f"step {steps[a]:g}" for a, _ in pieces]
