@@ -1,7 +1,7 @@
 """What is asked: a model as a function of uncertain inputs.
 
-`evaluate(values)`, with values of shape (sample, input) in SI units, answers for every case, a candidate in one
-environment. The model knows nothing of how it is asked.
+`evaluate(values)`, with values of shape (sample, input) in SI units, answers for every case, a candidate in
+one environment. The model knows nothing of how it is asked.
 """
 
 from __future__ import annotations
