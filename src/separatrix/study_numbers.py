@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any
 
-from separatrix.distribution import Distribution, described, positive_alternative
+from separatrix.distribution import Distribution, LogNormal, Normal, described, positive_alternative
 from separatrix.errors import InputError
 from separatrix.study import (
     BallBearing,
@@ -290,7 +290,8 @@ def _refusal(study: Study, key: str, unit: str, distribution: Distribution) -> I
         except InputError as error:
             where = f"at the {side} end, {format_quantity(end, unit or '-')}: {error.where} {error.rule}"
             rule = f"leaves the range that the study takes {where}"
-            cure = "Make it narrower, or give its bounds: { between = [..., ...] }."
+            wide = isinstance(distribution, Normal | LogNormal)
+            cure = "Make it narrower, or write { between = [..., ...] }." if wide else "Narrow it."
             return InputError(key, rule, "", distribution.text or described(distribution, unit), cure)
     return None
 

@@ -24,7 +24,7 @@ def friction(text: str) -> str:
 WRONG = {
     "zero percent": (
         film('"0.5 um +- 0 %"'),
-        ("line 4: [film] thickness", "a width > 0", "if it is certain"),
+        ("line 4: [film] thickness", "width > 0", "is certain"),
     ),
     "negative percent": (film('"0.5 um +- -20 %"'), ("a width > 0", '"-20 %"', "no sign")),
     "zero width": (film('"0.5 um +- 0 um"'), ("a width > 0", '"0 um"')),
@@ -83,7 +83,7 @@ WRONG = {
     "samples in samples": (film('[["1 um", "2 um"], "3 um"]'), ("item 1, needs a unit",)),
     "too wide to be log-normal": (
         film('{ mean = "1 um", standard_deviation = "40 um" }'),
-        ("leaves the range that the study takes", "give its bounds"),
+        ("leaves the range that the study takes", "write { between"),
     ),
     "no share of zero": ('[operation]\nradial_load = "0 N +- 10 %"\n', ("is a share of 0",)),
     "a load around zero": (

@@ -1,0 +1,155 @@
+"""Quasi-random draws: what holds whatever the study, the number of samples and the seed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from separatrix.distribution import Normal, Samples, Uniform
+from separatrix.errors import InputError
+from separatrix.study import BallBearing, Candidate, Film, Friction, Operation, RankingQuestion, Study
+from separatrix.study_file import read_study
+from separatrix.study_numbers import with_distributions
+from separatrix.uncertainty.sampling import next_cage_deviation, sample, sobol_points, uncertain_inputs
+
+BASE = read_study("cryogenic-turbopump")
+LAWS = {
+    "film.thickness": Normal(mean=5e-7, standard_deviation=1e-7),
+    "bearing.ball_count": Samples(values=(12, 13)),
+    "operation.axial_load": Uniform(low=2500.0, high=3500.0),
+}
+UNCERTAIN = with_distributions(BASE, LAWS)
+
+FEW = settings(deadline=None, max_examples=30)
+"""The first call imports scipy.stats."""
+
+
+@FEW
+@given(st.integers(1, 300), st.integers(1, 300), st.integers(0, 2**40), st.integers(1, 8))
+def test_fewer_samples_are_the_first_of_more(few, more, seed, dimensions):
+    """A study can be carried on: what was drawn stays drawn, to the last bit."""
+    low, high = sorted((few, more))
+    assert np.array_equal(
+        sobol_points(low, dimensions, seed), sobol_points(high, dimensions, seed)[:low], equal_nan=False
+    )
+
+
+@FEW
+@given(st.integers(0, 10), st.integers(0, 2**62))
+def test_every_dimension_is_stratified(power, seed):
+    """A power of two of points has exactly one in each of as many equal cells, along every axis."""
+    points = sobol_points(2**power, 5, seed)
+    cells = np.sort(np.floor(points * 2**power).astype(int), axis=0)
+    assert (cells == np.arange(2**power)[:, None]).all()
+
+
+@FEW
+@given(st.integers(1, 64), st.integers(0, 2**20))
+def test_points_lie_inside_the_cube(samples, seed):
+    """No point is 0 or 1, where a quantile has its end."""
+    points = sobol_points(samples, 3, seed)
+    assert points.min() >= 2.0**-31
+    assert points.max() <= 1.0 - 2.0**-31
+
+
+@FEW
+@given(st.integers(0, 2**20))
+def test_the_same_seed_gives_the_same_draws_and_leaves_global_chance_alone(seed):
+    """Nothing but study, number and seed decides."""
+    np.random.seed(1)  # noqa: NPY002 - what must not matter
+    first = sample(UNCERTAIN, 16, seed)
+    state = np.random.get_state()[1].copy()  # noqa: NPY002
+    again = sample(UNCERTAIN, 16, seed)
+    assert np.array_equal(first.values, again.values)
+    assert np.array_equal(state, np.random.get_state()[1])  # noqa: NPY002
+    other = sample(UNCERTAIN, 16, seed + 1)
+    assert not np.array_equal(first.probabilities, other.probabilities)
+
+
+@FEW
+@given(st.integers(1, 200), st.integers(0, 2**20))
+def test_every_draw_lies_in_its_distribution(samples, seed):
+    """Columns stand in the order of the inputs, each within its ends; whole numbers stay whole."""
+    draws = sample(UNCERTAIN, samples, seed)
+    for i, one in enumerate(draws.inputs):
+        assert draws.values[:, i].min() >= one.distribution.low
+        assert draws.values[:, i].max() <= one.distribution.high
+    assert set(draws.column("bearing.ball_count")) <= {12.0, 13.0}
+    assert draws.is_balanced == (samples in (1, 2, 4, 8, 16, 32, 64, 128))
+
+
+def test_the_error_of_a_mean_falls_faster_than_its_number_to_the_power_0_9():
+    """A smooth function of four inputs, its root mean square error over 32 seeds, from 64 to 4096 points.
+
+    Random draws give the power 0.5. The slope of 7 points has a standard error of about 0.05.
+    """
+    numbers = 2 ** np.arange(6, 13)
+    errors = np.zeros((32, numbers.size))
+    for seed in range(32):
+        points = sobol_points(int(numbers[-1]), 4, seed)
+        values = np.prod(1.0 + 0.5 * (points - 0.5), axis=1)  # its mean is 1
+        errors[seed] = [values[:n].mean() - 1.0 for n in numbers]
+    size = np.sqrt((errors**2).mean(axis=0))
+    slope = np.polyfit(np.log(numbers), np.log(size), 1)[0]
+    assert slope < -0.9
+
+
+def test_inputs_are_those_of_the_study_then_the_measured_frictions():
+    """First what the file says, in its order; then each measured friction with its scatter."""
+    inputs = uncertain_inputs(UNCERTAIN)
+    assert tuple(one.key for one in inputs[:3]) == tuple(LAWS)
+    assert [one.source for one in inputs[:3]] == ["study"] * 3
+    frictions = inputs[3:]
+    measured = [f for c in BASE.ranking.candidates for f in c.friction.values() if f is not None]
+    assert len(frictions) == len(measured)
+    for one, friction in zip(frictions, measured, strict=True):
+        assert one.key.startswith("ranking.")
+        assert one.source == "assumed"
+        assert one.distribution.standard_deviation == pytest.approx(0.09 * friction.mean, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("friction", "deviation", "source"),
+    [
+        (Friction(mean=0.1), 0.009, "assumed"),
+        (Friction(mean=0.1, standard_deviation=0.02), 0.02, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.02, count=4), 0.02 * 1.25**0.5, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.03, standard_error=0.04), 0.05, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.03, assumed_scatter=True), 0.03, "assumed"),
+    ],
+)
+def test_the_next_cage_scatters_more_than_the_mean(friction, deviation, source):
+    """The scatter of one sample and the error of the mean add in quadrature; nothing known is 9 %."""
+    found = next_cage_deviation(friction, 0.09)
+    assert found == (pytest.approx(deviation, rel=1e-12), source)
+
+
+def test_a_friction_whose_scatter_reaches_zero_is_log_normal():
+    """No draw of a friction is negative, and the mean stays the measured one."""
+    wide = Candidate(name="Wide", friction={"air": Friction(mean=0.05, standard_deviation=0.02)})
+    study = replace(BASE, ranking=RankingQuestion(environments=("air",), candidates=(wide,)))
+    draws = sample(study, 1024)
+    assert draws.inputs[0].distribution.kind == "log-normal"
+    assert draws.values.min() > 0.0
+    assert draws.values.mean() == pytest.approx(0.05, rel=2e-3)  # 1024 points, 40 % wide, error near 1/n
+
+
+def test_what_cannot_be_drawn_is_refused():
+    """Too few, too many, or nothing uncertain, each in one line."""
+    bearing: BallBearing = BASE.bearing
+    bare = Study(
+        name="certain",
+        title="certain",
+        bearing=bearing,
+        operation=Operation(inner_speed=100.0, axial_load=10.0),
+        film=Film(race_friction=0.1),
+    )
+    for study, samples, words in (
+        (UNCERTAIN, 0, "samples must be a whole number from 1"),
+        (UNCERTAIN, 2**20 + 1, "samples must be a whole number from 1"),
+        (bare, 16, "certain has no uncertain number to draw"),
+    ):
+        with pytest.raises(InputError, match=words):
+            sample(study, samples)

@@ -1,0 +1,232 @@
+"""Uncertain numbers of a study: how a file writes them, what the study holds, what every verb says."""
+
+import json
+import math
+
+import pytest
+
+from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
+from separatrix.errors import InputError
+from separatrix.ranking.friction import measured
+from separatrix.report import report
+from separatrix.results import document
+from separatrix.stability.map_parameters import varied
+from separatrix.study_file import read_study, resolved
+from separatrix.study_numbers import (
+    MOST_DISTRIBUTIONS,
+    radial_clearance,
+    study_numbers,
+    value_of,
+    with_distributions,
+    with_values,
+)
+
+HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
+
+
+@pytest.fixture
+def study_of(tmp_path):
+    """Study of a text that stands over the shipped one."""
+
+    def read(text):
+        path = tmp_path / "case.toml"
+        path.write_text(HEAD + text, encoding="utf-8")
+        return read_study(path)
+
+    return read
+
+
+FORMS = {
+    '"0.5 um +- 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5 um +- 0.1 um"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5um+-100nm"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5 um ± 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5 um +/- 20%"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5 um +- 80 %"': LogNormal(mean=5e-7, standard_deviation=2e-7),
+    '{ between = ["0.2 um", "1 um"] }': Uniform(low=2e-7, high=1e-6),
+    '{ between = ["0.2 um", "1 um"], log = true }': LogUniform(low=2e-7, high=1e-6),
+    '{ between = ["0.2 um", "1 um"], log = false }': Uniform(low=2e-7, high=1e-6),
+    '{ mean = "0.5 um", standard_deviation = "50 nm" }': Normal(mean=5e-7, standard_deviation=5e-8),
+    '{ mean = "0.5 um", standard_deviation = "10 %" }': Normal(mean=5e-7, standard_deviation=5e-8),
+    '["0.2 um", "0.4 um", "0.6 um"]': Samples(values=(2e-7, 4e-7, 6e-7)),
+    '{ samples = ["0.6 um", "0.2 um", "0.4 um"] }': Samples(values=(2e-7, 4e-7, 6e-7)),
+}
+
+
+@pytest.mark.parametrize("text", FORMS)
+def test_every_form_is_read(text, study_of):
+    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file."""
+    study = study_of(f"[film]\nthickness = {text}\n")
+    found, wanted = study.distributions["film.thickness"], FORMS[text]
+    assert type(found) is type(wanted)
+    assert (found.mean, found.standard_deviation) == pytest.approx(
+        (wanted.mean, wanted.standard_deviation), rel=1e-14
+    )
+    assert found.text == text
+    assert study.film.thickness == found.mean
+
+
+def test_what_follows_the_sign_is_two_standard_deviations(study_of):
+    """An expanded uncertainty with the coverage factor 2, as on a certificate (GUM, 7.2.4)."""
+    study = study_of('[operation]\naxial_load = "300 daN +- 20 %"\n')
+    assert study.distributions["operation.axial_load"].standard_deviation == pytest.approx(300.0, rel=1e-15)
+
+
+def test_a_width_in_another_unit_or_of_a_temperature_is_a_difference(study_of):
+    """20 degC +- 2 degC is 2 K wide, not 275 K; degrees Fahrenheit are smaller."""
+    for text, mean, deviation in (
+        ("20 degC +- 2 degC", 293.15, 1.0),
+        ("77 K +- 2 degC", 77.0, 1.0),
+        ("77 K +- 1.8 degF", 77.0, 0.5),
+        ("77 K +- 2 %", 77.0, 0.77),
+    ):
+        film = '[film]\nelastic_modulus = "2 GPa"\npoisson_ratio = 0.4\n'  # good at any temperature
+        study = study_of(f'[operation]\nfluid = "air"\ntemperature = "{text}"\n{film}')
+        law = study.distributions["operation.temperature"]
+        assert (law.mean, law.standard_deviation) == pytest.approx((mean, deviation), rel=1e-12)
+
+
+def test_ratios_counts_and_materials_in_place_are_uncertain_alike(study_of):
+    """Every number of a study: without unit, whole, of a film, of a ring's material, of a candidate."""
+    study = study_of("""
+[bearing]
+ball_count = [12, 13]
+outer_conformity = "0.52 +- 1 %"
+ring_material = { elastic_modulus = "205 GPa +- 2 %", poisson_ratio = 0.285, density = "7650 kg/m3" }
+[film]
+race_friction = { mean = 0.1, standard_deviation = 0.01 }
+material = { elastic_modulus = { between = ["1 GPa", "5 GPa"] }, poisson_ratio = 0.4 }
+[cage]
+mass = { samples = ["24 g", "25 g", "26 g"] }
+[[ranking.candidates]]
+name = "Mine"
+friction = { "air" = "0.1 +- 20 %", "water" = { mean = 0.1, standard_deviation = "9 %" }, "oil" = 0.05 }
+material = { elastic_modulus = "5 GPa +- 30 %", poisson_ratio = [0.3, 0.4] }
+""")
+    assert set(study.distributions) == {
+        "bearing.ball_count",
+        "bearing.outer_conformity",
+        "bearing.ring_material.elastic_modulus",
+        "film.race_friction",
+        "film.elastic_modulus",
+        "cage.mass",
+        "ranking.Mine.air",
+        "ranking.Mine.material.elastic_modulus",
+        "ranking.Mine.material.poisson_ratio",
+    }
+    known = study_numbers(study)
+    for key, law in study.distributions.items():
+        assert value_of(study, known[key]) == pytest.approx(law.mean, rel=1e-15), key
+    assert study.bearing.ball_count == 12
+    friction = study.ranking.candidates[0].friction
+    assert friction["air"].standard_deviation == pytest.approx(0.01)
+    assert friction["water"].standard_deviation == pytest.approx(0.009)
+    assert measured(friction["water"]).error == pytest.approx(0.009)
+
+
+def test_a_film_given_in_place_or_as_a_material_has_one_name(study_of):
+    """The film's modulus is film.elastic_modulus, however it is written."""
+    plain = study_of('[film]\nelastic_modulus = "2 GPa +- 20 %"\npoisson_ratio = 0.4\n')
+    nested = study_of('[film]\nmaterial = { elastic_modulus = "2 GPa +- 20 %", poisson_ratio = 0.4 }\n')
+    assert list(plain.distributions) == list(nested.distributions) == ["film.elastic_modulus"]
+
+
+def test_an_uncertain_clearance_moves_the_angle(study_of):
+    """The study holds an angle; its clearance is the uncertain number."""
+    base = read_study("cryogenic-turbopump")
+    clearance = radial_clearance(base.bearing)
+    text = f'[bearing]\nradial_clearance = "{clearance * 1e6:.6f} um +- 5 %"\n'
+    study = study_of(text)
+    assert study.bearing.contact_angle == pytest.approx(base.bearing.contact_angle, rel=1e-6)
+    wider = with_values(study, {"bearing.radial_clearance": 1.05 * clearance})
+    assert math.cos(base.bearing.contact_angle) - math.cos(wider.bearing.contact_angle) == pytest.approx(
+        0.05 * (1.0 - math.cos(base.bearing.contact_angle)), rel=1e-4
+    )
+
+
+def test_a_clearance_that_was_given_stays_where_the_ball_varies(study_of):
+    """The angle follows from clearance and diameter, if the clearance is what the file says."""
+    given = study_of('[bearing]\nradial_clearance = "83 um"\nball_diameter = "11.1125 mm +- 0.1 %"\n')
+    larger = with_values(given, {"bearing.ball_diameter": 11.12e-3})
+    assert radial_clearance(larger.bearing) == pytest.approx(83e-6, rel=1e-12)
+    by_angle = with_values(read_study("cryogenic-turbopump"), {"bearing.ball_diameter": 11.12e-3})
+    assert by_angle.bearing.contact_angle == read_study("cryogenic-turbopump").bearing.contact_angle
+
+
+def test_values_are_set_together_and_become_certain(study_of):
+    """Two numbers that fit each other only together; those that are set have no distribution any more."""
+    study = study_of(
+        '[bearing]\nball_diameter = "11.1125 mm +- 0.1 %"\n[cage]\npocket_clearance = "0.6 mm +- 10 %"\n'
+    )
+    big = with_values(study, {"bearing.ball_diameter": 0.10, "bearing.pitch_diameter": 0.60})
+    assert big.bearing.pitch_diameter == 0.60
+    assert list(big.distributions) == ["cage.pocket_clearance"]
+    with pytest.raises(InputError, match=r"\[bearing\] ball_count must be at most"):
+        with_values(study, {"bearing.ball_diameter": 0.016})
+
+
+def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
+    """With `extends` the file above wins, certain or not."""
+    study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
+    path = tmp_path / "variant.toml"
+    path.write_text('title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n', encoding="utf-8")
+    assert read_study(path).distributions == {}
+
+
+def test_a_map_over_an_uncertain_number_makes_it_certain(study_of):
+    """What a map varies has the map's value and no distribution beside it."""
+    study = study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
+    moved = varied(study, "film.thickness", 3e-7)
+    assert moved.film.thickness == 3e-7
+    assert moved.distributions == {}
+
+
+def test_resolved_inputs_tell_origin_and_distribution(study_of):
+    """In the part where the number stands, and in one list of all; the whole is JSON without NaN."""
+    study = study_of(
+        '[film]\nthickness = "0.5 um +- 20 %"\nmaterial = { elastic_modulus = ["2 GPa", "3 GPa"], '
+        "poisson_ratio = 0.4 }\n"
+    )
+    parts = resolved(study)
+    entry = parts["film"]["thickness"]
+    assert entry["value"] == 5e-7
+    assert entry["origin"] == 'case.toml, line 4: "0.5 um +- 20 %"'
+    assert entry["distribution"]["kind"] == "normal"
+    assert parts["film"]["material"]["elastic_modulus"]["distribution"]["kind"] == "samples"
+    names = {one["name"] for one in parts["uncertain_inputs"]}
+    assert names == {"film.thickness", "film.elastic_modulus"}
+    json.dumps(parts["uncertain_inputs"], allow_nan=False)
+
+
+def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
+    """`check` lists the distributions; the others say that they take the means."""
+    study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
+    shown = report("check", document("check", None, study, []), where=None)
+    assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
+    from separatrix.chain import bearing_state
+
+    told = report("bearing", document("bearing", bearing_state(study), study, []), where=None)
+    assert "An uncertain input stands at its mean: film.thickness." in told
+    certain = read_study("cryogenic-turbopump")
+    told = report("bearing", document("bearing", bearing_state(certain), certain, []), where=None)
+    assert "uncertain" not in told
+
+
+def test_distributions_are_given_in_python_too():
+    """The study takes the mean, and the log-normal form where the normal one would reach zero."""
+    base = read_study("cryogenic-turbopump")
+    study = with_distributions(base, {"film.thickness": Normal(mean=4e-7, standard_deviation=2e-7)})
+    assert study.film.thickness == 4e-7
+    assert isinstance(study.distributions["film.thickness"], LogNormal)
+    with pytest.raises(InputError, match="is no number of this study"):
+        with_distributions(base, {"film.colour": Uniform(low=0.0, high=1.0)})
+
+
+def test_more_distributions_than_can_be_told_apart_are_refused():
+    """One more than the most is refused, with the count."""
+    base = read_study("cryogenic-turbopump")
+    keys = [key for key in study_numbers(base) if key.startswith("ranking.") and "material" not in key]
+    keys += ["bearing.ball_diameter", "bearing.pitch_diameter", "operation.axial_load", "film.thickness"]
+    wide = {key: value_of(base, study_numbers(base)[key]) or 1.0 for key in keys}
+    laws = {key: Normal(mean=value, standard_deviation=1e-6 * value) for key, value in wide.items()}
+    assert len(with_distributions(base, laws).distributions) == len(keys) <= MOST_DISTRIBUTIONS
