@@ -2,59 +2,142 @@
 
     python benchmarks/tribometer_coverage.py [LOGS] [FORMAT ...]
 
-LOGS logs (1000) are drawn from the recipes of tests/physics/synthetic_friction.py, reduced as they are and, for
-each format, written, read back and reduced. "Held" counts logs whose interval holds the truth: the mean, over the
-steady part that the reduction states, of the friction without noise, running-in and modulation. "Flagged" ones
-carry the sentence that the interval may be too narrow, or that running-in does not end.
+LOGS logs (1000) are drawn from the recipes of tests/physics/synthetic_friction.py and reduced: as they are,
+or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced, with at most 4000 rows then.
+"Held" counts logs whose interval holds the truth: the mean, over the steady part that the reduction states,
+of the friction without noise, running-in and modulation. "Flagged" ones carry the sentence that the interval
+may be too narrow, or that running-in does not end.
 """
+# ruff: noqa: E402  the makers of logs are found beside the tests
 
 from __future__ import annotations
 
 import sys
+import tempfile
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "physics"))
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "unit"))
+ROOT = Path(__file__).parent.parent
+sys.path[:0] = [str(ROOT / "tests" / "physics"), str(ROOT / "tests" / "unit")]
 
-from synthetic_friction import CORRELATIONS, Made, Recipe, made, recipes
+import raw_logs
+from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipes
 
 from separatrix.cage import wilson_interval
 from separatrix.errors import InputError
 from separatrix.tribometer.friction_test import TestFriction
+from separatrix.tribometer.log import RawLog
+from separatrix.tribometer.reading import read_log
 from separatrix.tribometer.reduction import reduce_log
 
 SEED = 20260
+MOST_ROWS = 4000
+"""Of a log that goes through a file."""
+
 WARNED = ("may be too narrow", "does not end")
+
+Answer = tuple[TestFriction, Made, RawLog]
+Writer = Callable[[Path, RawLog, float], Path]
+
+
+def anton_paar(folder: Path, log: RawLog, cycle: float) -> Path:
+    """Anton Paar TRB, decimal comma."""
+    return _text(folder, raw_logs.anton_paar(log.friction, log.time, laps=log.time / cycle, decimal=","))
+
+
+def rtec(folder: Path, log: RawLog, cycle: float) -> Path:
+    """Rtec CSV."""
+    return _text(folder, raw_logs.rtec(log.friction, log.time, speed_rpm=60.0 / cycle, total=""))
+
+
+def umt(folder: Path, log: RawLog, _cycle: float) -> Path:
+    """Bruker UMT text; its keys say 240 rpm, which is the cycle of the logs made for it."""
+    return _text(folder, raw_logs.umt(log.friction, log.time, unit="N"))
+
+
+def compend(folder: Path, log: RawLog, _cycle: float) -> Path:
+    """Phoenix Compend; its writer counts two cycles a second, as the logs made for it do."""
+    return _text(folder, raw_logs.compend(log.friction, log.time))
+
+
+def csv(folder: Path, log: RawLog, cycle: float) -> Path:
+    """CSV with the cycles done."""
+    columns = {"time [s]": log.time, "cycles": log.time / cycle, "COF": log.friction}
+    return _text(folder, raw_logs.plain_csv(columns))
+
+
+def tsv(folder: Path, log: RawLog, _cycle: float) -> Path:
+    """TSV, decimal comma, forces instead of friction."""
+    force = np.full_like(log.time, 10.0)
+    columns = {"time [s]": log.time, "friction force [N]": 10.0 * log.friction, "normal force [N]": force}
+    return _text(folder, raw_logs.plain_csv(columns, separator="\t", decimal=","))
+
+
+def xlsx(folder: Path, log: RawLog, cycle: float) -> Path:
+    """Excel workbook."""
+    from openpyxl import Workbook
+
+    book = Workbook(write_only=True)
+    sheet = book.create_sheet("test")
+    sheet.append(["time [s]", "cycles", "COF"])
+    for row in zip(log.time.tolist(), (log.time / cycle).tolist(), log.friction.tolist(), strict=True):
+        sheet.append(row)
+    book.save(folder / "log.xlsx")
+    return folder / "log.xlsx"
+
+
+def tdms(folder: Path, log: RawLog, cycle: float) -> Path:
+    """LabVIEW TDMS."""
+    from nptdms import ChannelObject, TdmsWriter
+
+    columns = {"time": (log.time, "s"), "cycles": (log.time / cycle, ""), "COF": (log.friction, "")}
+    with TdmsWriter(folder / "log.tdms") as writer:
+        writer.write_segment(
+            [
+                ChannelObject("test", name, data, {"unit_string": unit})
+                for name, (data, unit) in columns.items()
+            ]
+        )
+    return folder / "log.tdms"
+
+
+def _text(folder: Path, content: bytes) -> Path:
+    (folder / "log.txt").write_bytes(content)
+    return folder / "log.txt"
+
+
+FORMATS: dict[str, Writer] = {w.__name__: w for w in (anton_paar, rtec, umt, compend, csv, tsv, xlsx, tdms)}
+CYCLES = {"umt": 0.25, "compend": 0.5}
+"""Time of a cycle that a format's writer fixes [s]."""
 
 
 def groups(recipe: Recipe) -> Iterator[str]:
     """Names of the groups that a recipe belongs to."""
-    near = min(CORRELATIONS, key=lambda value: abs(value - recipe.correlation))
-    yield f"correlation {100 * near:g} %"
-    yield f"run-in {100 * recipe.run_in:2.0f} %" if recipe.run_in == 0.0 else f"run-in to {100 * _up(recipe.run_in):.0f} %"
+    run_in = next(value for value in RUN_INS if recipe.run_in <= value)
+    correlation = min(CORRELATIONS, key=lambda value: abs(value - recipe.correlation))
+    yield f"correlation {100 * correlation:g} %"
+    yield f"running-in {100 * run_in:2.0f} %"
+    yield f"running-in {100 * run_in:2.0f} %, correlation {100 * correlation:g} %"
     yield "drift" if recipe.drift else "no drift"
-    yield "missing rows" if recipe.missing else "every row"
-    yield "irregular" if recipe.irregular else "regular"
-    yield f"{_size(recipe.rows)} rows"
-    yield "modulated" if recipe.modulation else "not modulated"
+    yield "missing rows" if recipe.missing else "no missing rows"
+    yield "irregular steps" if recipe.irregular else "regular steps"
+    yield f"rows up to {next(most for most in (400, 1400, 6000, 20000) if recipe.rows <= most):5d}"
+    yield f"modulation {recipe.modulation:g}"
     yield "with white noise" if recipe.white else "without white noise"
 
 
-def _up(run_in: float) -> float:
-    return next(value for value in (0.05, 0.15, 0.3) if run_in <= value)
-
-
-def _size(rows: int) -> str:
-    return next(f"up to {most}" for most in (400, 1400, 6000, 20000) if rows <= most)
-
-
-def holds(test: TestFriction, known: Made) -> tuple[float, bool]:
+def holds(test: TestFriction, known: Made, log: RawLog) -> tuple[float, bool]:
     """Error in standard errors, and whether the interval holds the truth."""
-    error = test.friction - known.truth(test.run_in_end, test.steady_end)
+    axis = getattr(log, test.run_in_axis)
+    last = float(known.log.time[-1] - known.log.time[0])
+    start, end = (
+        (place - axis[0]) / (axis[-1] - axis[0]) * last for place in (test.run_in_end, test.steady_end)
+    )
+    error = test.friction - known.truth(start, end)
     return error / test.standard_error, abs(error) <= test.half_width
 
 
@@ -65,13 +148,15 @@ class Tally:
         self.errors: list[float] = []
         self.held: list[bool] = []
         self.warned: list[bool] = []
+        self.cuts: list[float] = []
 
-    def add(self, test: TestFriction, known: Made) -> None:
+    def add(self, test: TestFriction, known: Made, log: RawLog) -> None:
         """Count one test."""
-        error, held = holds(test, known)
+        error, held = holds(test, known, log)
         self.errors.append(error)
         self.held.append(held)
         self.warned.append(any(words in flag for flag in test.flags for words in WARNED))
+        self.cuts.append(test.run_in_end / getattr(log, test.run_in_axis)[-1])
 
     def line(self) -> str:
         """Counts as text."""
@@ -79,44 +164,58 @@ class Tally:
         low, high = wilson_interval(k, n)
         calm = [held for held, warned in zip(self.held, self.warned, strict=True) if not warned]
         return (
-            f"{n:5d} logs, held {100 * k / n:5.1f} % ({100 * low:.1f} to {100 * high:.1f}), median error "
-            f"{np.median(self.errors):+.2f} standard errors, flagged {100 * np.mean(self.warned):.1f} %, "
-            f"held of the others {100 * np.mean(calm):.1f} %"
+            f"{n:5d} logs, held {100 * k / n:5.1f} % ({100 * low:.1f} to {100 * high:.1f}), "
+            f"median error {np.median(self.errors):+.2f} standard errors, "
+            f"cut {100 * np.median(self.cuts):3.0f} %, "
+            f"flagged {100 * np.mean(self.warned):4.1f} %, held of the others {100 * np.mean(calm):5.1f} %"
         )
 
 
-def report(pairs: Iterator[tuple[TestFriction, Made]]) -> None:
-    """Print the counts of every group."""
+def report(title: str, answers: Iterable[Answer], *, grouped: bool = True) -> None:
+    """Print the counts of every group, or of all logs."""
     tallies: dict[str, Tally] = defaultdict(Tally)
-    for test, known in pairs:
-        for name in ("all", *groups(known.recipe)):
-            tallies[name].add(test, known)
+    for test, known, log in answers:
+        for name in ("all", *(groups(known.recipe) if grouped else ())):
+            tallies[name].add(test, known, log)
+    print(f"{title}:")
     for name in sorted(tallies, key=lambda name: (name != "all", name)):
-        print(f"  {name:22s} {tallies[name].line()}", flush=True)
+        print(f"  {name:34s} {tallies[name].line()}", flush=True)
 
 
-def logs(count: int, seed: int = SEED) -> Iterator[Made]:
-    """Logs of every kind, the same for the same seed."""
+def answers(count: int, seed: int, name: str = "") -> Iterator[Answer]:
+    """Friction of logs of every kind, as they are or through a file; the same for the same seed."""
     rng = np.random.default_rng(seed)
-    for recipe in recipes(count, rng):
-        yield made(recipe, rng)
+    with tempfile.TemporaryDirectory() as folder:
+        for recipe in recipes(count, rng):
+            known = made(_for_format(recipe, name), rng)
+            log = known.log if not name else _through(name, known, Path(folder))
+            try:
+                yield reduce_log(log), known, log
+            except InputError as error:
+                print(f"  refused: {error}")
 
 
-def as_made(count: int, seed: int) -> Iterator[tuple[TestFriction, Made]]:
-    """Friction of the logs without a file between."""
-    for known in logs(count, seed):
-        try:
-            yield reduce_log(known.log), known
-        except InputError as error:
-            print(f"  refused: {error}")
+def _for_format(recipe: Recipe, name: str) -> Recipe:
+    if not name:
+        return recipe
+    step = CYCLES[name] / recipe.rows_of_a_cycle if name in CYCLES else recipe.step
+    return replace(recipe, rows=min(recipe.rows, MOST_ROWS), step=step)
+
+
+def _through(name: str, known: Made, folder: Path) -> RawLog:
+    cycle = known.recipe.rows_of_a_cycle * known.recipe.step
+    (log,) = read_log(FORMATS[name](folder, known.log, cycle))
+    return log
 
 
 def main() -> None:
-    """Report the coverage without a file."""
+    """Report the coverage."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    seed = int(sys.argv[2]) if len(sys.argv) > 2 else SEED
-    print("as made:")
-    report(as_made(count, seed))
+    names = list(FORMATS) if sys.argv[2:] == ["all"] else sys.argv[2:]
+    if not names:
+        report("as made", answers(count, SEED))
+    for i, name in enumerate(names, start=1):
+        report(name, answers(count, SEED + i, name), grouped=False)
 
 
 if __name__ == "__main__":
