@@ -3,7 +3,7 @@
     python benchmarks/tribometer_coverage.py [LOGS] [FORMAT ...]
 
 LOGS logs (1000) are drawn from the recipes of tests/physics/synthetic_friction.py and reduced: as they are,
-or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced, with at most 4000 rows then.
+or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced, then of at most 4000 rows.
 "Held" counts logs whose interval holds the truth: the mean, over the steady part that the reduction states,
 of the friction without noise, running-in and modulation. "Flagged" ones carry the sentence that the interval
 may be too narrow, or that running-in does not end.
@@ -126,7 +126,7 @@ def groups(recipe: Recipe) -> Iterator[str]:
     yield "missing rows" if recipe.missing else "no missing rows"
     yield "irregular steps" if recipe.irregular else "regular steps"
     yield f"rows up to {next(most for most in (400, 1400, 6000, 20000) if recipe.rows <= most):5d}"
-    yield f"modulation {recipe.modulation:g}"
+    yield f"modulation {100 * recipe.modulation / recipe.friction:2.0f} %"
     yield "with white noise" if recipe.white else "without white noise"
 
 

@@ -113,7 +113,7 @@ def _kept(recipe: Recipe, rows: int, rng: np.random.Generator) -> np.ndarray:
 
 CORRELATIONS = (0.0, 0.003, 0.01, 0.03)
 RUN_INS = (0.0, 0.05, 0.15, 0.3)
-DRIFTS = (0.0, 0.02)
+DRIFTS = (0.0, 0.15)
 MISSING = (0.0, 0.1)
 ROWS = (300, 1000, 4000, 20000)
 
@@ -129,15 +129,16 @@ def recipes(count: int, rng: np.random.Generator) -> list[Recipe]:
 
 def _recipe(kind: tuple[int, ...], rng: np.random.Generator) -> Recipe:
     correlation, run_in, drift, missing, rows, sampling = kind
+    friction = float(rng.uniform(0.05, 0.35))
     base = Recipe(
         rows=int(ROWS[rows] * rng.uniform(1.0, 1.3)) if ROWS[rows] < 20000 else 20000,
-        friction=float(rng.uniform(0.05, 0.35)),
-        noise=float(rng.choice([0.003, 0.01, 0.03])),
+        friction=friction,
+        noise=friction * float(rng.choice([0.03, 0.1, 0.2])),
         correlation=CORRELATIONS[correlation],
         run_in=RUN_INS[run_in] * float(rng.uniform(0.8, 1.0)),
-        excess=float(rng.choice([-0.05, 0.03, 0.1, 0.3])),
-        drift=DRIFTS[drift % 2] * float(rng.choice([-1.0, 1.0])),
-        modulation=float(rng.choice([0.0, 0.01, 0.03])),
+        excess=friction * float(rng.choice([-0.4, 0.3, 1.0, 2.0])),
+        drift=friction * DRIFTS[drift % 2] * float(rng.choice([-1.0, 1.0])),
+        modulation=friction * float(rng.choice([0.0, 0.1, 0.25])),
         rows_of_a_cycle=float(rng.uniform(5.0, 14.0)),
         missing=MISSING[missing % 2],
         irregular=bool(sampling % 2),
