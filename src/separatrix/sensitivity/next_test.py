@@ -252,5 +252,5 @@ def share_above(curve: Array, level: Ratio) -> Array:
     low, high = np.minimum(curve[:-1], curve[1:]), np.maximum(curve[:-1], curve[1:])
     rise = np.where(high > low, high - low, 1.0)
     between = np.where(high > low, np.clip((high - level) / rise, 0.0, 1.0), high >= level)
-    ends = 0.5 * ((curve[0] >= level) + (curve[-1] >= level))
+    ends = np.mean([curve[0] >= level, curve[-1] >= level], axis=0)
     return np.asarray((between.sum(axis=0) + ends) / len(curve))

@@ -246,6 +246,13 @@ def _fits(grid: RestitutionGrid) -> _check.Problems:
         yield InputError(
             "RestitutionGrid.restitution_factor", f"must have the shape {wanted}", "", str(factors.shape)
         )
+    elif grid.y.values[0] <= 0.0 or grid.x.values[0] < 0.0:
+        yield InputError(
+            "RestitutionGrid",
+            "must have x >= 0 and y > 0",
+            "",
+            f"from {grid.x.values[0]:g} and {grid.y.values[0]:g}",
+        )
     elif not ((factors >= 0.0) & (factors < 1.0)).all():
         yield InputError("RestitutionGrid.restitution_factor", "must lie in 0 <= eta < 1", "-")
 

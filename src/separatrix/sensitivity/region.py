@@ -185,14 +185,18 @@ def _stable_share(question: Question, values: Array, sampled: Evaluated, zeta: A
 
 
 def _of_the_grid(question: Question, grid: RestitutionGrid, values: Array) -> Array:
-    """Damping ratio of the grid at each sample's own film, shape (sample,); held beyond the grid's edges."""
+    """Damping ratio of the grid at each sample's own film, shape (sample,); held beyond the grid's edges.
+
+    The logarithm is taken as straight: over x, and over the logarithm of y, for zeta goes nearly as a power.
+    """
     x, y = (_own(question, axis, values) for axis in (grid.x, grid.y))
-    zeta = damping_ratios(grid.restitution_factor)
+    zeta = np.log(damping_ratios(grid.restitution_factor))
     along = np.array([np.interp(x, grid.x.values, row) for row in zeta])
-    place = np.interp(y, grid.y.values, np.arange(len(zeta)))
+    place = np.interp(np.log(y), np.log(grid.y.values), np.arange(len(zeta)))
     low = np.minimum(place.astype(int), len(zeta) - 2)
     columns = np.arange(len(values))
-    return np.asarray(along[low, columns] + (place - low) * (along[low + 1, columns] - along[low, columns]))
+    upper, lower = along[low + 1, columns], along[low, columns]
+    return np.asarray(np.exp(lower + (place - low) * (upper - lower)))
 
 
 def _own(question: Question, axis: FilmAxis, values: Array) -> Array:
