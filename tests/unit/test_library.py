@@ -1,15 +1,32 @@
-"""The library: exact names, the paper's table, and a source and a confidence for every datum."""
+"""The library: a source, conditions and a confidence for every number; user libraries beside a study."""
 
+import json
+import pickle
 import tomllib
 from importlib.resources import files
 
 import pytest
 
 from separatrix import library
-from separatrix.errors import DataError
+from separatrix.errors import DataError, InputError, ValidityWarning
+from separatrix.library import Datum, choose
+from separatrix.library.collection import SHIPPED_FILES
+from separatrix.library.fluids import contradictions, fluid_state, other_phase
+from separatrix.library.writing import add_records, as_toml
+from separatrix.study_file import read_study, resolved
 
-CONFIDENCES = {"handbook", "literature", "guess"}
 DATA = files("separatrix.library") / "data"
+SOLIDS = ("bearing material", "cage material", "film")
+
+PAPER_TABLE_1 = """
+Meldin HTC 100 | polyimide + carbon fibers
+Meldin 7211 | polyimide + graphite + PTFE
+Armalon | PTFE + glass fibers
+PEEK WG 101 | polyether ether ketone + additives, PTFE free
+PEEK 450 GL 30 | polyether ether ketone + glass fibers
+PEEK 450 CA 30 | polyether ether ketone + glass fibers + PTFE
+Vespel SP 211 | polyimide + graphite + PTFE
+"""
 
 PAPER_TABLE_3 = """
 Meldin HTC 100 | - | - | .22 | .32
@@ -21,31 +38,107 @@ PEEK 450 CA 30 | .11 | .17 | .12 | .13
 Vespel SP 211 | .12 | .13 | .14 | .11
 """
 
+OURS = """\
+title = "Our lab"
 
-@pytest.mark.parametrize("kind", library.FILES)
-def test_every_datum_has_a_source_and_a_confidence(kind):
-    """And a guess is marked as one, with its reason."""
-    records = tomllib.loads((DATA / library.FILES[kind]).read_text(encoding="utf-8"))
-    assert records
-    for name, record in records.items():
-        assert record["remark"].strip(), name
-        assert {"elastic_modulus", "poisson_ratio"} <= set(record)
-        for key in set(record) - {"remark"}:
-            assert set(record[key]) == {"value", "confidence", "source"}, (name, key)
-            assert record[key]["confidence"] in CONFIDENCES, (name, key)
-            assert len(record[key]["source"]) >= 6, (name, key)
+[cage_material."Ours"]
+composition = "PEEK + 20 % carbon fibre"
+elastic_modulus = [
+  { value = "9 GPa", temperature = "77 K", form = "ring", source = "test 12", confidence = "measured" },
+  { value = "6 GPa", temperature = ["285 K", "305 K"], source = "test 11", confidence = "measured" },
+]
+poisson_ratio = { value = 0.38, temperature = ["4 K", "400 K"], source = "as PEEK", confidence = "guess" }
+
+[film."Our film"]
+elastic_modulus = { value = "2 GPa", temperature = "77 K", source = "fitted", confidence = "measured" }
+poisson_ratio = { value = 0.4, temperature = "77 K", source = "usual", confidence = "guess" }
+
+[bearing_material."Our steel"]
+elastic_modulus = { value = "213 GPa", temperature = ["70 K","400 K"], source = "sheet", confidence = "maker"}
+poisson_ratio = { value = 0.3, temperature = ["70 K", "400 K"], source = "sheet", confidence = "maker" }
+density = { value = "7670 kg/m3", temperature = ["70 K", "400 K"], source = "sheet", confidence = "maker" }
+
+[friction_table."our rig"]
+title = "Our rig"
+source = "Report 5"
+confidence = "measured; three tests each"
+temperature = "77 K"
+slip_speed = ["1 m/s", "4 m/s"]
+
+[friction_table."our rig".friction."Ours"]
+"liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.01, count = 3 }
+
+[friction_table."our rig".friction."Armalon"]
+"liquid nitrogen, 440C" = 0.08
+"air, 440C" = 0.2
+"""
+
+STUDY = """\
+extends = "cryogenic-turbopump"
+
+[bearing]
+ball_material = "Our steel"
+
+[film]
+material = "Our film"
+
+[ranking]
+friction = "our rig"
+"""
 
 
-@pytest.mark.parametrize(
-    ("kind", "name"), [(kind, name) for kind in library.FILES for name in library.names(kind)]
-)
-def test_every_material_can_be_built(kind, name):
-    """Values in SI, source and confidence as text."""
+@pytest.fixture
+def case(tmp_path):
+    """A study that names records of the library beside it."""
+    (tmp_path / "materials.toml").write_text(OURS)
+    (tmp_path / "case.toml").write_text(STUDY)
+    return tmp_path / "case.toml"
+
+
+@pytest.mark.parametrize("kind", SHIPPED_FILES)
+def test_a_shipped_file_passes_its_own_check(kind):
+    """It is read by the reader of users' files: a source and a confidence for each number, no zero."""
+    assert library.names(kind)
+    for record in library.shipped().records(kind).values():
+        assert record.kind == kind
+        assert len(record.file.checksum) == 64
+
+
+@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in library.names(kind)])
+def test_every_solid_can_be_built(kind, name):
+    """Values in SI, source and confidence as text, a temperature for every number."""
     material = library.material(kind, name)
     assert 1e8 < material.elastic_modulus < 4e11
     assert "modulus: " in material.confidence
     assert "modulus: " in material.source
     assert material.source.isprintable()
+    for data in material.record["data"].values():
+        assert all(datum["temperature"] for datum in data)
+        assert all(datum["range"] is None or datum["range"][0] <= datum["value"] for datum in data)
+
+
+def test_the_compositions_are_those_of_the_paper():
+    """Table 1, every line."""
+    for line in PAPER_TABLE_1.strip().splitlines():
+        name, composition = line.split(" | ")
+        assert (
+            library.shipped().record("cage material", name).composition == f"{composition} (paper, table 1)"
+        )
+
+
+def test_a_guess_stays_marked_as_one():
+    """No maker's sheet of the seven cage materials was at hand: no modulus of theirs claims more."""
+    for name in library.names("cage material"):
+        assert library.cage_material(name).confidence == "modulus: guess, Poisson's ratio: guess"
+    assert library.film_material("PTFE transfer film").confidence.startswith("modulus: guess")
+
+
+def test_numbers_that_the_shipped_study_depends_on_have_not_moved():
+    """Steel 200 GPa, 0.285, 7650 kg/m3; film 4 GPa, 0.38: another number moves every shipped answer."""
+    study = read_study("cryogenic-turbopump")
+    steel, film = study.bearing.ball_material, study.film.material
+    assert (steel.elastic_modulus, steel.poisson_ratio, steel.density) == (200e9, 0.285, 7650.0)
+    assert (film.elastic_modulus, film.poisson_ratio) == (4e9, 0.38)
 
 
 def test_the_friction_table_is_the_paper_s():
@@ -58,13 +151,18 @@ def test_the_friction_table_is_the_paper_s():
             friction = table.friction[name][environment]
             assert (friction is None) == (value == "-")
             assert friction is None or friction.mean == float(value)
+    assert table.conditions == {
+        "temperature": (77.0, 77.0),
+        "slip_speed": (1.0, 5.0),
+        "normal_force": (10.0, 140.0),
+    }
 
 
 def test_the_seven_materials_of_the_paper_have_elastic_records():
     """Whoever ranks them without a pocket stiffness needs a modulus."""
     table = library.friction_table("pin-on-disk-77K")
     assert set(table.friction) == set(library.names("cage material"))
-    assert all(table.candidate(name).material is not None for name in table.friction)
+    assert all(library.shipped().candidate(table, name).material is not None for name in table.friction)
 
 
 def test_the_file_of_the_table_says_who_typed_it_and_what_is_missing():
@@ -81,10 +179,296 @@ def test_the_file_of_the_table_says_who_typed_it_and_what_is_missing():
         (lambda: library.film_material("oil"), "PTFE transfer film"),
         (lambda: library.cage_material("brass"), "Armalon"),
         (lambda: library.friction_table("none"), "pin-on-disk-77K"),
-        (lambda: library.friction_table("pin-on-disk-77K").candidate("brass"), "Vespel SP 211"),
+        (
+            lambda: library.shipped().candidate(library.friction_table("pin-on-disk-77K"), "brass"),
+            "Vespel SP 211",
+        ),
     ],
 )
 def test_an_unknown_name_is_answered_with_the_known_ones(ask, words):
     """Names are exact: no record is substituted for another."""
     with pytest.raises(DataError, match=words):
         ask()
+
+
+def datum(value, temperature):
+    """A number that holds at a temperature or over a range."""
+    return Datum(value=value, unit="Pa", source="test", confidence="guess", temperature=temperature)
+
+
+@pytest.mark.parametrize(
+    ("temperature", "value", "words"),
+    [
+        (None, 1.0, None),
+        (77.0, 2.0, None),
+        (86.9, 2.0, None),
+        (295.0, 1.0, None),
+        (320.0, 3.0, None),
+        (150.0, 2.0, "none is stated at 150 K, that of 77 K is taken as it is"),
+        (500.0, 3.0, "none is stated at 500 K, that of 280 K to 400 K is taken as it is"),
+    ],
+)
+def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_in_silence(
+    temperature, value, words
+):
+    """The narrowest range around it; outside of all, the nearest one and the words that say so."""
+    data = [datum(1.0, (295.0, 295.0)), datum(2.0, (77.0, 77.0)), datum(3.0, (280.0, 400.0))]
+    choice = choose(data, temperature, "modulus")
+    assert choice.datum.value == value
+    assert (choice.caution is None) if words is None else (words in choice.caution)
+
+
+def test_ptfe_has_its_modulus_of_the_cold_and_that_of_the_room():
+    """0.5 GPa at room temperature, 4 GPa at 77 K, by the temperature asked; between them it is said."""
+    ask = library.shipped().material
+    assert ask("film", "PTFE", 295.0).elastic_modulus == 0.5e9
+    assert ask("film", "PTFE", 77.0).elastic_modulus == 4e9
+    assert not ask("film", "PTFE", 77.0).cautions
+    assert len(ask("film", "PTFE", 150.0).cautions) == 2
+
+
+def test_a_study_at_a_temperature_without_a_datum_says_so(tmp_path):
+    """The film's modulus at 150 K is that of 77 K, in words; the shipped study at 77 K has nothing to say."""
+    path = tmp_path / "warm.toml"
+    path.write_text('extends = "cryogenic-turbopump"\n[operation]\ntemperature = "120 K"\n')
+    with pytest.warns(
+        ValidityWarning, match=r"\[film\] PTFE transfer film: modulus: none is stated at 120 K"
+    ):
+        study = read_study(path)
+    assert resolved(study)["film"]["material"]["cautions"]
+    read_study("cryogenic-turbopump")
+
+
+def test_cage_moduli_are_cautioned_only_where_they_act(tmp_path):
+    """With a pocket stiffness given nothing depends on them; without one seven share a sentence."""
+    path = tmp_path / "hertz.toml"
+    text = 'extends = "cryogenic-turbopump"\n[cage]\nmaterial = "Armalon"\n'
+    path.write_text(text)
+    read_study(path)
+    bare = (files("separatrix") / "examples" / "cryogenic-turbopump.toml").read_text(encoding="utf-8")
+    path.write_text("\n".join(line for line in bare.splitlines() if "ball_cage_stiffness" not in line))
+    with pytest.warns(ValidityWarning, match="none is stated at 77 K, that of 295 K") as said:
+        read_study(path)
+    assert len(said) == 1
+    assert "Meldin HTC 100, Meldin 7211, Armalon" in str(said[0].message)
+
+
+def test_records_beside_a_study_are_known_to_it(case):
+    """As a ball material, a film, a cage candidate and a friction table, in SI, with the datum of 77 K."""
+    study = read_study(case)
+    assert study.bearing.ball_material.elastic_modulus == 213e9
+    assert study.bearing.ring_material.name == "440C"
+    assert study.film.material.elastic_modulus == 2e9
+    ours, armalon = study.ranking.candidates
+    assert ours.material.elastic_modulus == 9e9
+    assert ours.friction["liquid nitrogen, 440C"].count == 3
+    assert ours.friction["air, 440C"] is None
+    assert armalon.material.record["library"]["shipped"] is True
+
+
+@pytest.mark.parametrize(
+    ("place", "key"),
+    [
+        ("materials/ours.toml", ""),
+        ("team/ours.toml", 'library = "team"\n'),
+        ("team/ours.toml", 'library = "team/ours.toml"\n'),
+        ("team/ours.toml", 'library = ["team/ours.toml", "team"]\n'),
+    ],
+)
+def test_a_library_is_a_file_or_a_folder_beside_the_study_or_named_by_it(tmp_path, place, key):
+    """Also twice: one file is read once."""
+    (tmp_path / place).parent.mkdir()
+    (tmp_path / place).write_text(OURS)
+    (tmp_path / "case.toml").write_text(key + STUDY)
+    assert read_study(tmp_path / "case.toml").film.material.name == "Our film"
+
+
+def test_a_variant_knows_the_library_of_its_base(tmp_path, case):
+    """What the base names is found beside the base."""
+    (tmp_path / "variants").mkdir()
+    path = tmp_path / "variants" / "less.toml"
+    path.write_text('extends = "../case.toml"\n[operation]\naxial_load = "150 daN"\n')
+    assert read_study(path).film.material.name == "Our film"
+    assert case.exists()
+
+
+def test_a_record_hides_a_shipped_one_only_if_it_says_so(tmp_path, case):
+    """Refused without `replaces = true`; with it the study has the user's numbers."""
+    text = OURS.replace('[film."Our film"]', '[film."PTFE transfer film"]')
+    (tmp_path / "materials.toml").write_text(text)
+    case.write_text(STUDY.replace("Our film", "PTFE transfer film"))
+    with pytest.raises(InputError, match="has the name of a shipped film"):
+        read_study(case)
+    text = text.replace('[film."PTFE transfer film"]', '[film."PTFE transfer film"]\nreplaces = true')
+    (tmp_path / "materials.toml").write_text(text)
+    assert read_study(case).film.material.elastic_modulus == 2e9
+
+
+def test_a_record_of_the_library_is_in_the_result_whole(case):
+    """Every datum with source, conditions and confidence, which was taken, and the checksum of the file."""
+    ours = resolved(read_study(case))["ranking"]["candidates"][0]["material"]["record"]
+    assert ours["taken"] == {"elastic_modulus": 0, "poisson_ratio": 0}
+    assert ours["taken_at"] == 77.0
+    assert len(ours["data"]["elastic_modulus"]) == 2
+    first = ours["data"]["elastic_modulus"][0]
+    assert first == {
+        "value": 9e9,
+        "unit": "Pa",
+        "range": None,
+        "temperature": [77.0, 77.0],
+        "pressure": None,
+        "medium": None,
+        "form": "ring",
+        "source": "test 12",
+        "confidence": "measured",
+    }
+    assert ours["library"]["file"] == "materials.toml"
+    assert len(ours["library"]["sha256"]) == 64
+    table = resolved(read_study(case))["ranking"]["table"]
+    assert table["conditions"]["slip_speed"]["value"] == [1.0, 4.0]
+    assert table["library"] == ours["library"]
+    fluid = resolved(read_study(case))["operation"]["fluid"]["record"]
+    assert fluid["data"]["boiling_temperature"][0]["value"] == 77.355
+
+
+def test_resolved_records_are_json_and_cross_a_process_border(case):
+    """No record holds anything but plain data."""
+    study = read_study(case)
+    json.dumps(resolved(study), allow_nan=False)
+    again = pickle.loads(pickle.dumps(study))  # noqa: S301 - our own bytes
+    assert resolved(again) == resolved(study)
+
+
+@pytest.mark.parametrize(
+    ("fluid", "temperature", "words"),
+    [
+        (
+            "liquid nitrogen",
+            "300 K",
+            "there is no liquid at any pressure, the critical temperature is 126.2 K",
+        ),
+        ("LOX", "200 K", "liquid oxygen: at 200 K there is no liquid"),
+        ("Liquid Nitrogen", "50 K", "solid, or a thin vapour; the triple point is 63.15 K"),
+        ("GN2", "40 K", "solid, or a thin vapour"),
+    ],
+)
+def test_a_fluid_that_cannot_be_at_its_temperature_is_said(tmp_path, fluid, temperature, words):
+    """In any spelling that the library knows."""
+    path = tmp_path / "case.toml"
+    bare = (files("separatrix") / "examples" / "cryogenic-turbopump.toml").read_text(encoding="utf-8")
+    path.write_text(bare.replace('"liquid nitrogen"  ', f'"{fluid}"').replace('"77 K"', f'"{temperature}"'))
+    with pytest.warns(ValidityWarning) as said:
+        read_study(path)
+    assert any(words in str(one.message) and "[operation] fluid" in str(one.message) for one in said)
+
+
+@pytest.mark.parametrize(
+    ("name", "temperature"),
+    [("liquid nitrogen", 77.0), ("gaseous nitrogen", 77.0), ("liquid nitrogen", 120.0), ("air", 40.0)],
+)
+def test_a_fluid_that_some_pressure_allows_is_not_doubted(name, temperature):
+    """The paper's gas at 77 K, and a liquid under pressure; a record without these points doubts nothing."""
+    assert not list(contradictions(library.shipped().fluid(name).plain(), temperature))
+
+
+def test_the_built_in_states_are_those_of_coolprop():
+    """Every density, viscosity and heat capacity of the file; it is rounded to 5 digits, so 5e-5."""
+    coolprop = pytest.importorskip("CoolProp.CoolProp")
+    codes = {"density": "D", "viscosity": "V", "heat_capacity": "C"}
+    for name in library.names("fluid"):
+        record = library.shipped().fluid(name)
+        boiling = record.data["boiling_temperature"][0].value if "boiling_temperature" in record.data else 0.0
+        quality = 0.0 if record.facts["phase"] == "liquid" else 1.0
+        for key, code in codes.items():
+            for one in record.data[key]:
+                at = ("Q", quality) if abs(one.temperature[0] - boiling) < 0.01 else ("T", one.temperature[0])
+                value = coolprop.PropsSI(code, "P", 101325.0, *at, record.facts["coolprop"])
+                assert one.value == pytest.approx(value, rel=5e-5), (name, key)
+
+
+def test_the_density_of_liquid_nitrogen_agrees_with_a_published_one():
+    """806.5 kg/m3 at 77.35 K (Wisconsin, after Jacobsen 1986); the newer equation is 0.06 % off."""
+    density = library.shipped().fluid("LN2").data["density"][0]
+    assert density.value == pytest.approx(806.5, rel=1e-3)
+    vapour = library.shipped().fluid("GN2").data["density"][0]
+    assert vapour.value == pytest.approx(4.622, rel=3e-3)
+
+
+def test_a_state_of_the_table_needs_no_extra_and_any_other_names_it(monkeypatch):
+    """As on a machine without CoolProp."""
+    import sys
+
+    monkeypatch.setitem(sys.modules, "CoolProp", None)
+    nitrogen = library.shipped().fluid("LN2")
+    assert fluid_state(nitrogen, 77.355).density == 806.08
+    with pytest.raises(InputError, match=r"pip install \"separatrix\[fluids\]\"") as refused:
+        fluid_state(nitrogen, 90.0, 1e6)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_state_by_coolprop_has_its_phase_and_its_source():
+    """Liquid nitrogen at 80 K and 20 bar; nothing below the melting line."""
+    pytest.importorskip("CoolProp")
+    nitrogen = library.shipped().fluid("LN2")
+    state = fluid_state(nitrogen, 80.0, 2e6)
+    assert state.phase == "liquid"
+    assert 790.0 < state.density < 806.0  # between its values at 1 atm and 77.4 K, and at 81 K
+    assert state.source == "CoolProp: Span-JPCRD-2000, Lemmon-IJT-2004"
+    assert not list(other_phase(nitrogen, state))
+    gas = library.shipped().fluid("GN2")
+    assert list(other_phase(gas, fluid_state(gas, 80.0, 2e6))) == [
+        "gaseous nitrogen: at 80 K and 2 MPa it is a liquid."
+    ]
+    with pytest.raises(InputError, match="has no state"):
+        fluid_state(nitrogen, 40.0)
+
+
+@pytest.mark.parametrize(("name", "density"), [("LN2", 806.08), ("GN2", 4.6121)])
+def test_on_the_saturation_line_the_table_says_which_phase(name, density):
+    """CoolProp refuses to tell liquid from vapour by temperature and pressure alone there."""
+    state = fluid_state(library.shipped().fluid(name), 77.355)
+    assert state.density == density
+
+
+def test_what_is_written_is_what_was_read(tmp_path):
+    """Quotation marks, backslashes, dots in names and lists come back."""
+    text = OURS.replace('"Ours"', '"O.u\'r \\"s\\" \\\\ µ"')
+    written = as_toml(tomllib.loads(text))
+    data = tomllib.loads(text)
+    data.pop("title")
+    assert tomllib.loads(written) == data
+
+
+def test_adding_keeps_what_the_library_holds_byte_for_byte(tmp_path):
+    """Comments stay; the new records follow; a second time is refused; no other file appears."""
+    held = "# ours\n" + OURS
+    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
+    target.write_text(held)
+    source.write_text(OURS.replace("Our", "Their").replace("our rig", "their rig").replace('"Ours"', '"X"'))
+    target.chmod(0o640)
+    added = add_records(source, target)
+    assert len(added.records) == 4
+    assert target.read_text().startswith(held)
+    assert target.stat().st_mode & 0o777 == 0o640
+    assert len(library.read_library(target).records) == 8
+    after = target.read_bytes()
+    with pytest.raises(InputError, match=r"stands in materials\.toml, line"):
+        add_records(source, target)
+    assert target.read_bytes() == after
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
+
+
+def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatch):
+    """The disk is full while the new text is written: the old file stays and nothing lies beside it."""
+    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
+    target.write_text(OURS)
+    source.write_text('[film."N"]\n' + OURS.partition('[film."Our film"]\n')[2].partition("\n[bearing")[0])
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("separatrix.library.writing.Path.write_text", full)
+    with pytest.raises(InputError, match=r"cannot be written \(No space left"):
+        add_records(source, target)
+    assert target.read_text() == OURS
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]

@@ -186,7 +186,7 @@ def _whole(
 ) -> dict[str, Any]:
     """The record as plain data; at a temperature with what serves there, or with the state of a fluid."""
     from separatrix.library import Record, as_material
-    from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state
+    from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state, other_phase
 
     whole = record.plain()
     if temperature is None or not isinstance(record, Record):
@@ -196,7 +196,8 @@ def _whole(
         taken = {} if material.record is None else dict(material.record["taken"])
         return whole | {"taken": taken, "taken_at": temperature, "cautions": list(material.cautions)}
     state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
-    return whole | {"state": state.plain(), "cautions": list(contradictions(whole, temperature))}
+    cautions = [*contradictions(whole, temperature), *other_phase(record, state)]
+    return whole | {"state": state.plain(), "cautions": cautions}
 
 
 def _summary(content: Content) -> dict[str, Any]:

@@ -95,7 +95,20 @@ def fluid_state(record: Record, temperature: Kelvin, pressure: Pascal = ATMOSPHE
         if tabulated is not None:
             return tabulated
         raise _without_coolprop(record, temperature, pressure) from None
-    return _computed(CoolProp, record, temperature, pressure)
+    try:
+        return _computed(CoolProp, record, temperature, pressure)
+    except InputError:
+        if tabulated is not None:  # on the saturation line a temperature and a pressure leave the phase open
+            return tabulated
+        raise
+
+
+def other_phase(record: Record, state: FluidState) -> Iterator[str]:
+    """What is to be said where a fluid of that name is in another phase."""
+    phase = str(record.facts["phase"])
+    if {phase, state.phase} == {"liquid", "gas"}:
+        at = f"{format_quantity(state.temperature, 'K')} and {format_quantity(state.pressure, 'Pa')}"
+        yield f"{record.name}: at {at} it is a {state.phase}."
 
 
 def _tabulated(record: Record, temperature: Kelvin, pressure: Pascal) -> FluidState | None:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -83,29 +81,16 @@ def _refuse_unlike(after: Content, parts: Iterable[Content], target: Path) -> No
 
 
 def _replace(target: Path, text: str) -> None:
-    """Write beside the target and rename over it."""
+    """Write aside and rename over the target."""
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".separatrix-", suffix=".tmp")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-                file.write(text)
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".separatrix-") as aside:
+            new = Path(aside) / target.name
+            new.write_text(text, encoding="utf-8", newline="\n")
             if target.exists():
-                shutil.copymode(target, name)
-            else:
-                Path(name).chmod(0o666 & ~_umask())
-            Path(name).replace(target)
-        except BaseException:
-            with suppress(OSError):
-                Path(name).unlink()
-            raise
+                shutil.copymode(target, new)
+            new.replace(target)
     except OSError as error:
         raise InputError(path_text(target), f"cannot be written ({error.strerror or error})") from error
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def as_toml(data: Mapping[str, Any]) -> str:

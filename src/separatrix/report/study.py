@@ -134,4 +134,13 @@ def _sources(study: Entry) -> list[str]:
 
 def _source(entry: Entry) -> str:
     numbers = f"E {quantity(entry['elastic_modulus']['value'], 'Pa')}, nu {entry['poisson_ratio']['value']:g}"
-    return f"{entry['name']}: {numbers}. {entry['source']} (confidence: {entry['confidence']})"
+    said = f"{entry['name']}: {numbers}. {entry['source']} (confidence: {entry['confidence']})"
+    return f"{said}{_library(entry)}{''.join(f'. Note: {caution}' for caution in entry.get('cautions', ()))}"
+
+
+def _library(entry: Entry) -> str:
+    """Return the user's library that a material is from; nothing for a shipped one or one in place."""
+    library = (entry.get("record") or {}).get("library")
+    if library is None or library["shipped"]:
+        return ""
+    return f", from {library['file']} (sha256 {library['sha256'][:12]}...)"

@@ -1,0 +1,222 @@
+"""`separatrix materials` as a user calls it, and results that outlive a change of the library."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from separatrix.cli import main
+
+OURS = """\
+title = "Our lab"
+
+[film."Our film"]
+remark = "Batch 7."
+elastic_modulus = [
+  { value = "2 GPa", temperature = "77 K", source = "fitted to test 12", confidence = "measured" },
+  { value = "0.4 GPa", temperature = "295 K", source = "as PTFE", confidence = "guess" },
+]
+poisson_ratio = { value = 0.4, source = "usual", confidence = "guess" }
+"""
+STUDY = 'title = "Ours"\nextends = "cryogenic-turbopump"\n[film]\nmaterial = "Our film"\n'
+DATUM = {"value", "unit", "range", "temperature", "pressure", "medium", "form", "source", "confidence"}
+RECORD = {"kind", "name", "remark", "composition", "library", "data"}
+FLUID = RECORD | {"substance", "phase", "coolprop", "aliases"}
+TABLE = {
+    *("kind", "name", "title", "remark", "source", "confidence", "conditions", "environments", "library"),
+    "friction",
+}
+COUNTS = {"kind", "name", "line", "replaces", "numbers", "guesses", "without_temperature"}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with a library and a study that names a record of it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "materials.toml").write_text(OURS)
+    (tmp_path / "case.toml").write_text(STUDY)
+    return tmp_path
+
+
+@pytest.fixture
+def ask(capsys):
+    """Run a verb of `materials`; what it says on standard output."""
+
+    def run(*arguments):
+        assert main(["materials", *arguments]) == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        return out
+
+    return run
+
+
+def test_the_list_has_every_record_with_the_documented_keys(folder, ask):
+    """Shipped ones and those of the current folder; numbers in SI; no record lacks a source."""
+    document = json.loads(ask("list", "--json"))
+    assert set(document) == {"separatrix_version", "verb", "libraries", "materials"}
+    assert document["verb"] == "materials list"
+    assert [library["file"] for library in document["libraries"]] == ["materials.toml"]
+    keys = {"fluid": FLUID, "friction table": TABLE}
+    for record in document["materials"]:
+        assert set(record) == keys.get(record["kind"], RECORD)
+        assert set(record["library"]) == {"file", "sha256", "shipped"}
+        for data in record.get("data", {}).values():
+            assert all(set(datum) == DATUM and datum["source"] for datum in data)
+    names = {(record["kind"], record["name"]) for record in document["materials"]}
+    assert {
+        ("film", "Our film"),
+        ("fluid", "liquid nitrogen"),
+        ("friction table", "pin-on-disk-77K"),
+    } <= names
+
+
+def test_the_list_of_one_kind_is_a_table(folder, ask):
+    """In any spelling of the kind; the user's records beside the shipped ones."""
+    text = ask("list", "--kind", "Films")
+    ours = next(line.split() for line in text.splitlines() if "Our film" in line)
+    assert ours == [
+        "Our",
+        "film",
+        "2",
+        "GPa",
+        "(of",
+        "2)",
+        "0.400",
+        "-",
+        "77",
+        "K",
+        "measured",
+        "materials.toml",
+    ]
+    assert "PTFE transfer film" in text
+    assert "440C" not in text
+    assert max(map(len, text.splitlines())) <= 110  # of a terminal: names and files stand in full
+
+
+def test_a_record_is_shown_whole(folder, ask):
+    """Every number with range, condition, confidence and source; the checksum of the library."""
+    text = ask("show", "Our film")
+    assert "elastic modulus 2 GPa, 77 K; measured: fitted to test 12" in text
+    assert "elastic modulus 400 MPa, 295 K; guess: as PTFE" in text
+    assert "Poisson's ratio 0.4, at no stated temperature; guess: usual" in text
+    assert "materials.toml, of the user, sha256" in text
+    record = json.loads(ask("show", "Our film", "--json"))["records"][0]
+    assert set(record) == RECORD
+
+
+def test_a_record_at_a_temperature_says_which_datum_serves(folder, ask):
+    """And what must be said of it."""
+    document = json.loads(ask("show", "Our film", "--temperature", "22 degC", "--json"))
+    record = document["records"][0]
+    assert record["taken"] == {"elastic_modulus": 1, "poisson_ratio": 0}
+    assert record["taken_at"] == 295.15
+    assert record["cautions"] == ["Poisson's ratio: its source states no temperature, taken at 295.1 K"]
+    assert "* elastic modulus 400 MPa" in ask("show", "Our film", "--temperature", "295 K")
+
+
+def test_a_fluid_has_a_state_by_its_other_name(folder, ask):
+    """The boiling point at 1 atm is in the table of the library."""
+    record = json.loads(ask("show", "LN2", "--temperature", "77.355 K", "--json"))["records"][0]
+    assert set(record) == FLUID | {"state", "cautions"}
+    state = record["state"]
+    assert set(state) == {
+        *("temperature", "pressure", "phase", "density", "viscosity", "heat_capacity", "source")
+    }
+    assert state["density"]["value"] == pytest.approx(806.08, rel=1e-4)  # 5 digits, and 0.1 mK of rounding
+    text = ask("show", "GN2", "--temperature", "77.3 K", "--pressure", "101325 Pa")
+    assert "Phase" in text
+
+
+def test_a_library_named_on_the_command_line_is_read_too(folder, ask, tmp_path_factory):
+    """From another folder, as a file or as a folder."""
+    other = tmp_path_factory.mktemp("team")
+    (other / "more.toml").write_text(OURS.replace("Our film", "Their film"))
+    for path in (other, other / "more.toml"):
+        assert "Their film" in ask("list", "--kind", "film", "--library", str(path))
+
+
+def test_check_says_what_a_file_holds(folder, ask):
+    """Records, numbers, guesses, and numbers without a temperature."""
+    document = json.loads(ask("check", "materials.toml", "--json"))
+    assert set(document) == {"separatrix_version", "verb", "file", "sha256", "shipped", "records"}
+    assert document["records"] == [
+        {
+            "kind": "film",
+            "name": "Our film",
+            "line": 3,
+            "replaces": False,
+            "numbers": 3,
+            "guesses": 2,
+            "without_temperature": 1,
+        }
+    ]
+    assert "materials.toml is a valid library: 1 record." in ask("check", "materials.toml")
+
+
+def test_add_makes_a_library_that_a_study_then_reads(folder, ask):
+    """The new file is valid, holds the record whole, and nothing else was written."""
+    (folder / "new.toml").write_text(OURS.replace("Our film", "New film"))
+    (folder / "team").mkdir()
+    document = json.loads(ask("add", "new.toml", "--to", "team/films.toml", "--json"))
+    assert set(document) == {
+        *("separatrix_version", "verb", "file", "sha256", "shipped", "records", "library")
+    }
+    assert set(document["records"][0]) == COUNTS
+    assert "Added to materials.toml: film New film." in ask("add", "new.toml", "--to", "materials.toml")
+    text = (folder / "materials.toml").read_text()
+    assert text.startswith(OURS)
+    found = sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+    assert found == ["case.toml", "materials.toml", "new.toml", "team", "team/films.toml"]
+
+
+def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
+    """Dataset, figures and report of a saved answer come from the record inside it; a new answer differs."""
+    from separatrix.figures import figures
+    from separatrix.report import report
+    from separatrix.results import dataset, load
+
+    assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
+    summary = capsys.readouterr().out
+    before = {path.name: path.read_bytes() for path in (folder / "old").iterdir()}
+    document = json.loads(before["restitution.json"])
+    record = document["study"]["film"]["material"]["record"]
+    assert record["data"]["elastic_modulus"][0]["source"] == "fitted to test 12"
+    assert len(record["library"]["sha256"]) == 64
+    (folder / "materials.toml").write_text(OURS.replace('"2 GPa"', '"3 GPa"').replace("Batch 7", "Batch 8"))
+    assert main(["restitution", "case.toml", "--json"]) == 0
+    new = json.loads(capsys.readouterr().out)
+    assert new["restitution_factor"] != document["restitution_factor"]
+    assert new["study"]["film"]["material"]["record"]["library"]["sha256"] != record["library"]["sha256"]
+    (folder / "materials.toml").unlink()
+    assert {path.name: path.read_bytes() for path in (folder / "old").iterdir()} == before
+    assert report("restitution", document, where="old") == summary
+    saved = load(folder / "old" / "restitution.nc")
+    assert "fitted to test 12" in json.dumps(dict(saved.attrs), default=str)
+    assert [name for name, _ in figures("restitution", saved)] == [
+        name for name, _ in figures("restitution", dataset(document))
+    ]
+
+
+def test_check_of_a_study_names_the_library_of_a_material(folder, capsys):
+    """And says that the datum without a temperature was taken all the same."""
+    assert main(["check", "case.toml"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "from materials.toml (sha256" in text
+    assert "Note: Poisson's ratio: its source states no temperature, taken at 77 K" in text
+
+
+def test_nothing_calls_out_and_help_stays_light(folder):
+    """No socket is opened; neither CoolProp nor numpy is imported for a list."""
+    code = (
+        "import socket, sys\n"
+        "def never(*_, **__): raise RuntimeError('network')\n"
+        "socket.socket = socket.create_connection = never\n"
+        "from separatrix.cli import main\n"
+        "assert main(['materials', 'list', '--json']) == 0\n"
+        "sys.exit(10 * ('CoolProp' in sys.modules) + ('numba' in sys.modules))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, text=True)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["verb"] == "materials list"

@@ -1,0 +1,331 @@
+"""Wrong library files, and wrong calls of `materials`: one line each, exit status 2, nothing written."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.library import joined, read_library
+from separatrix.study_file import read_study
+
+RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
+MODULUS = 'elastic_modulus = { value = "5 GPa", source = "our test", confidence = "measured" }'
+MATERIAL = f'[cage_material."Ours"]\n{MODULUS}\n{RATIO}\n'
+TABLE = """\
+[friction_table."rig"]
+title = "Rig"
+source = "Report 5"
+confidence = "measured"
+temperature = "77 K"
+environments = ["air, 440C"]
+[friction_table."rig".friction."Ours"]
+"air, 440C" = 0.2
+"""
+FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
+
+
+def modulus(text):
+    """The material with another modulus."""
+    return MATERIAL.replace(MODULUS, f"elastic_modulus = {text}")
+
+
+def changed(text, old, new):
+    """A valid file with one change."""
+    assert old in text
+    return text.replace(old, new)
+
+
+WRONG = {
+    "an empty file": ("", "is empty"),
+    "only a comment": ("# nothing\n", "is empty"),
+    "no record": ('title = "Ours"\n', "holds no record"),
+    "a title that is a number": ("title = 5\n" + MATERIAL, "title must be text in quotes; got 5"),
+    "no TOML": ("[cage_material\n", "is not valid TOML"),
+    "a section with a slip": (
+        MATERIAL.replace("cage_material", "cage_materials"),
+        "Did you mean cage_material?",
+    ),
+    "an unknown section": (MATERIAL.replace("cage_material", "spring"), "is no kind of record"),
+    "a section of lists": ("[[film]]\nname = 1\n", "must hold records"),
+    "a key outside a section": ("density = 5\n" + MATERIAL, "is no kind of record"),
+    "a record without header": ("[cage_material]\nOurs = 5\n", "must be a record: keys with values; got 5"),
+    "a name that is empty": (MATERIAL.replace('"Ours"', '""'), "must be one line of 1 to 200 printable"),
+    "a key with a slip": (MATERIAL.replace("poisson_ratio", "poisson_ration"), "Did you mean poisson_ratio?"),
+    "no modulus": (f'[film."F"]\n{RATIO}\n', "lacks: elastic_modulus"),
+    "no Poisson's ratio": (f'[film."F"]\n{MODULUS}\n', "lacks: poisson_ratio"),
+    "the same record twice": (MATERIAL + MATERIAL, "a second time"),
+    "the same key twice": (
+        changed(MATERIAL, MODULUS, f"{MODULUS}\n{MODULUS}"),
+        "elastic_modulus a second time",
+    ),
+    "a bare number": (modulus("5"), "must be a number with its source; got 5"),
+    "a bare quantity": (modulus('"5 GPa"'), 'must be a number with its source; got "5 GPa"'),
+    "no source": (modulus('{ value = "5 GPa", confidence = "guess" }'), "lacks: source"),
+    "no confidence": (modulus('{ value = "5 GPa", source = "our test" }'), "lacks: confidence"),
+    "no value": (modulus('{ source = "our test", confidence = "guess" }'), "lacks: value"),
+    "an empty source": (
+        modulus('{ value = "5 GPa", source = "", confidence = "guess" }'),
+        "must be one line",
+    ),
+    "a source of one letter": (
+        modulus('{ value = "5 GPa", source = "x", confidence = "guess" }'),
+        "must name a source",
+    ),
+    "a confidence of one's own": (
+        modulus('{ value = "5 GPa", source = "our test", confidence = "sure" }'),
+        "must be one of measured, maker, literature, handbook, guess",
+    ),
+    "an unknown key of a datum": (
+        modulus('{ value = "5 GPa", source = "our test", confidence = "guess", temprature = "77 K" }'),
+        "Did you mean temperature?",
+    ),
+    "a value without unit": (changed(MATERIAL, '"5 GPa"', "5"), 'Write "5 GPa"'),
+    "a value with a comma": (changed(MATERIAL, "5 GPa", "5,1 GPa"), "needs a decimal point"),
+    "a unit of something else": (changed(MATERIAL, "5 GPa", "5 mm"), "which is a length"),
+    "a blank given as zero": (changed(MATERIAL, "5 GPa", "0 GPa"), "left out, never given as 0"),
+    "a ratio given as zero": (changed(MATERIAL, "0.3", "0"), "left out, never given as 0"),
+    "a negative modulus": (changed(MATERIAL, "5 GPa", "-5 GPa"), "must lie between 100 kPa and 5000 GPa"),
+    "a modulus of a million GPa": (changed(MATERIAL, "5 GPa", "1e6 GPa"), "Check the unit"),
+    "a modulus that is not finite": (changed(MATERIAL, "5 GPa", "nan GPa"), "must be a finite number"),
+    "a ratio of one half": (changed(MATERIAL, "0.3", "0.5"), "must lie between 0.001 and 0.499"),
+    "a ratio in quotes": (changed(MATERIAL, "0.3", '"0.3"'), "without quotes"),
+    "a temperature below zero": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", temperature = "-10 K",'),
+        "temperature must lie between",
+    ),
+    "a temperature without unit": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", temperature = 77,'),
+        "needs a unit of temperature",
+    ),
+    "temperatures upside down": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", temperature = ["300 K", "77 K"],'),
+        "must give the lower end first",
+    ),
+    "three temperatures": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", temperature = ["1 K", "2 K", "3 K"],'),
+        "one quantity or a list of the lowest and the highest",
+    ),
+    "a range without the value": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", range = ["6 GPa", "9 GPa"],'),
+        "must hold the value between its ends",
+    ),
+    "a range of one end": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", range = ["1 GPa"],'),
+        "a list of the lowest and the highest value",
+    ),
+    "a pressure without unit": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", pressure = 5,'),
+        "needs a unit of pressure",
+    ),
+    "a medium that is a number": (
+        changed(MATERIAL, '"5 GPa",', '"5 GPa", medium = 5,'),
+        "medium must be text",
+    ),
+    "no datum in the list": (modulus("[]"), "must hold 1 to 100 data"),
+    "two data for one temperature": (
+        modulus(f"[{MODULUS[18:]}, {MODULUS[18:].replace('5', '6')}]"),
+        "two data for the same temperature",
+    ),
+    "a composition that is a list": (MATERIAL + 'composition = ["PEEK"]\n', "composition must be text"),
+    "replaces in quotes": (MATERIAL + 'replaces = "yes"\n', "must be true or false, without quotes"),
+    "replaces nothing": (MATERIAL + "replaces = true\n", "replaces a cage material that is not shipped"),
+    "a shipped name": (MATERIAL.replace("Ours", "Armalon"), "has the name of a shipped cage material"),
+    "a viscosity of a solid": (MATERIAL + "viscosity = 5\n", "is no key of a cage material"),
+    "a remark over two lines": (MATERIAL + 'remark = "a\\nb"\n', "must be one line"),
+    "a density of a gas for a solid": (
+        MATERIAL + 'density = { value = "0.5 kg/m3", source = "our test", confidence = "guess" }\n',
+        "must lie between 1 kg/m3",
+    ),
+    "a fluid without phase": ('[fluid."x"]\nsubstance = "y"\n', "lacks: phase"),
+    "a fluid of another phase": (FLUID.replace("liquid", "slush"), 'must be "liquid" or "gas"'),
+    "a fluid with a path": (FLUID + 'coolprop = "REFPROP::N2"\n', "must be the plain name of a pure fluid"),
+    "aliases that are text": (FLUID + 'aliases = "LN2"\n', "must be a list of 1 to 20 names"),
+    "a modulus of a fluid": (FLUID + MODULUS + "\n", "is no key of a fluid"),
+    "a table without friction": (TABLE.partition('[friction_table."rig".f')[0], "lacks: friction"),
+    "a table without source": (changed(TABLE, 'source = "Report 5"\n', ""), "lacks: source"),
+    "a friction of zero": (changed(TABLE, "0.2", "0.0"), "left out, never given as 0"),
+    "a negative friction": (changed(TABLE, "0.2", "-0.2"), "must lie between 0 and 2"),
+    "a friction with a unit": (changed(TABLE, "0.2", '"0.2 N"'), "must be a plain number"),
+    "a friction of 5": (changed(TABLE, "0.2", "5"), "must lie between 0 and 2"),
+    "a count of zero": (changed(TABLE, "0.2", "{ mean = 0.2, count = 0 }"), "must be a whole number from 1"),
+    "an unknown key of a friction": (
+        changed(TABLE, "0.2", "{ mean = 0.2, sd = 1 }"),
+        "is no key of this table",
+    ),
+    "an environment that is not listed": (changed(TABLE, '["air, 440C"]', '["air"]'), "lacks an environment"),
+    "environments twice": (
+        changed(TABLE, '["air, 440C"]', '["air, 440C", "air, 440C"]'),
+        "names an environment twice",
+    ),
+    "a material without friction": (changed(TABLE, '"air, 440C" = 0.2\n', ""), "in at least one environment"),
+    "a slip speed of a length": (
+        changed(TABLE, "environments", 'slip_speed = "1 mm"\nenvironments'),
+        "needs a unit of speed",
+    ),
+    "an unknown key of a table": (
+        changed(TABLE, "environments", "enviroments"),
+        "Did you mean environments?",
+    ),
+    "brackets without end": ("[film]\nx = " + "[" * 40, "brackets more than 16 deep"),
+    "a line without end": (MATERIAL + "# " + "x" * 5000 + "\n", "is longer than 4000 characters"),
+    "a NUL": (MATERIAL + "# \0\n", "NUL character"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_a_wrong_library_is_refused_in_one_line(what, tmp_path):
+    """File, mostly line, rule and value; nothing beside it appears."""
+    text, words = WRONG[what]
+    path = tmp_path / "ours.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as refused:
+        joined([read_library(path)])
+    message = str(refused.value)
+    assert words in message
+    assert message.startswith("ours.toml")
+    assert message.isprintable()
+    assert len(message) < 500
+    assert [p.name for p in tmp_path.iterdir()] == ["ours.toml"]
+
+
+def test_there_are_at_least_thirty_wrong_libraries():
+    """And the files they are changed from are right."""
+    assert len(WRONG) >= 30
+
+
+@pytest.mark.parametrize("text", [MATERIAL, TABLE, FLUID])
+def test_the_files_that_are_changed_are_right(text, tmp_path):
+    """So that each refusal is for its change alone."""
+    path = tmp_path / "ours.toml"
+    path.write_text(text)
+    joined([read_library(path)])
+
+
+STUDIES = {
+    "a film that no library has": ('[film]\nmaterial = "Ourz"\n', "is no film of the library"),
+    "a near miss of a user's record": ('[cage]\nmaterial = "ours"\n', "Did you mean Ours?"),
+    "a near miss of a user's table": ('[ranking]\nfriction = "rigg"\n', "Did you mean rig?"),
+    "a material that the table lacks": (
+        '[ranking]\nfriction = "rig"\nmaterials = ["Armalon"]\n',
+        "names a material that rig lacks",
+    ),
+    "a cage material for a ball": (
+        '[bearing]\nball_material = "Ours"\n',
+        "is no bearing material of the library",
+    ),
+    "a library that is a number": ("library = 5\n", "must be the path of a file or a folder"),
+    "a library that is missing": ('library = "no.toml"\n', 'library names no file or folder; got "no.toml"'),
+    "an empty list": ("library = []\n", "must be one path or a list of 1 to 20"),
+    "an empty folder": ('library = "empty"\n', "names a folder without a .toml file"),
+    "a library that is a study": ('library = "case.toml"\n', "is no kind of record"),
+    "a library with an endless name": (f'library = "{"x" * 300}"\n', "names no file or folder"),
+}
+
+
+@pytest.mark.parametrize("what", STUDIES)
+def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(what, tmp_path):
+    """Names of users' records get the same help as shipped ones."""
+    text, words = STUDIES[what]
+    (tmp_path / "materials.toml").write_text(MATERIAL + TABLE)
+    (tmp_path / "empty").mkdir()
+    top, _, sections = text.partition("[")
+    (tmp_path / "case.toml").write_text(
+        f'extends = "cryogenic-turbopump"\n{top}' + "[" * bool(sections) + sections
+    )
+    with pytest.raises(InputError) as refused:
+        read_study(tmp_path / "case.toml")
+    assert words in str(refused.value)
+    assert str(refused.value).isprintable()
+
+
+def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
+    """Even if it names nothing in it: what would have been replaced is not known."""
+    (tmp_path / "materials.toml").write_text(changed(MATERIAL, "5 GPa", "5 mm"))
+    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
+    with pytest.raises(InputError, match=r"^materials.toml, line 2: \[cage_material\] Ours.elastic_modulus"):
+        read_study(tmp_path / "case.toml")
+
+
+def test_one_name_in_two_libraries_is_refused(tmp_path):
+    """Which one was meant is not guessed; both places are named."""
+    (tmp_path / "materials").mkdir()
+    for name in ("materials.toml", "materials/more.toml"):
+        (tmp_path / name).write_text(MATERIAL)
+    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
+    with pytest.raises(InputError, match=r"more.toml, line 1.* stands in materials.toml, line 1 too"):
+        read_study(tmp_path / "case.toml")
+
+
+CALLS = {
+    "no verb": ([], "Missing command"),
+    "an unknown verb": (["lst"], "No such command 'lst'"),
+    "an unknown kind": (["list", "--kind", "flim"], "Did you mean film?"),
+    "a library that is missing": (["list", "--library", "no.toml"], "--library names no file or folder"),
+    "no name": (["show"], "Missing argument 'NAME'"),
+    "an unknown name": (["show", "440 C"], "Did you mean 440C?"),
+    "an empty name": (["show", ""], "is no record of the library"),
+    "a name of another kind": (["show", "440C", "--kind", "film"], "is no film of the library"),
+    "a temperature without unit": (["show", "PTFE", "--temperature", "77"], 'Write "77 K"'),
+    "a temperature of a length": (["show", "PTFE", "--temperature", "77 m"], "needs a unit of temperature"),
+    "a temperature below zero": (["show", "PTFE", "--temperature", "-1 K"], "--temperature must lie between"),
+    "a pressure for a solid": (["show", "440C", "--pressure", "1 bar"], "--pressure is for a fluid"),
+    "a pressure alone": (["show", "LN2", "--pressure", "1 bar"], "together with --temperature"),
+    "a state below melting": (["show", "LN2", "--temperature", "20 K"], "has no state"),
+    "a file that is missing": (["check", "no.toml"], "no.toml cannot be read: no such file"),
+    "a folder": (["check", "."], "is a folder, not a file"),
+    "a study for a library": (["check", "case.toml"], "is no kind of record"),
+    "no library to add to": (["add", "new.toml"], "--to is missing"),
+    "a folder to add to": (["add", "new.toml", "--to", "."], "is a folder"),
+    "a file that is no TOML": (["add", "new.toml", "--to", "ours.txt"], "must end in .toml"),
+    "a folder that is missing": (["add", "new.toml", "--to", "no/ours.toml"], "a folder that does not exist"),
+    "a library added to itself": (["add", "new.toml", "--to", "new.toml"], "is the file to add itself"),
+    "a name that is there": (["add", "new.toml", "--to", "materials.toml"], "stands in materials.toml"),
+    "a file to add that is wrong": (["add", "case.toml", "--to", "materials.toml"], "is no kind of record"),
+    "a file to add that is missing": (["add", "no.toml", "--to", "materials.toml"], "cannot be read"),
+    "a study to add to": (["add", "new.toml", "--to", "case.toml"], "is no kind of record"),
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with a library, a file to add and a study."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "materials.toml").write_text(MATERIAL)
+    (tmp_path / "new.toml").write_text(MATERIAL + FLUID)
+    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n[cage]\nmass = "30 g"\n')
+    return tmp_path
+
+
+def state_of(folder):
+    """Every file with its content."""
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.mark.parametrize("what", CALLS)
+def test_a_wrong_call_is_one_line_and_writes_nothing(what, folder, capsys):
+    """Exit status 2, nothing on standard output, no file made or changed."""
+    if "state" in what:
+        pytest.importorskip("CoolProp")
+    arguments, words = CALLS[what]
+    before = state_of(folder)
+    assert main(["materials", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert words in err
+    assert state_of(folder) == before
+
+
+def test_the_shipped_library_is_never_written(folder, capsys):
+    """Not by its path and not through a link."""
+    import separatrix.library
+
+    shipped = Path(separatrix.library.__file__).parent / "data" / "films.toml"
+    before = shipped.read_bytes()
+    os.symlink(shipped, folder / "link.toml")
+    for target in (str(shipped), "link.toml"):
+        assert main(["materials", "add", "new.toml", "--to", target]) == 2
+        assert "belongs to separatrix" in capsys.readouterr().err
+    assert shipped.read_bytes() == before
