@@ -223,13 +223,16 @@ def named(text: str, option: str, what: str) -> str:
 
 def _new(
     path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
+    excel: Annotated[
+        bool, typer.Option("--excel", help="A workbook, .xlsx, in place of a text file.")
+    ] = False,
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing.")] = False,
 ) -> int:
-    return make_study(path, as_json=json, quiet=quiet)
+    return make_study(path, excel=excel, as_json=json, quiet=quiet)
 
 
-OWN: dict[str, Callable[..., int]] = {"map": _map, "simulate": _simulate}
+OWN: dict[str, Callable[..., int]] = {"map": _map, "simulate": _simulate, "sensitivity": _sensitivity}
 """Verbs with options of their own."""
 
 VERB = {verb.name: verb for verb in VERBS}

@@ -70,8 +70,8 @@ def _cannot_write(path: Path, error: OSError) -> InputError:
     return InputError(f"--out {path}", f"cannot be written ({where}: {reason})", cure=cure)
 
 
-def write_new(path: Path, text: str) -> None:
-    """Write a text file that must not exist yet.
+def write_new(path: Path, content: bytes) -> None:
+    """Write a file that must not exist yet.
 
     Raises
     ------
@@ -79,8 +79,8 @@ def write_new(path: Path, text: str) -> None:
         There is something of that name, or the folder cannot be written.
     """
     try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with path.open("xb") as file:
+            file.write(content)
     except FileExistsError as error:
         raise InputError(str(path), "exists already", cure="It was not touched; name a new file.") from error
     except OSError as error:

@@ -140,24 +140,38 @@ def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> xr.Datase
     return data
 
 
-def make_study(path: Path, *, as_json: bool, quiet: bool) -> int:
-    """Write the commented study file of the verb `new` and return the exit status.
+def make_study(path: Path, *, excel: bool, as_json: bool, quiet: bool) -> int:
+    """Write the commented study file of the verb `new`, text or workbook, and return the exit status.
 
     Raises
     ------
     InputError
-        There is something of that name already, or it cannot be written.
+        There is something of that name already, it cannot be written, or its name says otherwise.
     """
-    from separatrix.study_file import template
-
     if path.is_dir():
         raise InputError(str(path), "is a folder", cure=f'Name a file: "{path / "my-bearing.toml"}".')
-    write_new(path, template())
+    is_named_so = path.suffix.casefold() == ".xlsx"
+    if excel and not is_named_so:
+        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{path}.xlsx".')
+    if is_named_so and not excel:
+        raise InputError(str(path), "is the name of a workbook", cure="Add --excel, or name it .toml.")
+    write_new(path, _new_study(excel=excel))
     if as_json:
         answer(json.dumps({"path": str(path)}) + "\n")
     elif not quiet:
         answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
     return ANSWERED
+
+
+def _new_study(*, excel: bool) -> bytes:
+    """Return the file to fill in."""
+    if excel:
+        from separatrix.study_file.template_workbook import template_workbook
+
+        return template_workbook()
+    from separatrix.study_file import template
+
+    return template().encode()
 
 
 def grouped(notes: Iterable[str]) -> list[str]:

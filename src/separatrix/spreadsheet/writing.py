@@ -111,7 +111,7 @@ def put(
 
 def is_evaluated(text: str) -> bool:
     """Whether a program that reads the text from a file of text may take it for a formula."""
-    return text.lstrip(" \t\r\n")[:1] in tuple(EVALUATED) and text != "-"
+    return text.lstrip(" \t\r\n")[:1] in tuple(EVALUATED) and re.search(r"\w", text) is not None
 
 
 def text_for_cell(text: str, *, exact: bool = False) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
-from separatrix.study_file.document import find, load
+from separatrix.study_file.document import Document, find, load
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import build_study
 from separatrix.study_file.shipped import shipped_studies, template
@@ -31,10 +31,22 @@ def read_study(study: str | Path) -> Study:
         It asks for more than the model is good for; what, and what to do.
     """
     path = find(study)
-    built = build_study(load(path), printable(path.stem, 100))
+    built = _built(load(path), printable(path.stem, 100))
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
     return built
+
+
+def _built(document: Document, name: str) -> Study:
+    """The study of a document; what a workbook says wrong is refused by the cell."""
+    try:
+        return build_study(document, name)
+    except InputError as error:
+        if document.cells:
+            from separatrix.study_file.workbook import in_cells
+
+            raise in_cells(document, error) from None
+        raise
 
 
 def require(study: Study, verb: str, *sections: str) -> None:

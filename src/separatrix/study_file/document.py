@@ -80,6 +80,8 @@ class Document:
     libraries: list[LibraryPlace] = field(default_factory=list)
 
     folder: Path = Path()
+    cells: dict[str, str] = field(default_factory=dict)
+    """Of a workbook: the cell of each value, by the name that refusals give it."""
 
     def place(self, *keys: str) -> str:
         """File and line of the first of the dotted keys that has a line of its own."""
@@ -125,6 +127,10 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
 
 
 def _own(path: Path) -> Document:
+    from separatrix.study_file import workbook
+
+    if workbook.is_workbook(path):
+        return workbook.document_of(path)
     data, lines = read_toml(path)
     document = Document(label_of(path), lines=lines, folder=path.parent)
     for name, value in data.items():
@@ -171,6 +177,7 @@ def _merged(base: Document, document: Document) -> Document:
         document.label, document.top, problems=base.problems + document.problems, folder=document.folder
     )
     merged.libraries = document.libraries + base.libraries
+    merged.cells = base.cells | document.cells
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)
         if below is not None or above is not None:

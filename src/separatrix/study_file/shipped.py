@@ -16,4 +16,9 @@ def shipped_studies() -> dict[str, Path]:
 
 def template() -> str:
     """A commented study to fill in, valid as it stands: what `separatrix new` writes."""
-    return (files("separatrix.study_file") / "template.toml").read_text(encoding="utf-8")
+    return template_path().read_text(encoding="utf-8")
+
+
+def template_path() -> Path:
+    """Where the template stands."""
+    return Path(str(files("separatrix.study_file") / "template.toml"))
