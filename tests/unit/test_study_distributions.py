@@ -2,6 +2,9 @@
 
 import json
 import math
+import re
+import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -64,6 +67,21 @@ def test_every_form_is_read(text, study_of):
     )
     assert found.text == text
     assert study.film.thickness == found.mean
+
+
+def test_the_page_on_uncertain_inputs_is_right():
+    """The study on the page is read, and so is every form of its table."""
+    page = (Path(__file__).parents[2] / "docs" / "uncertainty.md").read_text(encoding="utf-8")
+    block = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "page.toml"
+        path.write_text(HEAD + block.group(1), encoding="utf-8")
+        assert len(read_study(path).distributions) == 6
+        forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
+        assert len(forms) == 6
+        for form in forms:
+            path.write_text(HEAD + f"[film]\nthickness = {form}\n", encoding="utf-8")
+            assert "film.thickness" in read_study(path).distributions, form
 
 
 def test_what_follows_the_sign_is_two_standard_deviations(study_of):
