@@ -148,7 +148,7 @@ def _trace(axes: Axes, data: xr.Dataset) -> None:
     name = (
         "means of spans"
         if not cycles
-        else f"means of {format_number(cycles)} cycle{'s' if cycles > 1 else ''}"
+        else f"means of {format_number(cycles, 2)} cycle{'s' if cycles > 1 else ''}"
     )
     axes.plot(data["span"] / size, data["span_mean"], ".", color=BLUE, ms=2.5, mew=0, label=name)
     mean, half = float(data["friction"]), float(data["half_width"])

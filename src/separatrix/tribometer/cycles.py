@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,8 +18,8 @@ MOST = 256
 FEWEST = 12
 """Spans without which there are no statistics, where no cycle is known."""
 
-FEWEST_CYCLES = 8
-"""Whole cycles without which there are none."""
+FEWEST_CYCLES = 4
+"""Whole cycles below which means are over rows instead, which is told."""
 
 ROWS_OF_A_SPAN = 3
 """Rows in a span, at least, where no cycle is known."""
@@ -73,13 +73,22 @@ class Stretch:
         Raises
         ------
         InputError
-            There are too few rows or cycles.
+            There are too few rows.
         """
         if self.done is None:
             first = float(self.along[0]) if start is None else start
             return even_spans(self.along, self.friction, first, float(self.along[-1]), self.source)
         first, last = self.cycles(start)
-        return cycle_spans(self.done, self.friction, first, last, self.source)
+        return cycle_spans(self.done, self.friction, first, last)
+
+    def holds_cycles(self, start: float | None = None) -> bool:
+        """Return whether there are enough whole cycles from a place of the ruler on."""
+        first, last = self.cycles(start)
+        return self.done is not None and last - first >= FEWEST_CYCLES
+
+    def of_rows(self) -> Stretch:
+        """Return the same rows, with means over rows and not over whole cycles."""
+        return replace(self, done=None)
 
     def cycles(self, start: float | None = None) -> tuple[int, int]:
         """Return the first whole cycle from a place of the ruler on, and the one after the last."""
@@ -266,21 +275,14 @@ def even_spans(abscissa: Array, values: Array, start: float, end: float, source:
     return means(abscissa, values, start, end, count)
 
 
-def cycle_spans(done: Array, values: Array, first: int, last: int, source: str) -> Spans:
+def cycle_spans(done: Array, values: Array, first: int, last: int) -> Spans:
     """Return equal spans of whole cycles, from cycle `first` up to, but without, cycle `last`.
 
     The last span ends where the cycles do; those that fill no span of their own are left out at the start,
-    where a test is least steady.
-
-    Raises
-    ------
-    InputError
-        There are too few whole cycles.
+    where a test is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
     """
-    size = max(1, -(-(last - first) // MOST))
-    count = (last - first) // size
-    if count < FEWEST_CYCLES:
-        rule = f"needs at least {FEWEST_CYCLES} whole cycles of steady friction"
-        cure = "Take a longer log, an earlier run_in_end, or whole_cycles = false."
-        raise InputError(source, rule, "", str(max(0, last - first)), cure)
-    return means(done, values, float(last - count * size), float(last), count)
+    count = last - first
+    if count < FEWEST:
+        return means(done, values, float(first), float(last), count * -(-FEWEST // count))
+    size = -(-count // MOST)
+    return means(done, values, float(last - count // size * size), float(last), count // size)

@@ -79,8 +79,7 @@ def reduction(log: RawLog, options: ReductionOptions = DEFAULTS) -> Reduction:
     events = row_events(log, options)
     kept = slice(*kept_rows(events, log.rows))
     clock = cycles.clock(log, along, options)
-    stretch = clock.stretch(log, along, kept)
-    cut, found = _cut(log, stretch, kept, options)
+    stretch, cut, found, notes = _steady(log, clock.stretch(log, along, kept), kept, options)
     parts = _Parts(
         log=log,
         options=options,
@@ -92,6 +91,7 @@ def reduction(log: RawLog, options: ReductionOptions = DEFAULTS) -> Reduction:
         stretch=stretch,
         run_in=found,
         spans=stretch.spans(cut),
+        notes=(*clock.notes, *notes),
     )
     return parts.reduction()
 
@@ -115,6 +115,30 @@ def _finite(log: RawLog) -> None:
     if bad.size:
         where = f"{log.source}: friction"
         raise InputError(where, "must be a finite number in each row", "", f"none in row {bad[0] + 1}")
+
+
+def _steady(
+    log: RawLog, stretch: cycles.Stretch, kept: slice, options: ReductionOptions
+) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
+    """Return the rows, where on their ruler the steady part begins, how that was found, and what to say.
+
+    If that leaves too few whole cycles, means are over rows.
+    """
+    notes: tuple[str, ...] = ()
+    if stretch.done is not None and not stretch.holds_cycles():
+        stretch, notes = stretch.of_rows(), (_few(*stretch.cycles()),)
+    cut, found = _cut(log, stretch, kept, options)
+    if stretch.done is not None and not stretch.holds_cycles(cut):
+        notes = (_few(*stretch.cycles(cut)),)
+        cut, stretch = None if cut is None else stretch.place(cut), stretch.of_rows()
+    return stretch, cut, found, notes
+
+
+def _few(first: int, last: int) -> str:
+    return (
+        f"The steady part holds {max(0, last - first)} whole cycles, too few for means over whole ones: "
+        "its mean is over rows, and what changes within a cycle may shift it."
+    )
 
 
 def _cut(
@@ -162,6 +186,7 @@ class _Parts:
     stretch: cycles.Stretch
     run_in: RunIn | None
     spans: cycles.Spans
+    notes: tuple[str, ...]
 
     def reduction(self) -> Reduction:
         """Return everything together."""
@@ -221,7 +246,7 @@ class _Parts:
         yield from flags.length_flags(self.mean, self.effective, self.options)
         yield from flags.range_flag(self.mean.mean, self.friction)
         yield from flags.gap_flag(self.spans)
-        yield from self.clock.notes
+        yield from self.notes
 
     def told(self, step: tuple[float, float] | None) -> tuple[str, float] | None:
         """Return a step with its place in words."""
