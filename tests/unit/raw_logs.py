@@ -46,7 +46,8 @@ def anton_paar(
         "",
     ]
     header = (
-        f"Time [s]\tDistance [m]\tLaps\tSequence ID\tCycle ID\tMax Linear Speed [m/s]\tNominal Load [{unit}]\t"
+        "Time [s]\tDistance [m]\tLaps\tSequence ID\tCycle ID\tMax Linear Speed [m/s]\t"
+        f"Nominal Load [{unit}]\t"
         f"\u00b5\tAngle [\u00b0]\tFriction Force [{unit}]\tPenetration Depth [\u00b5m]"
     )
     one = np.ones_like(time)
@@ -76,7 +77,8 @@ def rtec(
     load = 10.0 * one if normal_force is None else normal_force
     number = one if steps is None else np.asarray(steps, float)
     head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"] if metadata else []
-    header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
+    header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),"
+    header += "Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
     columns = [number, time, number, load, friction * load, friction, speed_rpm * one, time * 1e-4]
     text = [line + "," for line in rows(columns, ",", digits, "")]
     tail = ["TotalTime", total] if total else []
@@ -95,7 +97,7 @@ def umt(
     newline: str = "\r\n",
     digits: int = 6,
 ) -> bytes:
-    """Bruker (CETR) UMT: for each step its keys, short headers, a line of units, an empty line, and the rows.
+    """Bruker (CETR) UMT: for each step its keys, headers, a line of units, an empty line, and the rows.
 
     Forces are in gram-force with compression negative; `steps` divides the rows evenly, time begins anew.
     """
@@ -126,7 +128,7 @@ def compend(
     newline: str = "\r\n",
     digits: int = 6,
 ) -> bytes:
-    """Phoenix Compend: rows that begin and end with a tab, with lines that name files of fast data between."""
+    """Phoenix Compend: rows that begin and end with a tab, with lines naming files of fast data between."""
     load = np.full_like(time, 20.0) if normal_force is None else normal_force
     names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)"]
     columns = [time, load, friction * load, np.floor(time * 2), 0 * time]

@@ -252,9 +252,8 @@ def _unit_wanted(
 ) -> InputError:
     name = shown(header.strip())
     others = [option.meaning for option in options if option.meaning != meaning]
-    si = MEANINGS[meaning] if MEANINGS[meaning] != "-" else ""
-    unit_part = f', unit = "{si}"' if si else ""
-    cure = f"Below [columns] in a column map: {meaning} = {{ name = {name}{unit_part} }}."
+    line = f'{meaning} = {{ name = {name}, unit = "{MEANINGS[meaning]}" }}'
+    cure = f"Below [columns] in a column map, with the true unit: {line}."
     if others and not unit:
         cure = cure[:-1] + f" (or {others[0]})."
     if unit:

@@ -95,11 +95,11 @@ def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
     for field in row:
         if field.casefold() in missing:
             absent += 1
-        elif is_number(field):
+        elif is_number(field) or _several_signs(field):
             numbers += 1
         elif _WORD.fullmatch(field):
             words += 1
-        elif not _GROUPED.fullmatch(field) and not _several_signs(field):
+        else:
             return False
     if numbers < 2:
         return numbers == 1 and absent > 0 and words == 0
@@ -107,7 +107,9 @@ def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
 
 
 def _several_signs(field: str) -> bool:
-    return re.fullmatch(r"[+-]?[0-9]+(?:[.,][0-9]+){2,}", field) is not None
+    """True for ``1.234,5`` and its like; a date is none."""
+    several = re.fullmatch(r"[+-]?[0-9]+(?:[.,][0-9]+){2,}", field) is not None
+    return several and _WORD.fullmatch(field) is None
 
 
 def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
@@ -118,7 +120,7 @@ def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
     both = commas and points
     if both or any(_several_signs(field) for field in tokens):
         shown = " and ".join(f'"{printable(found[0])}"' for found in (commas, points) if found)
-        cure = "Export the file without marks between thousands."
+        cure = "Export the file without marks between thousands, or say below [format]: decimal = ..."
         raise InputError(source, "has points and commas in its numbers", "", shown, cure)
     marked = commas or points
     if marked and all(_GROUPED.fullmatch(field) for field in marked):

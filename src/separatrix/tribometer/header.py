@@ -112,7 +112,7 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
             return row
         if len(row) == count + 1 and not row[-1]:
             return row[:-1]
-        if len(row) == count - 1 and dialect.separator != " ":
+        if 2 <= len(row) == count - 1 and dialect.separator != " ":
             return [*row, ""]
     return None
 

@@ -123,6 +123,8 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
     """How to bring a column of that meaning to SI; None where the unit is not one of its quantity."""
     si, spelling = MEANINGS[meaning], unit.strip()
     if si == "-":
+        if meaning == "friction" and spelling == "%":
+            return Scale(divisor=100.0)
         fits = spelling.casefold() in _NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
         return Scale() if fits else None
     return scale_in(spelling, si)
@@ -137,7 +139,7 @@ def scale_in(unit: str, si: str) -> Scale | None:
 
 def known_units(meaning: str) -> str:
     """Some units of a meaning, for a message."""
-    return units.spellings(MEANINGS[meaning]) if MEANINGS[meaning] != "-" else "-"
+    return units.spellings(MEANINGS[meaning]) if MEANINGS[meaning] != "-" else "-, %"
 
 
 def header_parts(header: str) -> list[tuple[str, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,11 +10,15 @@ from separatrix.errors import InputError
 from separatrix.tribometer.column_map import ColumnMap
 from separatrix.tribometer.columns import Chosen, Understood, understand
 from separatrix.tribometer.conditions import KEYS, conditions_of
+from separatrix.tribometer.dialect import is_number
 from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, MEANINGS, RawLog, RawTable
 from separatrix.tribometer.names import header_parts, plain
 from separatrix.units import Array, format_quantity, printable
+
+HIGHEST = 5.0
+"""Median friction above which a column is taken for percent, a force or a voltage, and refused."""
 
 Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
@@ -46,7 +50,8 @@ def raw_log(
         table.headers, table.units, source, columns, layout, constant_force=force is not None
     )
     notes: list[str] = []
-    arrays = {meaning: _in_si(table, chosen) for meaning, chosen in understood.used.items()}
+    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
+    arrays = {meaning: _in_si(table, chosen, absent) for meaning, chosen in understood.used.items()}
     arrays = _without_empty_abscissae(arrays, source, notes)
     _mend_sign(arrays, understood, source, notes)
     arrays["friction"] = _friction(arrays, force, notes)
@@ -55,6 +60,7 @@ def raw_log(
     arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
     rotation = _speed_from_rotation(arrays, given, notes)
     metadata = _without_stroke_speed(table, arrays, notes)
+    _check_size(arrays["friction"], source)
     conditions, sentences = conditions_of(given, metadata, arrays | rotation, source)
     fields = {meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"}
     return RawLog(
@@ -70,9 +76,12 @@ def raw_log(
     )
 
 
-def _in_si(table: RawTable, chosen: Chosen) -> Array:
+def _in_si(table: RawTable, chosen: Chosen, absent: Sequence[float]) -> Array:
+    """A column in SI units; NaN for what is not finite or a number that means a missing value."""
     scale = chosen.scale
     column = table.columns[chosen.index]
+    if absent:
+        column = np.where(np.isin(column, absent), np.nan, column)
     if scale.factor != 1.0:
         column = column * scale.factor
     if scale.divisor != 1.0:
@@ -154,6 +163,14 @@ def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tup
     return kept, missing
 
 
+def _check_size(friction: Array, source: str) -> None:
+    middle = float(np.median(friction))
+    if middle > HIGHEST:
+        cure = 'If it is in percent: friction = { name = "...", unit = "%" } below [columns] in a column map.'
+        rule = f"has a friction that is no ratio of forces: its median must be at most {HIGHEST:g}"
+        raise InputError(source, rule, "", f"{middle:.4g}", cure)
+
+
 def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
     rows = np.flatnonzero(kept)
     for meaning in ABSCISSAE:
@@ -167,8 +184,7 @@ def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, sourc
             unit = MEANINGS[meaning]
             here, before = (format_quantity(float(column[j]), unit, 8) for j in (i, i - 1))
             cure = "Split the file there; or, if this column is another, say so in a column map."
-            place = "line" if table.lines is not None else "row"
-            where = f"{source}: {place} {line}"
+            where = f"{source}: line {line}" if table.lines is not None else f"{source}: table row {line}"
             raise InputError(where, f"{meaning} must not run backwards", "", f"{here} after {before}", cure)
 
 

@@ -22,6 +22,10 @@ from separatrix.units import Array, printable
 HEAD = 300
 """Lines in which the table's separator and decimal sign are looked for first."""
 
+_COMMA = bytes.maketrans(b",.", b".'")
+_BACK = str.maketrans(".'", ",.")
+"""With decimal commas a point is no part of a number: it becomes a mark that none can have, and back."""
+
 Wanted = Callable[[tuple[str, ...], tuple[str, ...]], Sequence[int]]
 
 
@@ -293,7 +297,7 @@ def _numbers(
     if b'"' in body:
         body = body.replace(b'"', b"")
     if dialect.decimal == ",":
-        body = body.translate(bytes.maketrans(b",", b"."))
+        body = body.translate(_COMMA)
     try:
         return _loaded(body, dialect.separator, needed)
     except ValueError:
@@ -336,6 +340,7 @@ def _no_number(
             text = parts[column] if column < len(parts) else ""
             if text != "nan" and not _is_float(text):
                 name = printable(names[column]) or f"number {column + 1}"
+                text = text.translate(_BACK) if dialect.decimal == "," else text
                 said = f"missing = [{_toml(text)}]"
                 cure = f"If that means a missing value, add below [format] in the column map: {said}."
                 return InputError(

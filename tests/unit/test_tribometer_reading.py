@@ -1,0 +1,482 @@
+"""Raw tribometer logs in text come back to the last digit written, with their units and conditions."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+
+import numpy as np
+import pytest
+import raw_logs
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from raw_logs import as_written
+
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import ColumnMap, column_map
+from separatrix.tribometer.log import MEANINGS, Conditions, RawLog
+from separatrix.tribometer.names import ALIASES, NAMES, ranks, scale_of
+from separatrix.tribometer.reading import described, read_log
+from separatrix.units import UNITS
+
+ROWS = 60
+TIME = np.arange(ROWS) * 0.25
+FRICTION = 0.12 + 0.02 * np.sin(np.arange(ROWS) * 0.7)
+ULP = 4e-16  # a number in mN, um or gram-force is rounded once more on its way to SI
+
+
+def read(tmp_path, content: bytes, columns: ColumnMap | None = None, name: str = "log.txt") -> RawLog:
+    """The one log of a file with that content."""
+    (log,) = read_all(tmp_path, content, columns, name)
+    return log
+
+
+def read_all(tmp_path, content: bytes, columns: ColumnMap | None = None, name: str = "log.txt"):
+    """Every log of a file with that content."""
+    path = tmp_path / name
+    path.write_bytes(content)
+    return read_log(path, columns)
+
+
+FORMATS = {
+    "Anton Paar text": raw_logs.anton_paar,
+    "Rtec CSV": raw_logs.rtec,
+    "Bruker UMT text": raw_logs.umt,
+    "Phoenix Compend text": raw_logs.compend,
+}
+
+
+@pytest.mark.parametrize("format_name", FORMATS)
+def test_friction_and_time_come_back_to_the_last_digit(tmp_path, format_name):
+    """Every writer's numbers are read as the floats nearest to their decimals."""
+    log = read(tmp_path, FORMATS[format_name](FRICTION, TIME))
+    assert log.format.startswith(format_name)
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    np.testing.assert_array_equal(log.time, as_written(TIME))
+    assert log.rows == ROWS
+    assert log.missing == 0
+
+
+def test_checksum_is_that_of_the_file(tmp_path):
+    """Provenance: SHA-256 of the bytes as they stand on the disk."""
+    content = raw_logs.anton_paar(FRICTION, TIME)
+    assert read(tmp_path, content).checksum == hashlib.sha256(content).hexdigest()
+
+
+def test_anton_paar_columns_and_conditions_are_in_si(tmp_path):
+    """Radius 15 mm at 10 cm/s and 5 N: slip speed, load, temperature and time of a turn from the metadata."""
+    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME))
+    np.testing.assert_array_equal(log.distance, as_written(TIME * 0.1))
+    np.testing.assert_allclose(log.wear_depth, as_written(TIME * 1e-3) * 1e-6, rtol=ULP)
+    conditions = log.conditions
+    assert conditions.sample == "A1"
+    assert conditions.slip_speed == pytest.approx(0.1, rel=1e-12)  # written with two decimals of cm/s
+    assert conditions.normal_force == 5.0
+    assert conditions.temperature == pytest.approx(295.15, rel=1e-12)
+    assert conditions.cycle_time == pytest.approx(2 * math.pi * 0.015 / 0.1, rel=1e-12)
+
+
+def test_nano_tribometer_forces_are_millinewtons(tmp_path):
+    """The same test logged in mN has the same forces."""
+    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME, nano=True))
+    np.testing.assert_array_equal(log.normal_force, 5.0)
+    np.testing.assert_allclose(log.tangential_force, as_written(FRICTION * 5e3) / 1e3, rtol=ULP)
+    assert log.conditions.normal_force == 5.0
+
+
+def test_a_stroke_s_greatest_speed_is_not_its_sliding_speed(tmp_path):
+    """With a linear position instead of an angle the file is of strokes, and the speed is asked for."""
+    content = raw_logs.anton_paar(FRICTION, TIME).replace(
+        "Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]"
+    )
+    log = read(tmp_path, content)
+    assert log.conditions.slip_speed is None
+    assert any("slip_speed below [test]" in note for note in log.notes)
+
+
+ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "utf-16-le", "utf-16-be", "cp1252"]
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
+def test_every_encoding_gives_the_same_log(tmp_path, encoding, newline):
+    """The Greek letter in the header and the degree sign in the metadata survive each encoding."""
+    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME, encoding=encoding, newline=newline))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    assert log.conditions.temperature == pytest.approx(295.15, rel=1e-12)
+
+
+def test_encoding_after_a_long_ascii_head_is_still_seen(tmp_path):
+    """A letter of Windows-1252 far below the header is no longer taken for UTF-8."""
+    head = [f"remark {i}: {'a' * 90}" for i in range(250)] + ["place: K\u00f6ln"]
+    columns = {"time [s]": TIME, "COF": FRICTION}
+    content = raw_logs.plain_csv(columns, head=head, encoding="cp1252", separator="\t")
+    assert read(tmp_path, content).metadata["place"] == "K\u00f6ln"
+
+
+@pytest.mark.parametrize(
+    ("separator", "decimal"),
+    [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), ("   ", "."), ("  ", ","), (" \t ", ".")],
+)
+def test_separators_and_decimals_are_told_from_the_rows(tmp_path, separator, decimal):
+    """Comma, semicolon, tab and runs of blanks, with decimal point or comma."""
+    columns = {"time [s]": TIME, "COF": FRICTION, "Fz [N]": FRICTION + 10.0}
+    log = read(tmp_path, raw_logs.plain_csv(columns, separator=separator, decimal=decimal))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    np.testing.assert_array_equal(log.normal_force, as_written(FRICTION + 10.0))
+
+
+@given(
+    separator=st.sampled_from([";", "\t", ",", "  "]),
+    decimal=st.sampled_from([".", ","]),
+    encoding=st.sampled_from(ENCODINGS),
+    digits=st.integers(1, 12),
+    friction=st.lists(st.floats(0.0, 3.0), min_size=3, max_size=12),
+)
+@settings(max_examples=60, deadline=None)
+def test_any_dialect_comes_back_or_is_asked_for(
+    tmp_path_factory, separator, decimal, encoding, digits, friction
+):
+    """Whatever the numbers: the log is the one written, or the decimal sign is asked for; no other."""
+    if separator == "," and decimal == ",":
+        decimal = "."
+    values = np.array(friction)
+    columns = {"time [s]": np.arange(len(values)) * 0.5, "COF": values}
+    content = raw_logs.plain_csv(
+        columns, separator=separator, decimal=decimal, encoding=encoding, digits=digits
+    )
+    try:
+        log = read(tmp_path_factory.mktemp("dialect"), content)
+    except InputError as refusal:
+        assert "decimal" in str(refusal)  # noqa: PT017
+    else:
+        np.testing.assert_array_equal(log.friction, as_written(values, digits))
+
+
+UNIT_STYLES = {
+    "in brackets": ({"Time [s]": TIME, "\u00b5 [-]": FRICTION, "Fn [mN]": FRICTION}, ()),
+    "in parentheses": ({"Time (s)": TIME, "COF ()": FRICTION, "Load (mN)": FRICTION}, ()),
+    "after an underscore": ({"Time_s": TIME, "mu": FRICTION, "Fn_mN": FRICTION}, ()),
+    "after a slash": ({"Zeit / s": TIME, "Reibwert": FRICTION, "Normalkraft/mN": FRICTION}, ()),
+    "after in": ({"Zeit in s": TIME, "Reibungszahl": FRICTION, "Normalkraft in mN": FRICTION}, ()),
+    "after a blank": ({"temps s": TIME, "coefficient de frottement": FRICTION, "Fn mN": FRICTION}, ()),
+    "in a row": ({"Time": TIME, "COF": FRICTION, "Fz": FRICTION}, ("s", "-", "mN")),
+    "in a row with brackets": ({"Time": TIME, "COF": FRICTION, "Fz": FRICTION}, ("[s]", "[-]", "[mN]")),
+    "in a row with a gap": ({"T": TIME, "COF": FRICTION, "Fz": FRICTION}, ("sec", "", "mN")),
+}
+
+
+@pytest.mark.parametrize("style", UNIT_STYLES)
+def test_units_are_found_wherever_they_stand(tmp_path, style):
+    """Beside the name, or in a row of their own; mN come to N."""
+    columns, units = UNIT_STYLES[style]
+    log = read(tmp_path, raw_logs.plain_csv(columns, units=units, separator=";"))
+    np.testing.assert_array_equal(log.time, as_written(TIME))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    np.testing.assert_allclose(log.normal_force, as_written(FRICTION) / 1e3, rtol=ULP)
+
+
+@pytest.mark.parametrize("mark", ["x", "X", "-", "NaN", "n/a", "", "#N/A", "1.#QNAN", "inf", " - "])
+@pytest.mark.parametrize("separator", [";", "\t", ",", "  "])
+def test_missing_values_are_left_out_and_counted(tmp_path, mark, separator):
+    """Rows without friction are dropped, whatever the mark."""
+    if mark == "" and separator == "  ":
+        pytest.skip("nothing between blanks cannot be seen")
+    friction = FRICTION.copy()
+    friction[[0, 7, 8, ROWS - 1]] = np.nan
+    columns = {"time [s]": TIME, "COF": friction, "other": TIME}
+    log = read(tmp_path, raw_logs.plain_csv(columns, separator=separator, missing=mark))
+    there = np.isfinite(friction)
+    assert log.missing == 4
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION[there]))
+    np.testing.assert_array_equal(log.time, as_written(TIME[there]))
+    assert any("4 of 60 rows are left out" in note for note in log.notes)
+
+
+def test_a_number_can_mean_missing(tmp_path):
+    """-999 is a number until the column map says that it is none."""
+    friction = np.where(np.arange(ROWS) == 5, -999.0, FRICTION)
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": friction}, digits=1)
+    columns = column_map({"format": {"missing": ["-999"]}})
+    assert read(tmp_path, content).friction.max() == 999.0
+    assert read(tmp_path, content, columns).missing == 1
+
+
+def test_friction_in_percent_is_divided(tmp_path):
+    """12 % is 0.12."""
+    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF [%]": FRICTION * 100.0}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 100.0) / 100.0)
+
+
+def test_friction_is_tangential_over_normal_force(tmp_path):
+    """Where no coefficient is logged, the magnitude of the ratio, row by row."""
+    load = 10.0 + 0.1 * np.cos(TIME)
+    stroke = np.sign(np.sin(TIME + 0.1))
+    columns = {"time [s]": TIME, "Fx [N]": stroke * FRICTION * load, "Fz [N]": load}
+    log = read(tmp_path, raw_logs.plain_csv(columns))
+    np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
+    assert (log.tangential_force < 0.0).any()
+    assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
+
+
+def test_rows_without_compression_are_left_out_with_their_count(tmp_path):
+    """A normal force of zero or of the other sign gives no friction."""
+    load = np.full(ROWS, 10.0)
+    load[[3, 4]] = (0.0, -0.5)
+    columns = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0, "Fn [N]": load}
+    log = read(tmp_path, raw_logs.plain_csv(columns))
+    assert log.missing == 2
+    assert any(note.startswith("2 rows without compression") for note in log.notes)
+
+
+def test_compression_may_count_negative(tmp_path):
+    """A normal force that is negative in nearly all rows is turned round, and that is said."""
+    columns = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0, "Fn [N]": np.full(ROWS, -10.0)}
+    log = read(tmp_path, raw_logs.plain_csv(columns))
+    np.testing.assert_array_equal(log.normal_force, 10.0)
+    assert "the normal force is negative in the file: compression counts negative there" in log.notes
+
+
+def test_a_constant_load_of_the_column_map_serves_as_normal_force(tmp_path):
+    """A log of the friction force alone needs the load from the user."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "Friction force [N]": FRICTION * 10.0})
+    log = read(tmp_path, content, column_map({"test": {"normal_force": "10 N"}}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 10.0) / 10.0)
+
+
+def test_negative_friction_of_strokes_is_taken_as_magnitude(tmp_path):
+    """The sign of the stroke is no sign of the friction; the note says how many rows it was."""
+    stroke = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
+    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": stroke * FRICTION}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    assert any(note.startswith("friction is negative in 30 of 60 rows") for note in log.notes)
+
+
+def test_umt_forces_are_grams_and_every_step_is_a_log(tmp_path):
+    """204 gram-force are 2 N; time begins anew in each step."""
+    first, second = read_all(tmp_path, raw_logs.umt(FRICTION, TIME, steps=2, reciprocating=True))
+    assert first.source == "log.txt, run 1, step 1"
+    assert second.source == "log.txt, run 1, step 2"
+    assert second.time[0] == 0.0
+    np.testing.assert_allclose(first.normal_force, 2.0, rtol=1e-8)  # six decimals of 203.94 g
+    np.testing.assert_array_equal(np.concatenate([first.friction, second.friction]), as_written(FRICTION))
+
+
+def test_umt_keys_without_units_are_not_conditions(tmp_path):
+    """``Velocity = 240`` could be rpm or mm/s: it is said and not used."""
+    log = read(tmp_path, raw_logs.umt(FRICTION, TIME))
+    assert log.conditions.slip_speed is None
+    assert any('"Velocity 240" has no unit' in note for note in log.notes)
+
+
+def test_rtec_steps_are_logs_of_their_own(tmp_path):
+    """The timestamp begins anew with each step."""
+    time = np.concatenate([TIME[:20], TIME[:40]])
+    logs = read_all(tmp_path, raw_logs.rtec(FRICTION, time, steps=[1] * 20 + [2] * 40))
+    assert [log.source for log in logs] == ["log.txt, step 1", "log.txt, step 2"]
+    assert [log.rows for log in logs] == [20, 40]
+    (second,) = read_all(
+        tmp_path,
+        raw_logs.rtec(FRICTION, time, steps=[1] * 20 + [2] * 40),
+        column_map({"format": {"tables": ["step 2"]}}),
+    )
+    assert second.rows == 40
+
+
+def test_rtec_metadata_and_rotation_give_the_conditions(tmp_path):
+    """Keys over values; 120 rpm on a radius of 20 mm is a slip speed of 4 pi x 0.02 m/s."""
+    columns = column_map({"test": {"track_radius": "20 mm", "material": "Armalon"}})
+    log = read(tmp_path, raw_logs.rtec(FRICTION, TIME), columns)
+    assert log.metadata["Operator"] == "nobody"
+    assert log.conditions.material == "Armalon"
+    assert log.conditions.slip_speed == pytest.approx(4 * math.pi * 0.02, rel=1e-12)
+    assert log.conditions.cycle_time == pytest.approx(0.5, rel=1e-12)
+
+
+def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
+    """Some exports split the keys from their values that way."""
+    content = raw_logs.rtec(FRICTION, TIME).replace(b"Recipe\r\ndisk", b"Recipe\rdisk")
+    assert read(tmp_path, content).conditions.sample == "disk 7"
+
+
+def test_compend_lines_of_fast_data_are_not_rows(tmp_path):
+    """They stand between the rows and name other files."""
+    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, fast_data_every=7))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+def test_compend_without_coefficient_uses_its_forces(tmp_path):
+    """Friction (N) over Load (N)."""
+    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 20.0) / 20.0)
+
+
+def test_several_tables_in_a_file_are_several_logs(tmp_path):
+    """Each with its own header; named by their order where the file does not name them."""
+    one = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, separator="\t")
+    two = raw_logs.plain_csv({"temps [min]": TIME, "mu": FRICTION * 2}, separator="\t")
+    first, second = read_all(tmp_path, one + b"\n" + two)
+    assert first.source == "log.txt, table 1"
+    assert second.source == "log.txt, table 2"
+    np.testing.assert_array_equal(second.time, as_written(TIME) * 60.0)
+
+
+def test_columns_of_words_and_dates_may_stand_beside_the_numbers(tmp_path):
+    """They are not needed and not read."""
+    lines = ["date;step;time [s];COF"]
+    lines += [f"2026-02-01 10:00:{i % 60:02d};slide;{TIME[i]};{FRICTION[i]:.6f}" for i in range(ROWS)]
+    log = read(tmp_path, "\n".join(lines).encode())
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+def test_german_dates_do_not_hide_the_decimal_comma(tmp_path):
+    """01.02.2026 is a date, not a number with two points."""
+    lines = ["Datum;Zeit [s];Reibwert"]
+    lines += [f"01.02.2026;{i},5;0,{100 + i}" for i in range(ROWS)]
+    log = read(tmp_path, "\n".join(lines).encode())
+    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
+
+
+def test_closing_remarks_are_not_rows(tmp_path):
+    """Words below the table end it."""
+    content = raw_logs.plain_csv(
+        {"time [s]": TIME, "COF": FRICTION}, tail=["", "stopped by operator", "Total 12:00"]
+    )
+    assert read(tmp_path, content).rows == ROWS
+
+
+def test_empty_lines_between_rows_are_passed_over(tmp_path):
+    """As some loggers write them every hour."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    lines = content.split(b"\n")
+    assert read(tmp_path, b"\n".join([*lines[:9], b"", b"  ", *lines[9:]])).rows == ROWS
+
+
+def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
+    """T in sec is time, T in degrees is temperature; speed in rpm is rotation; friction in N is a force."""
+    columns = {
+        "T [sec]": TIME,
+        "t [\u00b0C]": 20 + TIME,
+        "Friction [N]": FRICTION,
+        "Load [N]": FRICTION * 0 + 1,
+    }
+    log = read(tmp_path, raw_logs.plain_csv(columns | {"Speed [rpm]": 60 + 0 * TIME}))
+    np.testing.assert_allclose(log.temperature, 293.15 + as_written(TIME), rtol=ULP)
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    assert log.conditions.cycle_time == pytest.approx(1.0, rel=1e-12)
+
+
+def test_column_map_says_what_names_do_not(tmp_path):
+    """By name or by number, with a unit and a sign."""
+    content = raw_logs.plain_csv({"a": TIME, "b": FRICTION * 2e3, "c": np.full(ROWS, -2.0)})
+    choices = {
+        "time": {"name": "a", "unit": "min"},
+        "tangential_force": {"name": 2, "unit": "mN"},
+        "normal_force": {"name": "c", "unit": "N", "sign": -1},
+    }
+    log = read(tmp_path, content, column_map({"columns": choices}))
+    np.testing.assert_array_equal(log.time, as_written(TIME) * 60.0)
+    np.testing.assert_allclose(log.friction, as_written(FRICTION * 2e3) / 2e3, rtol=ULP)
+    assert {column.why for column in log.columns} == {"column map"}
+
+
+def test_column_map_by_number_needs_no_header(tmp_path):
+    """A bare table of numbers."""
+    lines = raw_logs.plain_csv({"a": TIME, "b": FRICTION}).split(b"\n", 1)[1]
+    choices = {"time": {"name": 1, "unit": "s"}, "friction": 2}
+    log = read(tmp_path, lines, column_map({"columns": choices}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+def test_column_map_settles_two_columns_of_friction(tmp_path):
+    """The named one is used; the other is shown as not used."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION, "mu": FRICTION * 2})
+    log = read(tmp_path, content, column_map({"columns": {"friction": "mu"}}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 2))
+    assert [column.why for column in log.columns if column.header == "COF"] == [
+        "another column is the friction"
+    ]
+
+
+def test_column_map_s_forces_go_before_a_logged_coefficient(tmp_path):
+    """Whoever names the tangential force wants the friction from it."""
+    columns = {"time [s]": TIME, "COF": FRICTION * 9, "Fx [N]": FRICTION, "Fz [N]": FRICTION * 0 + 1}
+    log = read(tmp_path, raw_logs.plain_csv(columns), column_map({"columns": {"tangential_force": "Fx"}}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+def test_format_section_overrides_what_rows_would_say(tmp_path):
+    """Lines of header and units by their numbers, separator and decimal sign as given."""
+    lines = ["first remark", "Zeit;Reibwert", "other remark", "s;-"]
+    lines += [f"{10 + i},{100 + i};0,{100 + i}" for i in range(20)]
+    given = {"separator": ";", "decimal": ",", "header_line": 2, "units_line": 4}
+    log = read(tmp_path, "\n".join(lines).encode(), column_map({"format": given}))
+    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(20)])
+
+
+def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
+    """[test] for all, then each pattern that fits, in the order written."""
+    columns = column_map(
+        {
+            "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
+            "files": {
+                "armalon_*.txt": {"material": "Armalon"},
+                "*_ln2.txt": {"medium": "liquid nitrogen"},
+                "other.txt": {"material": "PEEK"},
+            },
+        }
+    )
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    conditions = read(tmp_path, content, columns, "armalon_3_ln2.txt").conditions
+    assert conditions.environment == "liquid nitrogen, 440C"
+    assert conditions.material == "Armalon"
+    assert conditions.temperature == 77.0
+
+
+def test_pressure_is_the_force_over_the_pin_s_area(tmp_path):
+    """A flat pin of 6 mm under 100 N bears 100 / (9 pi) MPa."""
+    columns = column_map({"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}})
+    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}), columns)
+    assert log.conditions.pressure == pytest.approx(100.0 / (9.0 * math.pi) * 1e6, rel=1e-12)
+
+
+def test_column_map_goes_before_metadata(tmp_path):
+    """The user knows better than the header of the file."""
+    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME), column_map({"test": {"normal_force": "6 N"}}))
+    assert log.conditions.normal_force == 6.0
+
+
+def test_description_shows_columns_units_and_reasons(tmp_path):
+    """What is shown before it is trusted."""
+    text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
+    assert "Bruker UMT text (utf-8, comma, decimal point), 60 rows, sha256" in text
+    assert 'friction: column "COF" (its name)' in text
+    assert 'time: column "T" in sec (its name)' in text
+    assert 'not used: column "Fx" in g (another column is the tangential force)' in text
+    assert "time from 0 s to 14.75 s" in text
+    assert "note: the normal force is negative in the file" in text
+
+
+def test_no_name_and_unit_have_two_meanings():
+    """In the published table, a name together with any unit that fits one of its meanings fits no other."""
+    every = {unit for table in UNITS.values() for unit in table}
+    every |= {word for table in ALIASES.values() for group in table.values() for word in group.split("; ")}
+    for group in {group for groups in NAMES.values() for group in groups}:
+        for name in group.split("; "):
+            for unit in every:
+                fitting = [meaning for meaning in ranks(name) if scale_of(unit, meaning) is not None]
+                assert len(fitting) <= 1, (name, unit, fitting)
+
+
+def test_names_are_written_as_they_are_compared():
+    """Each name of the table is found under itself, and every meaning has names."""
+    assert set(NAMES) == set(MEANINGS)
+    for meaning, groups in NAMES.items():
+        for group in groups:
+            assert all(meaning in ranks(name) for name in group.split("; "))
+
+
+def test_conditions_refuse_what_cannot_be():
+    """A record that checks itself."""
+    with pytest.raises(InputError, match=r"Conditions\.temperature must be > 0"):
+        Conditions(temperature=-3.0)

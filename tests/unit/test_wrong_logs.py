@@ -1,0 +1,317 @@
+# ruff: noqa: E501  each wrong log and its message on a line
+"""Wrong logs and column maps: each is refused in one line that says where, what, and what to do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import raw_logs
+
+from separatrix.errors import InputError
+from separatrix.tribometer.column_map import column_map, read_column_map
+from separatrix.tribometer.reading import read_log
+
+TIME = np.arange(20) * 0.5
+FRICTION = 0.1 + 0.001 * np.arange(20)
+FORCE = np.full(20, 10.0)
+
+
+def csv(**options) -> bytes:
+    """A sound log in CSV, or one with other columns."""
+    return raw_logs.plain_csv(options.pop("columns", {"time [s]": TIME, "COF": FRICTION}), **options)
+
+
+def lines(*rows: str) -> bytes:
+    """A file of these lines."""
+    return ("\n".join(rows) + "\n").encode()
+
+
+def changed(content: bytes, line: int, text: str) -> bytes:
+    """The content with one line (from 1) replaced."""
+    rows = content.decode().split("\n")
+    rows[line - 1] = text
+    return "\n".join(rows).encode()
+
+
+BACK = np.where(np.arange(20) == 12, 1.0, TIME)
+BOTH = np.where(np.arange(20) % 2 == 0, 10.0, -10.0)
+TWO = {"time [s]": TIME, "COF": FRICTION, "mu": FRICTION}
+
+WRONG = {
+    "an empty file": (b"", "log.txt is empty."),
+    "nothing but blanks": (b"  \n \n", "log.txt is empty."),
+    "a header only": (lines("time [s],COF"), "has no table of numbers with two columns or more"),
+    "one row only": (lines("time [s],COF", "0.0,0.1"), "line 2 is the only row"),
+    "a binary file": (bytes(range(256)) * 20, "is not a text file (it has NUL or control characters)"),
+    "a file of NUL bytes": (b"\0" * 5000, "is not a text file"),
+    "control characters": (b"time [s],COF\n\x010,1\n", "is not a text file"),
+    "an old Excel file": (
+        b"\xd0\xcf\x11\xe0" + b"\0" * 600,
+        "is an old Excel workbook, not text. Save it as .xlsx",
+    ),
+    "a compressed file": (b"\x1f\x8b\x08" + b"a" * 99, "is compressed (gzip), not text. Unpack it first."),
+    "a PDF": (b"%PDF-1.7 \n", "is a PDF, not text"),
+    "a byte that Windows-1252 lacks": (
+        csv() + b"caf\xe9 \x81\n",
+        "line 22 cannot be read as cp1252 text; got byte 0x81",
+    ),
+    "prose": (lines("The pin was 440C.", "It ran well, mostly."), "has no table of numbers"),
+    "one column": (lines("COF", "0.1", "0.2", "0.3"), "has no table of numbers with two columns or more"),
+    "no header": (
+        csv().split(b"\n", 1)[1],
+        "line 1 begins a table of 2 columns without a line of 2 column names",
+    ),
+    "a header of other length": (
+        changed(csv(), 1, "a,b,c,d"),
+        "line 2 begins a table of 2 columns without a line",
+    ),
+    "a row with too few fields": (changed(csv(), 9, "3.5"), 'line 9 breaks the table; got "3.5"'),
+    "a row with too many fields": (
+        changed(csv(), 9, "3.5,0.1,7"),
+        "line 9 has 3 fields where the rows before it have 2",
+    ),
+    "a last row cut off": (
+        csv() + b"10.0",
+        'line 22 has 1 fields where the rows before it have 2; got "10.0"',
+    ),
+    "text among the rows": (changed(csv(), 9, "pump stopped"), 'line 9 breaks the table; got "pump stopped"'),
+    "text in a number column": (
+        changed(csv(), 9, "3.5,abc"),
+        'line 9, column "COF" must be a number; got "abc"',
+    ),
+    "an underscore in a number": (
+        changed(csv(), 9, "3.5,0.1_1"),
+        'line 9, column "COF" must be a number; got "0.1_1"',
+    ),
+    "a hexadecimal number": (changed(csv(), 9, "3.5,0x10"), 'line 9, column "COF" must be a number'),
+    "a blank in a number": (
+        changed(csv(), 9, "3.5,1 000"),
+        'line 9, column "COF" must be a number; got "1 000"',
+    ),
+    "a decimal comma in one row": (
+        changed(csv(separator=";"), 9, "3,5;0,1"),
+        'has points and commas in its numbers; got "3,5" and "0.000000"',
+    ),
+    "two points in a number": (
+        changed(csv(separator=";"), 9, "3.5;1.000.0"),
+        "has points and commas in its numbers",
+    ),
+    "marks between thousands": (
+        lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))),
+        "Export the file without marks between thousands, or say below [format]: decimal = ...",
+    ),
+    "decimals or thousands": (
+        lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))),
+        'does not tell decimals from thousands; got "1,250". Add to the column map, below [format]: decimal = ","',
+    ),
+    "a point among decimal commas far below": (
+        csv(
+            separator=";",
+            decimal=",",
+            columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)},
+        )
+        + b"4000,5;1.234\n",
+        'line 4002, column "COF" must be a number; got "1.234"',
+    ),
+    "comma twice": (
+        lines("time [s],COF", *(f"{i},5,0,12{i}" for i in range(9))),
+        "has 2 names over 4 fields: comma as separator and as decimal sign",
+    ),
+    "time running backwards": (
+        csv(columns={"time [s]": BACK, "COF": FRICTION}),
+        "line 14 time must not run backwards; got 1 s after 5.5 s",
+    ),
+    "distance running backwards": (
+        csv(columns={"distance [mm]": BACK, "COF": FRICTION}),
+        "line 14 distance must not run backwards",
+    ),
+    "two frictions": (
+        csv(columns=TWO),
+        'has 2 columns that could be the friction; got columns "COF", "mu". Say which below [columns] in a '
+        'column map: friction = "COF".',
+    ),
+    "the same header twice": (
+        lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))),
+        'could be the friction; got columns "COF", "COF". Say which below [columns] in a column map: friction = 2.',
+    ),
+    "no friction": (
+        csv(columns={"time [s]": TIME, "a": FRICTION}),
+        'no column that is known to be the friction, nor two forces that give it; got columns "time [s]", "a"',
+    ),
+    "a friction of unknown name": (
+        csv(columns={"time [s]": TIME, "COF max": FRICTION, "COF min": FRICTION}),
+        'got columns "COF max", "COF min". Say which below [columns] in a column map: friction = "COF max".',
+    ),
+    "friction in volts": (
+        csv(columns={"time [s]": TIME, "COF [V]": FRICTION}),
+        'column "COF [V]" has a unit that is not one of the friction (-, %); got "V"',
+    ),
+    "friction that may be a force": (
+        csv(columns={"time [s]": TIME, "friction": FRICTION}),
+        'friction = { name = "friction", unit = "-" } (or tangential_force)',
+    ),
+    "friction in percent without saying so": (
+        csv(columns={"time [s]": TIME, "COF": FRICTION * 100}),
+        "its median must be at most 5; got 10.95. If it is in percent",
+    ),
+    "a tangential force alone": (
+        csv(columns={"time [s]": TIME, "Ff [N]": FORCE}),
+        'has a tangential force but no normal force. Below [columns] in a column map: normal_force = "..."',
+    ),
+    "two tangential forces": (
+        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Reibkraft [N]": FORCE, "Fz [N]": FORCE}),
+        'has 2 columns that could be the tangential force; got columns "Ff [N]", "Reibkraft [N]"',
+    ),
+    "a normal force without unit": (
+        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz": FORCE}),
+        'column "Fz" has no unit',
+    ),
+    "a normal force in grams": (
+        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}),
+        'column "Fz [g]" has a unit that is not one of the normal force (N, mN, daN, kN, ...); got "g"',
+    ),
+    "a normal force of both signs": (
+        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}),
+        "has a normal force of both signs, so that compression cannot be told; got 10 rows above zero, 10 below",
+    ),
+    "no abscissa": (
+        csv(columns={"a": TIME, "COF": FRICTION}),
+        "has no column that is known to be time, distance or cycles",
+    ),
+    "time without unit": (
+        csv(columns={"time": TIME, "COF": FRICTION}),
+        'column "time" has no unit, so that its meaning is not sure. Below [columns] in a column map, with the '
+        'true unit: time = { name = "time", unit = "s" }.',
+    ),
+    "time in an unknown unit": (
+        csv(columns={"time [ticks]": TIME, "COF": FRICTION}),
+        'has a unit that is not one of the time (s, ms, us, min, ...); got "ticks"',
+    ),
+    "T of time or temperature": (csv(columns={"T": TIME, "COF": FRICTION}), 'column "T" has no unit'),
+    "every friction missing": (
+        csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"),
+        "needs at least two rows with a friction and its abscissa; got 0 of 20 rows",
+    ),
+    "every time missing": (
+        csv(columns={"time [s]": TIME * np.nan, "COF": FRICTION}, missing="x"),
+        "has no value of time in any row",
+    ),
+    "dates for a time": (
+        lines("time [s];COF;n", *(f"2026-02-01 10:00:{i:02d};0.{100 + i};{i}" for i in range(9))),
+        'line 2, column "time [s]" must be a number; got "2026-02-01 10:00:00"',
+    ),
+    "a second table without header": (
+        csv() + b"second run\n" + csv().split(b"\n", 1)[1],
+        'line 22 breaks the table; got "second run"',
+    ),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_a_wrong_log_is_refused_in_one_line(tmp_path, what):
+    """The message is one line, names the file, and holds the words that help."""
+    content, words = WRONG[what]
+    path = tmp_path / "log.txt"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as refusal:
+        read_log(path)
+    message = str(refusal.value)
+    assert words in message
+    assert message.startswith("log.txt")
+    assert "\n" not in message
+    assert len(message) < 420  # the length of `errors.together`, and a little for a long file name
+
+
+WRONG_MAPS = {
+    "an unknown section": ({"column": {}}, 'has no section of that name; got "column". Did you mean "columns"?'),
+    "an unknown meaning": ({"columns": {"friktion": "a"}}, 'got "friktion". Did you mean "friction"?'),
+    "a section that is none": ({"columns": 3}, "[columns] must be a section of the file; got 3"),
+    "a column without a name": ({"columns": {"time": {"unit": "s"}}}, "[columns] time must name a column, or give its number"),
+    "a column number of zero": ({"columns": {"time": 0}}, "must be the number of a column, counted from 1; got 0"),
+    "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has no column "Zeit", which the column map says is time'),
+    "a number beyond the columns": ({"columns": {"friction": 7}}, "has 2 columns, not 7"),
+    "one column for two meanings": ({"columns": {"time": "a", "cycles": "a"}}, "[columns] cycles is the same column as time"),
+    "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time unit must be a unit such as s, ms"),
+    "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
+    "an unknown separator": ({"format": {"separator": "|"}}, '[format] separator must be one of "tab", ";", ",", "blanks"'),
+    "comma for both": ({"format": {"separator": ",", "decimal": ","}}, "cannot have a comma both as separator and as decimal"),
+    "an unknown encoding": ({"format": {"encoding": "ebcdic"}}, "[format] encoding must be one of"),
+    "a wrong encoding": ({"format": {"encoding": "utf-16"}}, "cannot be read as utf-16 text"),
+    "a line of zero": ({"format": {"header_line": 0}}, "must be the number of a line, counted from 1; got 0"),
+    "a line that is no header": ({"format": {"header_line": 900}}, "header_line = 900 must be a line of 2 fields; got a file of 21 lines"),
+    "missing marks that are no list": ({"format": {"missing": "x"}}, "[format] missing must be a list of texts"),
+    "a table that is not there": ({"format": {"tables": ["step 9"]}}, 'has no table "step 9". It has one table, without a name.'),
+    "a condition without unit": ({"test": {"temperature": 77}}, '[test] temperature needs a unit of temperature; got 77. Write "77 K".'),
+    "a condition in a wrong unit": ({"test": {"slip_speed": "3 N"}}, "[test] slip_speed needs a unit of speed"),
+    "an area without unit": ({"test": {"contact_area": "3"}}, "[test] contact_area needs a unit of area (m2, cm2, mm2)"),
+    "a negative condition": ({"test": {"normal_force": "-3 N"}}, '[test] normal_force must be > 0; got "-3 N"'),
+    "an unknown condition": ({"test": {"speed": "3 m/s"}}, "has no condition of that name"),
+    "a pattern that is no section": ({"files": {"*.txt": "Armalon"}}, '[files."*.txt"] must be a section'),
+    "area and diameter": (
+        {"test": {"contact_area": "3 mm2", "pin_diameter": "2 mm", "normal_force": "3 N"}},
+        "cannot have both a contact_area and a pin_diameter",
+    ),
+    "speeds that do not agree": (
+        {"test": {"slip_speed": "1 m/s", "rotational_speed": "60 rpm", "track_radius": "20 mm"}},
+        "has two values of slip speed that differ; got 1 m/s (column map) and 0.1257 m/s",
+    ),
+    "no words for a material": ({"test": {"material": ""}}, "[test] material must be printable text"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", WRONG_MAPS)
+def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
+    """When it is read, or when it does not fit the file."""
+    document, words = WRONG_MAPS[what]
+    path = tmp_path / "log.txt"
+    path.write_bytes(csv())
+    with pytest.raises(InputError) as refusal:
+        read_log(path, column_map(document, "map.toml"))
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"[columns\n", "map.toml is not valid TOML"),
+        (b"\xff\xfe[", "map.toml must be UTF-8 text"),
+        (b"#" * 1_000_001, "is too large for a column map"),
+    ],
+)
+def test_a_file_that_is_no_column_map_is_refused(tmp_path, content, words):
+    """TOML in UTF-8, of a size that a person writes."""
+    path = tmp_path / "map.toml"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as refusal:
+        read_column_map(path)
+    assert words in str(refusal.value)
+
+
+def test_what_is_not_there_or_no_file_is_refused(tmp_path):
+    """A missing log, a folder, a missing column map."""
+    with pytest.raises(InputError, match=r"none\.txt cannot be read; got No such file"):
+        read_log(tmp_path / "none.txt")
+    with pytest.raises(InputError, match="is a folder"):
+        read_log(tmp_path)
+    with pytest.raises(InputError, match="cannot be read as a column map; got No such file"):
+        read_column_map(tmp_path / "none.toml")
+
+
+def test_a_file_of_ten_gigabytes_is_refused_before_it_is_read(tmp_path):
+    """A sparse file of that size: only its length is looked at."""
+    path = tmp_path / "long.csv"
+    with path.open("wb") as file:
+        file.truncate(10_000_000_000)
+    with pytest.raises(InputError, match=r"long\.csv is too large: at most 2 GB; got 10\.0 GB"):
+        read_log(path)
+
+
+def test_a_column_map_file_is_read(tmp_path):
+    """As a user writes it, with a byte order mark from Notepad."""
+    path = tmp_path / "map.toml"
+    text = '[columns]\nfriction = "COF"\nnormal_force = { name = "Fz", unit = "N" }\n[test]\ncontact_area = "3 mm²"\n'
+    path.write_text(text, encoding="utf-8-sig")
+    read = read_column_map(path)
+    assert read.columns["normal_force"].unit == "N"
+    assert read.test["contact_area"] == pytest.approx(3e-6, rel=1e-15)  # one rounding
