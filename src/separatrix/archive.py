@@ -125,13 +125,12 @@ def _check_ends(magic: bytes, tail: bytes, label: str) -> None:
 
 def _check_directory(infos: list[zipfile.ZipInfo], size: int, label: str) -> None:
     _check_names(infos, label)
-    for info in infos:
-        _check_member(info, label)
     total = sum(info.file_size for info in infos)
     if total > MOST_BYTES:
-        limit = MOST_BYTES // 1024**2
-        rule = f"would expand to more than {limit} MB"
-        raise InputError(label, rule, "", f"{_megabytes(total)} MB", "Nothing was expanded.")
+        rule = f"would expand to more than {MOST_BYTES // 1024**2} MB"
+        raise InputError(label, rule, "", f"{total / 1024**2:.0f} MB", "Nothing was expanded.")
+    for info in infos:
+        _check_member(info, label)
     _check_ratio(total, size, label)
     _check_overlap(infos, label)
 
@@ -226,7 +225,3 @@ def _lies(label: str, info: zipfile.ZipInfo) -> InputError:
 
 def _damaged(label: str, why: str) -> InputError:
     return InputError(label, f"is a damaged zip file: {why}", cure=_SAVE_AGAIN)
-
-
-def _megabytes(size: int) -> str:
-    return f"{size / 1024**2:.0f}"

@@ -162,7 +162,7 @@ def _candidates(sheet: Worksheet, items: Sequence[Mapping[str, Any]], choices: _
             put(sheet, row, number, value, ENTRY, exact=True)
         choices.add(sheet, row, "cage.material", "")
     sheet.freeze_panes = "B3"
-    widths(sheet, *(26.0 if column.below in ("name", "material") else 16.0 for column in columns))
+    widths(sheet, *(26.0 if column.below in ("name", "material") else 20.0 for column in columns))
 
 
 @dataclass(frozen=True, slots=True)
