@@ -199,7 +199,7 @@ def datum(value, temperature):
 @pytest.mark.parametrize(
     ("temperature", "value", "words"),
     [
-        (None, 1.0, None),
+        (None, 3.0, None),
         (77.0, 2.0, None),
         (86.9, 2.0, None),
         (295.0, 1.0, None),
@@ -212,7 +212,7 @@ def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_i
     temperature, value, words
 ):
     """The narrowest range around it; outside of all, the nearest one and the words that say so."""
-    data = [datum(1.0, (295.0, 295.0)), datum(2.0, (77.0, 77.0)), datum(3.0, (280.0, 400.0))]
+    data = [datum(3.0, (280.0, 400.0)), datum(1.0, (295.0, 295.0)), datum(2.0, (77.0, 77.0))]
     choice = choose(data, temperature, "modulus")
     assert choice.datum.value == value
     assert (choice.caution is None) if words is None else (words in choice.caution)
@@ -402,7 +402,7 @@ def test_a_state_of_the_table_needs_no_extra_and_any_other_names_it(monkeypatch)
     nitrogen = library.shipped().fluid("LN2")
     assert fluid_state(nitrogen, 77.355).density == 806.08
     with pytest.raises(InputError, match=r"pip install \"separatrix\[fluids\]\"") as refused:
-        fluid_state(nitrogen, 90.0, 1e6)
+        fluid_state(nitrogen, 77.355, 1e6)
     assert "\n" not in str(refused.value)
 
 
@@ -472,3 +472,18 @@ def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatc
         add_records(source, target)
     assert target.read_text() == OURS
     assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
+
+
+def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
+    """The documentation of the contract is complete."""
+    from pathlib import Path
+
+    from separatrix.library import materials, records, tables
+
+    page = (Path(__file__).parents[2] / "docs" / "materials.md").read_text(encoding="utf-8")
+    block = page.split("```toml\n")[1].partition("```")[0]
+    content = library.joined([library.library_of_text(block, "page")])
+    assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9
+    keys = [*records.PROPERTIES, *records.CONFIDENCES, *materials._DATUM, *materials._FACTS, *tables._TABLE]
+    for key in (*keys, "composition", *records.CONDITION_UNITS):
+        assert f"`{key}`" in page, key
