@@ -29,10 +29,11 @@ from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipe
 
 from separatrix.cage import wilson_interval
 from separatrix.errors import InputError
+from separatrix.tribometer.column_map import ColumnMap
 from separatrix.tribometer.friction_test import TestFriction
 from separatrix.tribometer.log import RawLog
 from separatrix.tribometer.reading import read_log
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.tribometer.reduction import ReductionOptions, reduce_log
 
 SEED = 20260
 MOST_ROWS = 4000
@@ -55,7 +56,7 @@ def rtec(folder: Path, log: RawLog, cycle: float) -> Path:
 
 
 def umt(folder: Path, log: RawLog, _cycle: float) -> Path:
-    """Bruker UMT text; its keys say 240 rpm, which is the cycle of the logs made for it."""
+    """Bruker UMT text; the time of a cycle is said in a column map."""
     return _text(folder, raw_logs.umt(log.friction, log.time, unit="N"))
 
 
@@ -71,7 +72,7 @@ def csv(folder: Path, log: RawLog, cycle: float) -> Path:
 
 
 def tsv(folder: Path, log: RawLog, _cycle: float) -> Path:
-    """TSV, decimal comma, forces instead of friction."""
+    """TSV, decimal comma, forces instead of friction; the time of a cycle is said in a column map."""
     force = np.full_like(log.time, 10.0)
     columns = {"time [s]": log.time, "friction force [N]": 10.0 * log.friction, "normal force [N]": force}
     return _text(folder, raw_logs.plain_csv(columns, separator="\t", decimal=","))
@@ -111,8 +112,14 @@ def _text(folder: Path, content: bytes) -> Path:
 
 
 FORMATS: dict[str, Writer] = {w.__name__: w for w in (anton_paar, rtec, umt, compend, csv, tsv, xlsx, tdms)}
-CYCLES = {"umt": 0.25, "compend": 0.5}
+CYCLES = {"compend": 0.5}
 """Time of a cycle that a format's writer fixes [s]."""
+
+SAID = ("umt", "tsv")
+"""Formats that do not hold the time of a cycle."""
+
+UNKNOWN, FOUND = "unknown_cycle", "found_cycle"
+"""Logs as made, but without the time of a cycle; and with the option to find it."""
 
 
 def groups(recipe: Recipe) -> Iterator[str]:
@@ -187,16 +194,16 @@ def answers(count: int, seed: int, name: str = "") -> Iterator[Answer]:
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
         for recipe in recipes(count, rng):
-            known = made(_for_format(recipe, name), rng)
-            log = known.log if not name else _through(name, known, Path(folder))
+            known = made(_for_format(recipe, name), rng, knows_cycle=name not in (UNKNOWN, FOUND))
+            log = _through(name, known, Path(folder)) if name in FORMATS else known.log
             try:
-                yield reduce_log(log), known, log
+                yield reduce_log(log, ReductionOptions(find_cycle=name == FOUND)), known, log
             except InputError as error:
                 print(f"  refused: {error}")
 
 
 def _for_format(recipe: Recipe, name: str) -> Recipe:
-    if not name:
+    if name not in FORMATS:
         return recipe
     step = CYCLES[name] / recipe.rows_of_a_cycle if name in CYCLES else recipe.step
     return replace(recipe, rows=min(recipe.rows, MOST_ROWS), step=step)
@@ -204,14 +211,15 @@ def _for_format(recipe: Recipe, name: str) -> Recipe:
 
 def _through(name: str, known: Made, folder: Path) -> RawLog:
     cycle = known.recipe.rows_of_a_cycle * known.recipe.step
-    (log,) = read_log(FORMATS[name](folder, known.log, cycle))
+    said = ColumnMap(test={"cycle_time": cycle}) if name in SAID else None
+    (log,) = read_log(FORMATS[name](folder, known.log, cycle), said)
     return log
 
 
 def main() -> None:
     """Report the coverage."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    names = list(FORMATS) if sys.argv[2:] == ["all"] else sys.argv[2:]
+    names = [*FORMATS, UNKNOWN, FOUND] if sys.argv[2:] == ["all"] else sys.argv[2:]
     if not names:
         report("as made", answers(count, SEED))
     for i, name in enumerate(names, start=1):
