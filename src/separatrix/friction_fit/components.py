@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from separatrix.units import Array, Ratio
 
-LEAST_DEVIATION = 1e-7
+_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))
+"""Where both deviations are looked for, in units of the residual one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -51,17 +52,20 @@ class Conditional:
 def conditional(model: LinearModel, between_samples: Array, between_tests: Array) -> Conditional:
     """Generalised least squares and restricted log-likelihood at each node of variances, shape (node,).
 
-    A sample's tests share one deviation, so the inverse covariance is a diagonal less one outer product for
-    each sample (Sherman and Morrison, Ann. Math. Stat. 21 (1950) 124).
+    A sample's tests share one deviation: its weighted mean has the variance 1/(sum of weights) + s2, and what
+    is left within the sample that of the tests alone. Written so, nothing cancels for a small variance.
     """
     X, y = model.design, model.y
     Z = np.eye(model.sample.max() + 1)[model.sample]
     w = 1.0 / (between_tests[:, None] + model.error**2)
     total = w @ Z
-    share = between_samples[:, None] / (1.0 + between_samples[:, None] * total)
     full = np.column_stack([X, y])
-    sums = np.einsum("kn,ns,ni->ksi", w, Z, full)
-    moments = np.einsum("kn,ni,nj->kij", w, full, full) - np.einsum("ks,ksi,ksj->kij", share, sums, sums)
+    mean_of = np.einsum("kn,ns,ni->ksi", w, Z, full) / total[:, :, None]
+    left = full - mean_of[:, model.sample]
+    weight = total / (1.0 + between_samples[:, None] * total)
+    moments = np.einsum("kn,kni,knj->kij", w, left, left) + np.einsum(
+        "ks,ksi,ksj->kij", weight, mean_of, mean_of
+    )
     A, b, c = moments[:, :-1, :-1], moments[:, :-1, -1], moments[:, -1, -1]
     covariance = np.linalg.inv(A)
     mean = np.einsum("kij,kj->ki", covariance, b)
@@ -94,24 +98,29 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     scale = _rough_scatter(useful)
 
     def loss(deviations: Array) -> float:
-        s, t = (deviations if separate else (0.0, deviations[0])) * np.array(scale)
-        nodes = np.array([s * s]), np.array([max(t, LEAST_DEVIATION) ** 2])
+        s, t = (scale * deviations) if separate else (0.0, scale * deviations[0])
+        nodes = np.array([s * s]), np.array([t * t])
         return -float(sum(conditional(model, *nodes).log_likelihood[0] for model in useful))
 
-    found = min(
-        (
-            minimize(loss, start, method="L-BFGS-B", bounds=[(0.0, 1e3)] * len(start), options=_EXACT)
-            for start in (([0.7, 0.7], [0.1, 1.0], [1.0, 0.1]) if separate else ([1.0], [0.3]))
-        ),
-        key=lambda result: float(result.fun),
-    )
+    start = _best_of_grid(useful, scale, separate)
+    found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
     deviations = [float(x) * scale for x in found.x]
     return VarianceComponents(
         between_samples=deviations[0], between_tests=deviations[1] if separate else None
     )
 
 
-_EXACT = {"ftol": 1e-15, "gtol": 1e-9}
+_EXACT = {"ftol": 1e-14, "gtol": 1e-8}
+_SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
+
+
+def _best_of_grid(models: Sequence[LinearModel], scale: float, separate: bool) -> list[float]:
+    """Where to begin: the likeliest of a few pairs of deviations."""
+    sizes, ratios = (grid.ravel() for grid in np.meshgrid(_SIZES, _RATIOS if separate else [0.0]))
+    s, t = sizes * np.sqrt(ratios), sizes * np.sqrt(1.0 - ratios)
+    nodes = (scale * s) ** 2, (scale * t) ** 2
+    best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in models)))
+    return [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
 
 
 def _rough_scatter(models: Sequence[LinearModel]) -> float:

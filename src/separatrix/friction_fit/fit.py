@@ -112,11 +112,14 @@ OWN, OTHERS = "its own tests", "tests of other materials, and assumed"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FrictionFit:
-    """Fits of all materials in all environments, and the scatter that they share."""
+    """Fits of all materials in all environments."""
 
     groups: Mapping[GroupKey, MaterialFit]
-    components: VarianceComponents | None
     default_scatter: Ratio
+
+    def components(self) -> VarianceComponents | None:
+        """Scatter that all groups share, by restricted maximum likelihood; None if nothing was repeated."""
+        return variance_components([linear_model(one.tests, one.covariates) for one in self.groups.values()])
 
     def of(self, material: str, environment: str) -> MaterialFit:
         """Fit of one material in one environment.
@@ -169,7 +172,6 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
             key: _material_fit(grouped[key], chosen[key], posterior, _source(models[key], some))
             for key, posterior in zip(models, found, strict=True)
         },
-        components=variance_components(list(models.values())),
         default_scatter=default_scatter,
     )
 

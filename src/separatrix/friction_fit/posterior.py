@@ -14,15 +14,16 @@ import numpy as np
 from separatrix.friction_fit.components import Conditional, LinearModel, conditional
 from separatrix.units import Array, Ratio
 
-BETWEEN_GROUPS = 0.3
+BETWEEN_GROUPS = 0.2
 """Standard deviation of the logarithm of a group's scatter about that of all groups: a guess."""
 
-OF_THE_ASSUMPTION = 0.5
+OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
 _LOGS = np.linspace(-4.0, 4.0, 65)
-_SHARES = (np.arange(8) + 0.5) / 8.0
-"""Share of the variance that lies between samples; all are equally likely beforehand."""
+_SHARES = np.sqrt((np.arange(8) + 0.5) / 8.0)
+"""Shares of the variance that lie between samples, all as likely beforehand: one specimen run again differs
+less than two specimens do (density proportional to the share; a guess)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -37,7 +37,7 @@ def tribometer(
         "files": [_file(log) for log in logs],
         "tests": [_test(test) for test in tests],
         "fits": [] if fit is None else [_fit(*key, one) for key, one in fit.groups.items()],
-        "components": None if fit is None else plain(fit.components, "components"),
+        "components": None if fit is None else plain(fit.components(), "components"),
         "default_scatter": None if fit is None else fit.default_scatter,
     }
 
