@@ -48,10 +48,10 @@ def test_every_dimension_is_stratified(power, seed):
 @FEW
 @given(st.integers(1, 64), st.integers(0, 2**20))
 def test_points_lie_inside_the_cube(samples, seed):
-    """No point is 0 or 1, where a quantile has its end."""
+    """Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end."""
     points = sobol_points(samples, 3, seed)
-    assert points.min() >= 2.0**-31
-    assert points.max() <= 1.0 - 2.0**-31
+    assert (np.mod(points * 2.0**31, 2.0) == 1.0).all()
+    assert 0.0 < points.min() <= points.max() < 1.0
 
 
 @FEW

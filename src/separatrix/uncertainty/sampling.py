@@ -4,8 +4,6 @@ The inputs are taken as independent of each other. A study says nothing of corre
 together, a film's thickness and its modulus after wear, say, the spread that comes out may be too wide or too
 narrow.
 
-Notes
------
 Sobol' (1967) with the digital shift and linear scrambling of Matousek (1998), as `scipy.stats.qmc` has it.
 For a smooth function the error of a mean falls nearly as 1/n, against the root of 1/n of random draws; it is
 best at powers of two (Owen 2022, "On dropping the first Sobol' point").
