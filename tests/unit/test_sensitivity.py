@@ -295,9 +295,7 @@ def test_the_largest_friction_is_where_the_probability_falls_below_95_percent():
     assert found.most.value == pytest.approx(exact, abs=2e-3)
     assert found.most.low <= exact <= found.most.high
     assert found.most_nominal == pytest.approx(0.5, rel=4e-3)  # a step of the fine grid
-    assert allowed_sentence(found).startswith(
-        "A new material in gas may have a pocket friction of at most 0.41"
-    )
+    assert allowed_sentence(found).startswith("A new material may have a pocket friction of at most 0.41")
 
 
 def test_the_judge_alone_gives_the_same_friction():

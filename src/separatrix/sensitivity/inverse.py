@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import ndtri
@@ -37,14 +38,15 @@ def allowed_friction(
 ) -> tuple[AllowedFriction, ...]:
     """Largest pocket friction that is still STABLE, in place of each case's own, all else as it is.
 
-    Every friction from 0 to `searched` is looked at, and every stretch that is stable is told.
+    Every friction from 0 to `searched` is looked at, and every stretch that is stable is told. Cases that
+    differ in their friction only (in the environment of its test, too) have the same answer, given once.
 
     Parameters
     ----------
     question : Question
         Cases without a friction input are left out.
     values : ndarray
-        Samples of all inputs, from `sampled_values`, shape (sample, input) [SI].
+        Samples of all inputs, best from `sampled_values`, shape (sample, input) [SI].
     probability : float
         Of STABLE, wanted [-].
     scatter : float
@@ -60,19 +62,19 @@ def allowed_friction(
         A number outside its range, or no case with a friction.
     """
     _require(question, probability, scatter, searched, points)
+    if len(values) < 2 * BLOCKS:
+        raise InputError("values", f"must be at least {2 * BLOCKS} samples", "", str(len(values)))
     frictions, fine = _frictions(searched, points), _frictions(searched, NOMINAL_POINTS)
     share, half = _shares(question, values, frictions, _scattered(len(values), scatter))
     nominal = _nominal(question, fine)
-    found = []
+    answers: dict[AllowedFriction, list[str]] = {}
     for c, case in enumerate(question.cases):
-        if case.friction is None:
-            continue
-        spans = spans_above(frictions, share[:, c], probability)
-        spans_nominal = spans_above(fine, nominal[:, c], 1.0)
-        found.append(
-            AllowedFriction(
-                like=case.candidate,
-                environment=case.environment,
+        if case.friction is not None:
+            spans = spans_above(frictions, share[:, c], probability)
+            spans_nominal = spans_above(fine, nominal[:, c], 1.0)
+            found = AllowedFriction(
+                like=(),
+                all_alike=False,
                 probability=probability,
                 scatter=scatter,
                 searched=searched,
@@ -83,8 +85,11 @@ def allowed_friction(
                 reason_nominal=_reason_nominal(spans_nominal, searched),
                 spans_nominal=spans_nominal,
             )
-        )
-    return tuple(found)
+            answers.setdefault(found, []).append(case.candidate)
+    alike = len(answers) == 1
+    return tuple(
+        replace(one, like=tuple(dict.fromkeys(names)), all_alike=alike) for one, names in answers.items()
+    )
 
 
 def _require(question: Question, probability: Ratio, scatter: Ratio, searched: Ratio, points: int) -> None:
@@ -141,8 +146,9 @@ def _with_friction(question: Question, values: Array, friction: Array) -> Array:
 
 def _share(found: Evaluated) -> tuple[Array, Array]:
     """Probability of STABLE of each case, and half its interval from the scatter between blocks."""
-    stable = is_stable(found).astype(float)
-    return jackknife(by_block(stable, BLOCKS) / len(stable), np.asarray)
+    stable = is_stable(found)
+    sums = by_block(np.column_stack((np.ones(len(stable)), stable)), BLOCKS)
+    return jackknife(sums, lambda of: np.asarray(of[1:] / of[0]))
 
 
 def _nominal(question: Question, frictions: Array) -> Array:

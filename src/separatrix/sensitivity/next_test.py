@@ -173,10 +173,11 @@ def _gain(asked: _Asked, test: Measurement, place: int) -> TestGain:
     x = _in_blocks(asked.design.values[:, :, test.input])
     sums = _weighted(asked, test, x, cases, place)
     groups = _environments(asked.question)
+    every = len(asked.question.cases)
     open_, firm = asked.undecided[cases], ~(asked.undecided | asked.borderline)[cases]
 
     def quantities(of: Array) -> Array:
-        stable, means = _posteriors(of, cases)
+        stable, means = _posteriors(of, cases, every)
         high, low = share_above(stable, SETTLED_HIGH), share_above(1.0 - stable, 1.0 - SETTLED_LOW)
         settled, average = high + low, stable.mean(axis=0)
         avoided = np.minimum(average, 1.0 - average) - np.minimum(stable, 1.0 - stable).mean(axis=0)
@@ -222,29 +223,24 @@ def _environments(question: Question) -> list[NDArray[np.intp]]:
 
 
 def _weighted(asked: _Asked, test: Measurement, x: Array, cases: NDArray[np.intp], place: int) -> Array:
-    """Sums over each block, shape (block, result + 1, 1 + stable + margin): the last row without weights."""
+    """Sums over each block, shape (block, number): margins of all cases, then weighted ones of some."""
     told = likelihood(asked.question.inputs[test.input].distribution, test, x.size, FEWEST_EFFECTIVE)
     results = told.results(RESULTS, (asked.design.seed, place))
-    return np.array(
-        [
-            _block_sums(told.weights(one, results), stable, margin)
-            for one, stable, margin in zip(x, asked.stable[:, :, cases], asked.margin, strict=True)
-        ]
-    )
+    found = []
+    for one, stable, margin in zip(x, asked.stable, asked.margin, strict=True):
+        columns = np.column_stack((np.ones(len(one)), stable[:, cases], margin[:, cases]))
+        weighted = told.weights(one, results) @ columns
+        found.append(np.concatenate(([len(one)], margin.sum(axis=0), weighted.ravel())))
+    return np.array(found)
 
 
-def _block_sums(weights: Array, stable: Array, margin: Array) -> Array:
-    columns = np.column_stack((np.ones(len(margin)), stable, margin))
-    return np.vstack((weights @ columns, columns.sum(axis=0)))
-
-
-def _posteriors(sums: Array, cases: NDArray[np.intp]) -> tuple[Array, Array]:
+def _posteriors(sums: Array, cases: NDArray[np.intp], every: int) -> tuple[Array, Array]:
     """Probability of STABLE, shape (result, case touched), and mean margins, shape (result, case)."""
-    count = len(cases)
-    weight, stable, margin = np.split(sums, [1, 1 + count], axis=1)
-    means = np.broadcast_to(margin[-1] / weight[-1], margin[:-1].shape).copy()
-    means[:, cases] = (margin[:-1] / weight[:-1])[:, cases]
-    return stable[:-1] / weight[:-1], means
+    count, total, weighted = np.split(sums, [1, 1 + every])
+    weight, stable, margin = np.split(weighted.reshape(RESULTS, -1), [1, 1 + len(cases)], axis=1)
+    means = np.tile(total / count, (RESULTS, 1))
+    means[:, cases] = margin / weight
+    return stable / weight, means
 
 
 def share_above(curve: Array, level: Ratio) -> Array:

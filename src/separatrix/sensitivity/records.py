@@ -178,15 +178,17 @@ class Span:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllowedFriction:
-    """Which pocket friction a new material may have at most, in one environment.
+    """Which pocket friction a new material may have at most.
 
-    `most` is the largest friction with a probability of STABLE of `probability` or more, with its interval;
-    `most_nominal` the largest that is stable with every input at its central value. Either is None if there
-    is none, as the reason says. `spans` and `spans_nominal` are all stretches of friction that are allowed.
+    `like` are the candidates whose pockets, but for the friction, the new material has; `all_alike` says that
+    these are all. `most` is the largest friction with a probability of STABLE of `probability` or more, with
+    its interval; `most_nominal` the largest that is stable with every input at its central value. Either is
+    None if there is none, as the reason says. `spans` and `spans_nominal` are all stretches of friction that
+    are allowed.
     """
 
-    like: str
-    environment: str
+    like: tuple[str, ...]
+    all_alike: bool
     probability: Ratio
     scatter: Ratio
     searched: Ratio

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,9 @@ from separatrix.units import Array, Metre, Pascal, Ratio
 
 MODULUS_STEPS = np.geomspace(0.1, 10.0, 9)
 """Moduli of the grid over the study's own."""
+
+FINER = 8
+"""Values to a step of the grid at which the nominal verdict is asked for."""
 
 
 def friction_grid(
@@ -147,32 +151,53 @@ def stable_regions(
     zeta = damping_ratios(grid.restitution_factor)
     share = np.array([[_stable_share(question, values, sampled, z * ratio) for z in row] for row in zeta])
     margin = nominal.threshold[0] - restitution_factors(zeta[:, :, None] * ratio_nominal[0])
+    fine = _finer(grid.x.values)
+    nominally = _nominal(question, centre, nominal, _between(grid.x.values, zeta, fine), ratio_nominal[0])
     return tuple(
-        _region(question, c, grid, probability, margin[:, :, c], share[:, :, c])
-        for c in range(len(question.cases))
+        StableRegion(
+            candidate=case.candidate,
+            environment=case.environment,
+            probability=probability,
+            grid=grid,
+            margin=margin[:, :, c],
+            probability_stable=share[:, :, c],
+            rows=tuple(
+                RegionRow(
+                    y=float(y),
+                    nominal=spans_above(fine, nominally[k, :, c], 1.0),
+                    probable=spans_above(grid.x.values, share[k, :, c], probability),
+                )
+                for k, y in enumerate(grid.y.values)
+            ),
+        )
+        for c, case in enumerate(question.cases)
     )
 
 
-def _region(
-    question: Question, c: int, grid: RestitutionGrid, probability: Ratio, margin: Array, share: Array
-) -> StableRegion:
-    x = grid.x.values
-    return StableRegion(
-        candidate=question.cases[c].candidate,
-        environment=question.cases[c].environment,
-        probability=probability,
-        grid=grid,
-        margin=margin,
-        probability_stable=share,
-        rows=tuple(
-            RegionRow(
-                y=float(y),
-                nominal=spans_above(x, margin[k], 0.0),
-                probable=spans_above(x, share[k], probability),
-            )
-            for k, y in enumerate(grid.y.values)
-        ),
+def _finer(x: Array) -> Array:
+    """Values between those given, `FINER` to a step: equal ratios where both ends are positive."""
+    steps = (
+        np.geomspace(low, high, FINER, endpoint=False)
+        if low > 0.0
+        else np.linspace(low, high, FINER, endpoint=False)
+        for low, high in pairwise(x)
     )
+    return np.concatenate([*steps, x[-1:]])
+
+
+def _between(x: Array, zeta: Array, fine: Array) -> Array:
+    """Damping ratios at finer values of x, straight in their logarithm, shape (y, fine)."""
+    return np.asarray(np.exp([np.interp(fine, x, row) for row in np.log(zeta)]))
+
+
+def _nominal(question: Question, centre: Array, nominal: Evaluated, zeta: Array, ratio: Array) -> Array:
+    """1 where the verdict with every input at its centre is STABLE, shape (y, fine, case)."""
+    factor = restitution_factors(zeta[:, :, None] * ratio)
+    if question.judge is None:
+        return (nominal.threshold[0] >= factor).astype(float)
+    flat = factor.reshape(-1, factor.shape[-1])
+    judged = is_stable(question.judge(np.repeat(centre, len(flat), axis=0), flat))
+    return np.asarray(judged.astype(float).reshape(factor.shape))
 
 
 def _stable_share(question: Question, values: Array, sampled: Evaluated, zeta: Array) -> Array:

@@ -46,5 +46,8 @@ def estimate(value: float, half: float, low: float = -np.inf, high: float = np.i
 
 
 def by_block(values: Array, blocks: int) -> Array:
-    """Sums over the samples of each block, shape (block, ...) of values of shape (sample, ...)."""
-    return np.asarray(values.reshape(blocks, -1, *values.shape[1:]).sum(axis=1))
+    """Sums over the samples of each block, shape (block, ...) of values of shape (sample, ...).
+
+    Blocks follow one another; where the samples do not share out evenly, some have one more.
+    """
+    return np.array([part.sum(axis=0) for part in np.array_split(values, blocks)])

@@ -23,7 +23,10 @@ LEAST_WORTH = 0.5
 """A test that is expected to settle fewer cases than this settles none worth the name."""
 
 NAMED = 3
-"""Factors named in a sentence."""
+"""Factors or tests named in a sentence."""
+
+LEAST_SHARE = 0.005
+"""Smaller shares are not named."""
 
 NOTHING_UNDECIDED = (
     "Nothing is undecided: every probability of STABLE is at most 5 % or at least 95 %. "
@@ -72,7 +75,7 @@ def sobol_sentence(case: CaseSobol) -> str:
 def _drivers(what: str, name: str, indices: Sequence[SobolIndex], reason: str) -> str:
     if not indices:
         return f"{what} of {name} has no doubt to share out: {reason}."
-    named = [one for one in indices if one.total.low > 0.0][:NAMED]
+    named = [one for one in indices if one.total.low > 0.0 and one.total.value >= LEAST_SHARE][:NAMED]
     if not named:
         return f"{what} of {name}: no input's share can be told from 0 with these samples."
     parts = [f"{one.words} ({_share(one.total)}, alone {_share(one.first)})" for one in named]
@@ -114,7 +117,10 @@ def _is_worth_telling(test: TestGain) -> bool:
 def _rest(answer: NextTest, told: Sequence[TestGain]) -> tuple[str, ...]:
     """Say of which tests nothing can be said, or that they settle nothing."""
     rest = [one.words for one in answer.tests if one not in told]
-    return (f"Next to nothing would be settled by measuring {_or(rest)}.",) if rest and told else ()
+    if not rest or not told:
+        return ()
+    named = _or(rest) if len(rest) <= NAMED else f"any of the other {len(rest)} inputs"
+    return (f"Next to nothing would be settled by measuring {named}.",)
 
 
 def _border(answer: NextTest) -> tuple[str, ...]:
@@ -190,16 +196,14 @@ def act(test: Measurement, words: str) -> str:
 
 def allowed_sentence(answer: AllowedFriction) -> str:
     """Which friction a new material may have at most."""
-    place = f" in {answer.environment}" if answer.environment else ""
-    if answer.most is None:
-        return f"For a new material{place}: {answer.reason}"
-    nominal = "" if answer.most_nominal is None else f" (nominally {answer.most_nominal:.3f})"
-    if answer.spans[-1].to_edge:
-        return f"For a new material{place}: {answer.reason}"
+    who = "A new material" if answer.all_alike else f"A new material with the pockets of {_and(answer.like)}"
+    if answer.most is None or answer.spans[-1].to_edge:
+        return f"{who}: {answer.reason}"
+    nominal = "none" if answer.most_nominal is None else f"{answer.most_nominal:.3f}"
     most = f"{answer.most.value:.3f} ({answer.most.low:.3f} to {answer.most.high:.3f})"
     text = (
-        f"A new material{place} may have a pocket friction of at most {most} to be stable with a probability "
-        f"of {percent(answer.probability)}{nominal}."
+        f"{who} may have a pocket friction of at most {most} to be stable with a probability "
+        f"of {percent(answer.probability)} (nominally {nominal})."
     )
     return f"{text} {answer.reason}".rstrip()
 
