@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import types
 import typing
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
@@ -24,6 +25,7 @@ from separatrix.study import (
     StabilitySettings,
     Study,
 )
+from separatrix.toml_values import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
 
 SECTIONS: dict[str, type] = {
@@ -79,7 +81,8 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
     """Every number that a study has or may have, by its name.
 
     A section's key is ``film.thickness``; a property of a material ``bearing.ball_material.density``, of the
-    film's simply ``film.elastic_modulus``; a friction ``ranking.Armalon.liquid nitrogen, 440C``.
+    film's simply ``film.elastic_modulus``; a friction ``ranking.Armalon.liquid nitrogen, 440C``. Two numbers
+    whose names come out alike (a dot in the name of a candidate) are left out.
     """
     found = [StudyNumber(RADIAL_CLEARANCE, "m", ("bearing", "radial_clearance"))]
     for section, record in SECTIONS.items():
@@ -87,7 +90,8 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
         found += _materials(section, getattr(study, section))
     for place, candidate in enumerate(study.ranking.candidates if study.ranking else ()):
         found += _of_candidate(candidate, ("ranking", "candidates", place))
-    return {number.key: number for number in found}
+    often = Counter(number.key for number in found)
+    return {number.key: number for number in found if often[number.key] == 1}
 
 
 def _units(record: type) -> list[tuple[str, str]]:
@@ -168,7 +172,9 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
 
 def _known(known: Mapping[str, StudyNumber], key: str) -> StudyNumber:
     if key not in known:
-        raise InputError(shown(key), "is no number of this study", cure=f"It has {', '.join(known)}."[:200])
+        raise InputError(
+            shown(key), "is no number of this study, or the name of two", cure=nearest(key, known)
+        )
     return known[key]
 
 
@@ -271,7 +277,7 @@ def settled_in(study: Study, key: str, distribution: Distribution) -> Distributi
     InputError
         It takes neither: which end, and why.
     """
-    unit = study_numbers(study)[key].unit
+    unit = _known(study_numbers(study), key).unit
     other = positive_alternative(distribution)
     refused = _refusal(study, key, unit, distribution)
     if refused is None:

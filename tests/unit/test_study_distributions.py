@@ -241,10 +241,27 @@ def test_distributions_are_given_in_python_too():
 
 
 def test_more_distributions_than_can_be_told_apart_are_refused():
-    """One more than the most is refused, with the count."""
+    """Fifty are taken, one more is refused with the count."""
     base = read_study("cryogenic-turbopump")
-    keys = [key for key in study_numbers(base) if key.startswith("ranking.") and "material" not in key]
-    keys += ["bearing.ball_diameter", "bearing.pitch_diameter", "operation.axial_load", "film.thickness"]
-    wide = {key: value_of(base, study_numbers(base)[key]) or 1.0 for key in keys}
-    laws = {key: Normal(mean=value, standard_deviation=1e-6 * value) for key, value in wide.items()}
-    assert len(with_distributions(base, laws).distributions) == len(keys) <= MOST_DISTRIBUTIONS
+    known = study_numbers(base)
+    sections = ("bearing.", "operation.axial", "operation.inner", "film.", "ranking.")
+    held = {key: value_of(base, one) for key, one in known.items() if key.startswith(sections) and one.unit}
+    held.pop("bearing.radial_clearance")  # the angle's other name
+    laws = {k: Normal(mean=value, standard_deviation=1e-6 * value) for k, value in held.items() if value}
+    fifty, more = (dict(list(laws.items())[:n]) for n in (MOST_DISTRIBUTIONS, MOST_DISTRIBUTIONS + 1))
+    assert len(with_distributions(base, fifty).distributions) == MOST_DISTRIBUTIONS
+    with pytest.raises(InputError, match="has more uncertain numbers than 50; got 51"):
+        with_distributions(base, more)
+
+
+def test_two_frictions_of_one_name_cannot_be_uncertain(study_of):
+    """A candidate "A.B" in "C" and one "A" in "B.C" would be one name: refused."""
+    with pytest.raises(InputError, match="or the name of two"):
+        study_of("""
+[[ranking.candidates]]
+name = "A.B"
+friction = { "C" = "0.1 +- 20 %" }
+[[ranking.candidates]]
+name = "A"
+friction = { "B.C" = 0.1 }
+""")
