@@ -29,8 +29,19 @@ VERBS = [
     "map",
     "simulate",
     "rank",
+    "sensitivity",
+    "tribometer",
     "compare",
+    "materials",
 ]
+OPTIONS = {
+    "new": ("--json", "--quiet"),
+    "compare": ("--json", "--out", "--quiet"),
+    "tribometer": ("--json", "--out"),
+    "materials": ("list", "show", "check", "add"),
+}
+"""What the help of a verb names that takes no study."""
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -54,9 +65,7 @@ def test_help_of_a_verb_names_its_options(verb):
     """Each verb has help; all that take a study have the same four options."""
     done = run(verb, "--help")
     assert done.returncode == 0
-    options = {"new": ("--json", "--quiet"), "compare": ("--json", "--out", "--quiet")}.get(
-        verb, ("--json", "--out", "--quiet", "--jobs")
-    )
+    options = OPTIONS.get(verb, ("--json", "--out", "--quiet", "--jobs"))
     assert all(option in done.stdout for option in options)
 
 

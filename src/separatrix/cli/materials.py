@@ -49,8 +49,6 @@ def application() -> typer.Typer:
 
 
 def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> int:
-    from separatrix.report import materials
-
     known = _library(library)
     kinds = [_known_kind(kind)] if kind is not None else _kinds()
     records = [record for name in kinds for record in known.records(name).values()]
@@ -58,7 +56,7 @@ def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> i
         "libraries": [file.plain() for file in known.files],
         "materials": [record.plain() for record in records],
     }
-    return _deliver(document, materials.listed, as_json=json)
+    return _deliver(document, "listed", as_json=json)
 
 
 def _show(
@@ -73,26 +71,23 @@ def _show(
     library: Libraries = None,
     json: Json = False,
 ) -> int:
-    from separatrix.report import materials
-
     found = _found(_library(library), name, kind)
     at = None if temperature is None else _quantity(temperature, "K", "--temperature", 1e-3, 5000.0)
     under = None if pressure is None else _quantity(pressure, "Pa", "--pressure", 1e-3, 1e11)
     if under is not None and (at is None or all(record.kind != "fluid" for record in found)):
         raise InputError("--pressure", "is for a fluid, together with --temperature")
     document = _head("show") | {"records": [_whole(record, at, under) for record in found]}
-    return _deliver(document, materials.shown, as_json=json)
+    return _deliver(document, "shown", as_json=json)
 
 
 def _check(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file.")], json: Json = False
 ) -> int:
     from separatrix.library import joined, read_library
-    from separatrix.report import materials
 
     content = read_library(file)
     joined([content])
-    return _deliver(_head("check") | _summary(content), materials.checked, as_json=json)
+    return _deliver(_head("check") | _summary(content), "checked", as_json=json)
 
 
 def _add(
@@ -103,13 +98,12 @@ def _add(
     json: Json = False,
 ) -> int:
     from separatrix.library import add_records
-    from separatrix.report import materials
 
     if not to:
         cure = "For instance: --to materials.toml."
         raise InputError("--to", "is missing: the library file to add to", cure=cure)
     added = add_records(file, Path(to))
-    return _deliver(_head("add") | _summary(added) | {"library": to}, materials.added, as_json=json)
+    return _deliver(_head("add") | _summary(added) | {"library": to}, "added", as_json=json)
 
 
 def _head(verb: str) -> dict[str, Any]:
@@ -118,9 +112,14 @@ def _head(verb: str) -> dict[str, Any]:
     return {"separatrix_version": __version__, "verb": f"materials {verb}"}
 
 
-def _deliver(document: dict[str, Any], report: Callable[[dict[str, Any]], str], *, as_json: bool) -> int:
-    text = plain_json.dumps(document, indent=1, allow_nan=False) + "\n" if as_json else report(document)
-    answer(text)
+def _deliver(document: dict[str, Any], report: str, *, as_json: bool) -> int:
+    """Answer with the document, or with the text of it that `report.materials` makes under this name."""
+    if as_json:
+        answer(plain_json.dumps(document, indent=1, allow_nan=False) + "\n")
+        return ANSWERED
+    from separatrix.report import materials
+
+    answer(getattr(materials, report)(document))
     return ANSWERED
 
 
