@@ -17,6 +17,7 @@ from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
 from separatrix.cli.mapping import MapOptions, whole_map
 from separatrix.cli.run import Options, make_study, run
+from separatrix.cli.sensitivity import SAMPLES, SensitivityOptions
 from separatrix.cli.simulating import SimulateOptions
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
@@ -43,6 +44,8 @@ EPILOGS = {
     "ball_cage_friction, kick: --x cage.pocket_clearance=0.1..1mm --y film.race_friction=0.02..0.3:40:log. "
     "Finished points are kept in the folder of the answer: after Ctrl-C the same call goes on from them. "
     "With --json and no --out nothing is kept.",
+    "sensitivity": "Every number that the study writes with a distribution is drawn, and the frictions with "
+    "their scatter: 9 % of the mean where none was measured, a guess.",
     "simulate": "A run that ends early says why: decided, or STALLED (too many impacts in no time). "
     "--animate mp4 needs the extra animation.",
     "tribometer": "What is read is shown before it is trusted: without --out nothing is written. A file that "
@@ -151,6 +154,19 @@ def _simulate(
     asked = SimulateOptions(kick=kick, run=number, animate=animate)
     asked.check(writes=not json or out is not None)
     verb = replace(VERB["simulate"], compute=asked.compute, draw=asked.draw)
+    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+
+
+def _sensitivity(
+    study: StudyArgument,
+    samples: Annotated[int, typer.Option(metavar="N", help="Samples, a power of two.")] = SAMPLES,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    asked = SensitivityOptions(samples=samples)
+    verb = replace(VERB["sensitivity"], compute=asked.compute)
     return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
 
 

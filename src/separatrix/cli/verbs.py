@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from separatrix.cli import answers, mapping
+from separatrix.cli import answers, mapping, sensitivity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -90,6 +90,12 @@ VERBS: tuple[Verb, ...] = (
         help="Rank the cage materials: verdict, margin, reason.",
         compute=answers.rank,
         has_workbook=True,
+        needs=("cage", "ranking"),
+    ),
+    Verb(
+        name="sensitivity",
+        help="Probability of stable and of best, what drives the doubt, what to test next.",
+        compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
     ),
 )

@@ -9,6 +9,7 @@ from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.map import stability_map
 from separatrix.report.ranking import rank
+from separatrix.report.sensitivity import sensitivity
 from separatrix.report.study import at_their_means, check
 from separatrix.report.tables import heading, paragraph
 
@@ -21,6 +22,7 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "map": stability_map,
     "simulate": simulate,
     "rank": rank,
+    "sensitivity": sensitivity,
 }
 
 DRAWS = ("check", "sensitivity")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from separatrix.results import maps
+from separatrix.results import maps, sensitivity
 from separatrix.results.plain import plain, plain_record
 
 if TYPE_CHECKING:
@@ -168,6 +168,11 @@ def stability_map(record: Any) -> Document:
     return maps.stability_map(record.map, cage(record.cage))
 
 
+def uncertain_ranking(record: Any) -> Document:
+    """Return probabilities with their intervals, what drives the doubt, and the first candidate's chain."""
+    return sensitivity.sensitivity(record, cage(record.cage))
+
+
 def _nothing(record: Any) -> Document:  # noqa: ARG001 - the answer is the study itself
     return {}
 
@@ -181,4 +186,5 @@ DOCUMENTS: Mapping[str, Callable[[Any], Document]] = {
     "map": stability_map,
     "simulate": simulation,
     "rank": ranking,
+    "sensitivity": uncertain_ranking,
 }

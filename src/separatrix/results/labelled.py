@@ -11,8 +11,11 @@ import numpy as np
 import xarray as xr
 
 from separatrix.errors import InputError
-from separatrix.results import maps
+from separatrix.results import maps, sensitivity
 from separatrix.results.labels import GROUPS, JOINED, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
+
+OWN: Mapping[str, Any] = {"map": maps, "sensitivity": sensitivity}
+"""Verbs that arrange arrays by themselves: `grid` does, from the keys `ITS_OWN`."""
 
 Columns = dict[str, tuple[tuple[str, ...], Any]]
 """Name of a variable: its dimensions and its nested values."""
@@ -29,18 +32,19 @@ def dataset(document: Mapping[str, Any]) -> xr.Dataset:
     document : mapping
         What `results.document` returns, or a parsed ``--json`` answer.
     """
-    own = maps.ITS_OWN if document["verb"] == "map" else ()
-    body = {RENAMED.get(k, k): value for k, value in document.items() if k not in (*PROVENANCE, *own)}
+    own = OWN.get(document["verb"])
+    apart = own.ITS_OWN if own is not None else ()
+    body = {RENAMED.get(k, k): value for k, value in document.items() if k not in (*PROVENANCE, *apart)}
     variables = {name: _variable(name, dims, values) for name, (dims, values) in _flatten(body).items()}
-    if own:
-        variables |= _of_a_map(document)
+    if own is not None:
+        variables |= _arranged(own.grid(document))
     return xr.Dataset(variables, attrs=_provenance(document))
 
 
-def _of_a_map(document: Mapping[str, Any]) -> dict[str, xr.Variable]:
-    """Return the variables that stand on the plane of a map, with units that depend on its parameters."""
+def _arranged(arrays: Mapping[str, tuple[tuple[str, ...], Any, dict[str, str]]]) -> dict[str, xr.Variable]:
+    """Return the variables that a verb arranges by itself, with their own units."""
     found = {}
-    for name, (dims, values, attributes) in maps.grid(document).items():
+    for name, (dims, values, attributes) in arrays.items():
         found[name] = _variable(name, dims, values)
         found[name].attrs |= attributes
     return found

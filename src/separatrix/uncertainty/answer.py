@@ -86,7 +86,7 @@ def uncertain_ranking(
     jobs: int = 1,
     stage: Stage | None = None,
     stop: Event | None = None,
-) -> tuple[UncertainRanking, Model, Draws]:
+) -> tuple[UncertainRanking, Model, Array]:
     """Sample a study through the chain and its boundary.
 
     Parameters
@@ -105,7 +105,8 @@ def uncertain_ranking(
     Returns
     -------
     tuple
-        The answer; the model behind it, for questions of sensitivity; the draws.
+        The answer; the model behind it, for questions of sensitivity; the samples that the chain solved,
+        shape (sample, input).
 
     Raises
     ------
@@ -123,8 +124,8 @@ def uncertain_ranking(
     told = stage or (lambda _: None)
     model = uncertain_model(asked, jobs=jobs, stage=told, stop=stop)
     factors = model.factors(draws.values, progress=told("chain"), stop=stop)
-    found = _sampled(model, draws.values[factors.solved], factors, told)
-    return _answer(model, draws, factors, found), model, draws
+    solved = draws.values[factors.solved]
+    return _answer(model, draws, factors, _sampled(model, solved, factors, told)), model, solved
 
 
 def as_pockets_see(study: Study) -> Study:
@@ -305,7 +306,7 @@ def _row(model: Model, place: int, numbers: dict[str, Any]) -> UncertainMaterial
     words = [text for one in asked if one is not None for text in one.extrapolation]
     return UncertainMaterial(
         name=case.candidate,
-        friction_assumed=assumed,
+        friction_scatter_assumed=assumed,
         extrapolation=tuple(dict.fromkeys(words)),
         **numbers,
     )

@@ -72,12 +72,10 @@ class Boundary:
         draw : int or None
             Which of the boundaries that the runs allow; None is the one that they say.
         """
-        few, clear = (
-            np.stack([self._line(i, t, restitution_factor, draw) for i in range(len(self.traced.kicks))])
-            for t in (0, -1)
-        )
-        if self.surrogate is not None:
-            half = np.stack([self._line(i, 1, restitution_factor, draw) for i in range(len(few))])
+        if self.surrogate is None:
+            few, clear = (self._lines_at(t, restitution_factor, draw) for t in (0, -1))
+        else:
+            half = self._lines_at(1, restitution_factor, None)  # their scatter is inside the surrogate's
             few, clear = self.surrogate.around(half, restitution_factor, parameters, draw)
         return Limits(stable_up_to=few.min(axis=0), unstable_above=clear.max(axis=0))
 
@@ -85,19 +83,26 @@ class Boundary:
         self, restitution_factor: Array, parameters: Array, draw: int | None = None
     ) -> Array:
         """Friction at which half of the runs grow from the middle kick, shape (sample,) [-]."""
-        line = self._line(self.traced.middle, 1, restitution_factor, draw)
-        if self.surrogate is None:
-            return line
+        own = None if self._moves else draw
+        line = self._lines_at(1, restitution_factor, own)[self.traced.middle]
+        if self.surrogate is None or not self._moves:
+            return np.asarray(line)
         shift = self.surrogate.shift(restitution_factor, parameters, draw)[self.traced.middle]
         return np.asarray(line * np.exp(shift))
 
-    def _line(self, kick: int, target: int, eta: Array, draw: int | None) -> Array:
-        lines = self._lines(draw)
-        return np.asarray(np.interp(eta, self.traced.restitution_factors, lines[kick, target]))
+    @property
+    def _moves(self) -> bool:
+        """Whether the cage itself is uncertain; if not, thresholds are those of the traced curve."""
+        return self.surrogate is not None and bool(self.surrogate.scale.names)
+
+    def _lines_at(self, target: int, eta: Array, draw: int | None) -> Array:
+        """Lines of every kick at restitution factors, shape (kick, sample)."""
+        lines = self._lines(draw)[:, target]
+        return np.stack([np.interp(eta, self.traced.restitution_factors, line) for line in lines])
 
     def _lines(self, draw: int | None) -> Array:
-        """Lines of the traced cage; with a surrogate their scatter is inside that one's."""
-        if draw is None or self.surrogate is not None:
+        """Lines of the traced cage, as they may be."""
+        if draw is None:
             return self.traced.lines()
         shape = (len(self.traced.kicks), self.traced.restitution_factors.size)
         return self.traced.lines(Generator(Philox(key=[self.seed, draw])).standard_normal(shape))
@@ -121,7 +126,7 @@ class Boundary:
         """Restitution factors, and the critical friction there of each sample (or of all alike)."""
         nodes, middle = self.traced.restitution_factors, self.traced.middle
         numbers = [None] if draws is None else [int(draw) for draw in np.unique(draws)]
-        if self.surrogate is None:
+        if self.surrogate is None or not self._moves:
             curves = np.stack([self._lines(draw)[middle, 1] for draw in numbers])
             return nodes, curves if draws is None else curves[np.searchsorted(np.unique(draws), draws)]
         fine = np.union1d(nodes, FINE)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.special import expit
 
 from separatrix.uncertainty.records import SurrogateError
-from separatrix.uncertainty.surrogate import Points, Surrogate, features, logits
+from separatrix.uncertainty.surrogate import WIDTHS, Points, Surrogate, logits, width_pieces
 from separatrix.units import Array
 
 PARTS = 5
@@ -29,8 +29,9 @@ def foretold(surrogate: Surrogate, points: Points) -> tuple[Array, Array]:
     z, width = np.zeros(points.kick.size), np.ones(points.kick.size)
     for kick, mode in enumerate(surrogate.mode):
         own = points.kick == kick
-        terms = features(points.restitution_factor[own], surrogate.scale.standard(points.parameters[own]))
-        z[own], width[own] = logits(mode, terms, points.offset[own])
+        terms = surrogate.terms(points.restitution_factor[own], points.parameters[own])
+        pieces = width_pieces(points.restitution_factor[own])
+        z[own], width[own] = logits(mode, terms, pieces, points.offset[own])
     return z, width
 
 
@@ -68,8 +69,8 @@ def _excess(push: Array, information: Array, part: NDArray[np.int_]) -> float:
 
 def error_of(surrogate: Surrogate, eta: Array, parameters: Array) -> float:
     """Standard deviation of ln f at samples, coefficients and misfit together, root mean square [-]."""
-    terms = features(eta, surrogate.scale.standard(parameters))
-    spread = [np.sum((terms @ root[:-2]) ** 2, axis=1) for root in surrogate.root]
+    terms = surrogate.terms(eta, parameters)
+    spread = [np.sum((terms @ root[:-WIDTHS]) ** 2, axis=1) for root in surrogate.root]
     return math.sqrt(float(np.mean(spread)) + surrogate.misfit**2)
 
 

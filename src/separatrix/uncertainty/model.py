@@ -91,7 +91,7 @@ class Kind:
     names: tuple[str, ...]
     columns: tuple[int, ...]
     places: tuple[int, ...]
-    error: SurrogateError | None
+    error: SurrogateError
     runs: int
 
 
@@ -137,7 +137,7 @@ class Model:
     ) -> Factors:
         """Restitution factors by the chain; alike in all samples where only frictions are uncertain."""
         alike = np.tile(self.central, (len(values), 1))
-        if not any(enters(self.study, one.key, place) for one in self.inputs for place in self._places):
+        if not self.chain_varies:
             return Factors(restitution_factor=alike, solved=np.ones(len(values), dtype=np.bool_))
         draws = sample(self.study, 1).with_values(values)
         found = chain_samples(self.study, draws, jobs=self.jobs, progress=progress, stop=stop)
@@ -150,8 +150,10 @@ class Model:
         )
 
     @property
-    def _places(self) -> range:
-        return range(self.central.size)
+    def chain_varies(self) -> bool:
+        """Whether any input beside the frictions is uncertain."""
+        places = range(self.central.size)
+        return any(enters(self.study, one.key, place) for one in self.inputs for place in places)
 
     def evaluate(self, values: Array) -> Evaluated:
         """Answer for samples of the inputs, shape (sample, input), by the whole chain."""
@@ -287,12 +289,10 @@ def _kind(
     cage, seed = changed_cage(study, places[0]).cage, study.stability.seed
     counter = GrowthCounter(cage, study.stability, stop)
     traced = traced_boundary(cage, study.stability, jobs=jobs, progress=stage("boundary"), counter=counter)
-    surrogate, error = None, None
-    if names:
-        told = stage("surrogate")
-        surrogate, error = trained(
-            study, inputs, places[0], names, traced, seed=seed, jobs=jobs, progress=told, stop=stop
-        )
+    told = stage("surrogate")
+    surrogate, error = trained(
+        study, inputs, places[0], names, traced, seed=seed, jobs=jobs, progress=told, stop=stop
+    )
     keys = [one.key for one in inputs]
     return Kind(
         boundary=Boundary(traced=traced, surrogate=surrogate, seed=seed),
@@ -300,7 +300,7 @@ def _kind(
         columns=tuple(keys.index(name) for name in names),
         places=tuple(places),
         error=error,
-        runs=traced.runs + (0 if error is None else error.runs),
+        runs=traced.runs + error.runs,
     )
 
 

@@ -35,7 +35,7 @@ class UncertainMaterial:
         The candidate.
     friction, friction_deviation : float or None
         Mean and standard deviation of the friction of the next cage [-].
-    friction_assumed : bool or None
+    friction_scatter_assumed : bool or None
         Whether that scatter is the default one, a guess.
     extrapolation : tuple of str
         In what respect the friction was asked for where nothing was tested, in words.
@@ -66,7 +66,7 @@ class UncertainMaterial:
     name: str
     friction: Ratio | None = None
     friction_deviation: Ratio | None = None
-    friction_assumed: bool | None = None
+    friction_scatter_assumed: bool | None = None
     extrapolation: tuple[str, ...] = ()
     restitution_factor: Ratio | None = None
     restitution_factor_low: Ratio | None = None
@@ -199,14 +199,15 @@ class SurrogateError:
 class BoundaryAnswer:
     """Boundary of one kind of cage: of which candidates, how it was found, and what that cost.
 
-    `parameters` are the uncertain numbers with which it moves; without any it is the traced curve alone.
+    `parameters` are the uncertain numbers with which it moves, if any; `surrogate` the fit about the traced
+    curve.
     """
 
     candidates: tuple[str, ...]
     parameters: tuple[str, ...]
     runs: int
     line: BoundaryLine
-    surrogate: SurrogateError | None
+    surrogate: SurrogateError
     drifts: bool
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator, Philox
@@ -21,22 +22,26 @@ from numpy.typing import NDArray
 from scipy.special import expit
 
 from separatrix.distribution import Distribution
-from separatrix.uncertainty.traced import FEW
+from separatrix.uncertainty.traced import FEW, TracedBoundary
 from separatrix.units import Array, Ratio
 
-KNOTS: Array = np.array([0.0, 0.125, 0.25, 0.5, 0.75, 0.9, 1.0])
-"""Restitution factors between which a shift of the traced curve itself is a straight line."""
+WIDTH_KNOTS: Array = np.array([0.0, 0.25, 0.5, 1.0])
+"""Those between which the logarithm of a width is one; the width below one half comes before that above."""
 
 MOST_CROSSED = 8
 """Parameters up to which products of two enter the shift."""
 
-PRIOR_KNOT, PRIOR_LINEAR, PRIOR_SLOPE, PRIOR_SQUARE, PRIOR_PRODUCT = 0.2, 0.5, 0.25, 0.15, 0.15
-"""Standard deviations of the coefficients of ln f thought possible before a run."""
+PRIOR_KNOT, PRIOR_LINEAR, PRIOR_SLOPE, PRIOR_SQUARE, PRIOR_PRODUCT = 0.03, 0.5, 0.25, 0.15, 0.15
+"""Standard deviations of the coefficients of ln f thought possible before a run; that of a knot comes on top
+of the traced curve's own scatter there."""
 
 WIDTH, WIDTH_SPREAD = 0.12, 1.0
 """Width of logit P in ln f thought likely, and how far (a factor of e) it may be off."""
 
 STEPS, SETTLED = 60, 1e-9
+HALVED = tuple(0.5**k for k in range(20))
+WIDTHS = 2 * WIDTH_KNOTS.size
+"""Coefficients of the widths, the last ones of a kick's."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,6 +65,9 @@ class Scale:
 
 def scale_of(names: Sequence[str], distributions: Sequence[Distribution]) -> Scale:
     """Scale of parameters from what is known of them: median and half the middle two thirds."""
+    if not names:
+        none = np.zeros(0)
+        return Scale(names=(), centre=none, spread=none, logarithmic=none.astype(np.bool_))
     logarithmic = np.array([one.low > 0.0 for one in distributions], dtype=np.bool_)
     ends = np.array([one.quantile(np.array([0.16, 0.5, 0.84])) for one in distributions]).reshape(-1, 3)
     ends[logarithmic] = np.log(ends[logarithmic])
@@ -117,8 +125,10 @@ class Surrogate:
     ----------
     scale : Scale
         Of the parameters.
+    knots : ndarray
+        Restitution factors of the traced curve, between which its own correction is a straight line [-].
     mode : ndarray
-        Coefficients of the shift, then logarithms of both widths, shape (kick, coefficient).
+        Coefficients of the shift, then logarithms of both widths at `WIDTH_KNOTS`, shape (kick, coefficient).
     root : ndarray
         Root of their covariance, shape (kick, coefficient, coefficient).
     misfit : float
@@ -130,6 +140,7 @@ class Surrogate:
     """
 
     scale: Scale
+    knots: Array
     mode: Array
     root: Array
     misfit: float
@@ -144,18 +155,23 @@ class Surrogate:
         normal = Generator(Philox(key=[self.seed, draw])).standard_normal((kicks, count + 1))
         return self.mode + np.einsum("kij,kj->ki", self.root, normal[:, 1:]), self.misfit * normal[:, 0]
 
+    def terms(self, eta: Array, parameters: Array) -> Array:
+        """Terms of the shift, shape (sample, term)."""
+        return features(self.knots, eta, self.scale.standard(parameters))
+
     def shift(self, eta: Array, parameters: Array, draw: int | None) -> Array:
         """Shift of ln f of each kick, shape (kick, sample)."""
         found, misfit = self.coefficients(draw)
-        return np.asarray(found[:, :-2] @ features(eta, self.scale.standard(parameters)).T + misfit[:, None])
+        terms = self.terms(eta, parameters)
+        return np.asarray(found[:, :-WIDTHS] @ terms.T + misfit[:, None])
 
     def shifts(self, kick: int, nodes: Array, parameters: Array, draw: int | None) -> Array:
         """Shift of one kick at every node for every sample, shape (sample, node)."""
         samples = len(parameters)
-        standard = self.scale.standard(parameters)
         found, misfit = self.coefficients(draw)
         columns = [
-            features(np.full(samples, eta), standard) @ found[kick, :-2] + misfit[kick] for eta in nodes
+            self.terms(np.full(samples, eta), parameters) @ found[kick, :-WIDTHS] + misfit[kick]
+            for eta in nodes
         ]
         return np.stack(columns, axis=1)
 
@@ -165,10 +181,11 @@ class Surrogate:
         `half` holds those of the traced curve at which half of them grow.
         """
         found, _ = self.coefficients(draw)
-        below, above = np.exp(found[:, -2]), np.exp(found[:, -1])
+        pieces = width_pieces(eta)
+        below = np.exp(found[:, -WIDTHS : -WIDTHS // 2] @ pieces.T)
+        above = np.exp(found[:, -WIDTHS // 2 :] @ pieces.T)
         middle = half * np.exp(self.shift(eta, parameters, draw))
-        few = middle * np.exp(logit(FEW) * below)[:, None]
-        return few, middle * np.exp(logit(self.clear) * above)[:, None]
+        return middle * np.exp(logit(FEW) * below), middle * np.exp(logit(self.clear) * above)
 
 
 def logit(share: Ratio) -> float:
@@ -176,10 +193,10 @@ def logit(share: Ratio) -> float:
     return math.log(share / (1.0 - share))
 
 
-def features(eta: Array, standard: Array) -> Array:
-    """Terms of the shift, shape (sample, term): straight pieces in eta, then the parameters."""
+def features(knots: Array, eta: Array, standard: Array) -> Array:
+    """Terms of the shift, shape (sample, term): straight pieces in eta between knots, then the parameters."""
     count = standard.shape[1]
-    pieces = [np.interp(eta, KNOTS, unit) for unit in np.eye(KNOTS.size)]
+    pieces = list(_pieces(eta, knots).T)
     linear = list(standard.T)
     slopes = [column * (2.0 * eta - 1.0) for column in linear]
     squares = [column**2 - 1.0 for column in linear]
@@ -189,82 +206,105 @@ def features(eta: Array, standard: Array) -> Array:
     return np.stack([*pieces, *linear, *slopes, *squares, *products], axis=1)
 
 
-def prior(count: int) -> Array:
-    """Standard deviations of the coefficients before any run, the two widths last."""
+def _pieces(eta: Array, knots: Array) -> Array:
+    """Straight pieces between knots, shape (sample, knot): 1 at its own knot, 0 at the others."""
+    return np.stack([np.interp(eta, knots, unit) for unit in np.eye(knots.size)], axis=1)
+
+
+def width_pieces(eta: Array) -> Array:
+    """Terms of the logarithm of a width, shape (sample, knot)."""
+    return _pieces(eta, WIDTH_KNOTS)
+
+
+def prior(count: int, scatter: Array) -> Array:
+    """Standard deviations of the coefficients before any run, those of the widths last.
+
+    Parameters
+    ----------
+    count : int
+        Parameters.
+    scatter : ndarray
+        Of ln f of the traced curve at its knots, shape (knot,) [-].
+    """
     products = count * (count - 1) // 2 if count <= MOST_CROSSED else 0
-    parts = ((PRIOR_KNOT, KNOTS.size), (PRIOR_LINEAR, count), (PRIOR_SLOPE, count), (PRIOR_SQUARE, count))
-    return np.concatenate(
-        [*(np.full(n, sd) for sd, n in parts), np.full(products, PRIOR_PRODUCT), np.full(2, WIDTH_SPREAD)]
-    )
+    parts = ((PRIOR_LINEAR, count), (PRIOR_SLOPE, count), (PRIOR_SQUARE, count), (PRIOR_PRODUCT, products))
+    shift = [np.full(n, deviation) for deviation, n in parts]
+    return np.concatenate([np.hypot(scatter, PRIOR_KNOT), *shift, np.full(WIDTHS, WIDTH_SPREAD)])
 
 
-def fitted(
-    points: Points, scale: Scale, kicks: int, *, clear: Ratio, seed: int, misfit: float = 0.0
-) -> Surrogate:
+def fitted(points: Points, scale: Scale, traced: TracedBoundary, *, seed: int) -> Surrogate:
     """Law of every kick by penalised likelihood, each from its own runs."""
-    deviation = prior(len(scale.names))
     modes, roots = [], []
-    for kick in range(kicks):
+    for kick in range(len(traced.kicks)):
         own = points.of(points.kick == kick)
-        terms = features(own.restitution_factor, scale.standard(own.parameters))
-        mode, root = _mode(terms, own.offset, own.grew, deviation)
+        terms = features(traced.restitution_factors, own.restitution_factor, scale.standard(own.parameters))
+        deviation = prior(len(scale.names), traced.error[kick, 1])
+        runs = _Runs(terms, width_pieces(own.restitution_factor), own.offset, own.grew)
+        mode, root = _mode(runs, deviation)
         modes.append(mode)
         roots.append(root)
     return Surrogate(
-        scale=scale, mode=np.stack(modes), root=np.stack(roots), misfit=misfit, clear=clear, seed=seed
+        scale=scale,
+        knots=traced.restitution_factors,
+        mode=np.stack(modes),
+        root=np.stack(roots),
+        misfit=0.0,
+        clear=traced.targets[2],
+        seed=seed,
     )
 
 
-def _mode(terms: Array, offset: Array, grew: Array, deviation: Array) -> tuple[Array, Array]:
+class _Runs(NamedTuple):
+    """Runs of one kick: terms of shift and widths, offset, and whether they grew."""
+
+    terms: Array
+    pieces: Array
+    offset: Array
+    grew: Array
+
+
+def _mode(runs: _Runs, deviation: Array) -> tuple[Array, Array]:
     """Mode of the coefficients and the root of their covariance, by Fisher scoring with halved steps."""
     centre = np.zeros(deviation.size)
-    centre[-2:] = math.log(WIDTH)
-    found, value = centre.copy(), -math.inf
-    value = _objective(found, terms, offset, grew, centre, deviation)
+    centre[-WIDTHS:] = math.log(WIDTH)
+    found = centre.copy()
+    value = _objective(found, runs, centre, deviation)
     for _ in range(STEPS):
-        gradient, information = _scores(found, terms, offset, grew, centre, deviation)
+        gradient, information = _scores(found, runs, centre, deviation)
         step = np.linalg.solve(information, gradient)
-        share = 1.0
-        while share > 1e-6:
-            tried = found + share * step
-            new = _objective(tried, terms, offset, grew, centre, deviation)
-            if new >= value:
-                break
-            share *= 0.5
-        else:
+        share = next(
+            (s for s in HALVED if _objective(found + s * step, runs, centre, deviation) >= value), 0.0
+        )
+        found = found + share * step
+        new = _objective(found, runs, centre, deviation)
+        if new - value <= SETTLED * abs(value):
             break
-        gain, found, value = new - value, tried, new
-        if gain < SETTLED * abs(value):
-            break
-    _, information = _scores(found, terms, offset, grew, centre, deviation)
+        value = new
+    _, information = _scores(found, runs, centre, deviation)
     return found, np.linalg.inv(np.linalg.cholesky(information)).T
 
 
-def logits(found: Array, terms: Array, offset: Array) -> tuple[Array, Array]:
+def logits(found: Array, terms: Array, pieces: Array, offset: Array) -> tuple[Array, Array]:
     """Logit of P(grow) of runs, and the width of each, shape (run,)."""
-    distance = offset - terms @ found[:-2]
-    width = np.exp(np.where(distance < 0.0, found[-2], found[-1]))
+    distance = offset - terms @ found[:-WIDTHS]
+    below, above = pieces @ found[-WIDTHS : -WIDTHS // 2], pieces @ found[-WIDTHS // 2 :]
+    width = np.exp(np.where(distance < 0.0, below, above))
     return distance / width, width
 
 
-def _objective(
-    found: Array, terms: Array, offset: Array, grew: Array, centre: Array, deviation: Array
-) -> float:
+def _objective(found: Array, runs: _Runs, centre: Array, deviation: Array) -> float:
     """Logarithm of the penalised likelihood."""
-    z, _ = logits(found, terms, offset)
-    likelihood = float(np.sum(grew * z - np.logaddexp(0.0, z)))
+    z, _ = logits(found, runs.terms, runs.pieces, runs.offset)
+    likelihood = float(np.sum(runs.grew * z - np.logaddexp(0.0, z)))
     return likelihood - 0.5 * float(np.sum(((found - centre) / deviation) ** 2))
 
 
-def _scores(
-    found: Array, terms: Array, offset: Array, grew: Array, centre: Array, deviation: Array
-) -> tuple[Array, Array]:
+def _scores(found: Array, runs: _Runs, centre: Array, deviation: Array) -> tuple[Array, Array]:
     """Gradient of the penalised likelihood, and its expected information."""
-    z, width = logits(found, terms, offset)
+    z, width = logits(found, runs.terms, runs.pieces, runs.offset)
     share = expit(z)
-    slope = np.concatenate(
-        [-terms / width[:, None], -(z * (z < 0.0))[:, None], -(z * (z >= 0.0))[:, None]], axis=1
-    )
-    gradient = slope.T @ (grew - share) - (found - centre) / deviation**2
+    below, above = (z * (z < 0.0))[:, None], (z * (z >= 0.0))[:, None]
+    slope = np.concatenate([-runs.terms / width[:, None], -below * runs.pieces, -above * runs.pieces], axis=1)
+    gradient = slope.T @ (runs.grew - share) - (found - centre) / deviation**2
     weighted = slope * (share * (1.0 - share))[:, None]
     return gradient, weighted.T @ slope + np.diag(deviation**-2.0)

@@ -26,11 +26,12 @@ from separatrix.uncertainty.held_out import misfit, surrogate_error
 from separatrix.uncertainty.records import SurrogateError
 from separatrix.uncertainty.sampling import UncertainInput
 from separatrix.uncertainty.surrogate import (
+    WIDTHS,
     Points,
     Surrogate,
-    features,
     fitted,
     scale_of,
+    width_pieces,
 )
 from separatrix.uncertainty.traced import TracedBoundary
 from separatrix.units import Array, Ratio
@@ -38,8 +39,8 @@ from separatrix.units import Array, Ratio
 MOVES: Ratio = 0.01
 """Share by which a size of the cage must change with an input, within its middle two thirds, to count."""
 
-ROUNDS = 5
-"""Rounds of runs; each is placed by what those before it say."""
+ROUNDS, RUNS = 4, 6000
+"""Rounds of runs, each placed by what those before it say: so many at least, and so many runs in all."""
 
 HIGHEST: Ratio = 0.97
 """Restitution factor up to which runs are placed: beyond, the boundary falls to nothing."""
@@ -159,25 +160,28 @@ def trained(
     cages = trainees(study, known, place, names, cage_count(len(names)), seed=seed, jobs=jobs, stop=halt)
     plan = _Plan(study.stability.kicks, traced, cages, seed)
     points, law = None, None
-    for turn in range(ROUNDS):
+    rounds = max(ROUNDS, -(-RUNS // plan.size))
+    for turn in range(rounds):
         wanted = plan.points(turn, law)
-        told = None if progress is None else _part(progress, turn, ROUNDS)
+        told = None if progress is None else _part(progress, turn, rounds)
         grew = _run(cages, wanted, traced, first=turn * plan.size, jobs=jobs, progress=told, stop=halt)
         new = replace(wanted, grew=grew)
         points = new if points is None else points + new
-        law = fitted(points, scale, len(traced.kicks), clear=traced.targets[2], seed=seed)
+        law = fitted(points, scale, traced, seed=seed)
     if points is None or law is None:
         raise KeyboardInterrupt
-    return _judged(points, law, cages)
+    return _judged(points, law, traced, cages)
 
 
-def _judged(points: Points, law: Surrogate, cages: Sequence[Trainee]) -> tuple[Surrogate, SurrogateError]:
+def _judged(
+    points: Points, law: Surrogate, traced: TracedBoundary, cages: Sequence[Trainee]
+) -> tuple[Surrogate, SurrogateError]:
     """Return the law with the misfit that held-out runs show, and the record of its error."""
     out = np.arange(points.grew.size) % HELD_OUT == HELD_OUT - 1
-    tried = fitted(points.of(~out), law.scale, len(law.mode), clear=law.clear, seed=law.seed)
+    tried = fitted(points.of(~out), law.scale, traced, seed=law.seed)
     final = replace(law, misfit=misfit(tried, points.of(out)))
     eta = np.array([one.restitution_factor for one in cages])
-    known = np.array([one.parameters for one in cages])
+    known = np.array([one.parameters for one in cages]).reshape(len(cages), -1)
     error = surrogate_error(tried, points.of(out), final, eta, known, runs=points.grew.size, cages=len(cages))
     return final, error
 
@@ -199,9 +203,11 @@ def trainees(
     stop: Event,
 ) -> list[Trainee]:
     """Cages of a quasi-random sequence; those that cannot be built are left out."""
-    unit = qmc.Sobol(len(inputs), rng=np.random.default_rng([seed, 1])).random(count)
+    unit = qmc.Sobol(max(1, len(inputs)), rng=np.random.default_rng([seed, 1])).random(count)
     unit = np.clip(unit, 1e-9, 1.0 - 1e-9)
-    values = np.stack([one.distribution.quantile(unit[:, j]) for j, one in enumerate(inputs)], axis=1)
+    values = np.empty((count, len(inputs)))
+    for j, one in enumerate(inputs):
+        values[:, j] = one.distribution.quantile(unit[:, j])
     keys = [one.key for one in inputs]
     put, columns = setter(study, keys), [keys.index(name) for name in names]
 
@@ -249,7 +255,7 @@ class _Plan:
         unit = qmc.Sobol(2, rng=np.random.default_rng([self.seed, 2, turn])).random(_power(self.size))
         etas = np.array([one.restitution_factor for one in self.cages])[cage]
         eta = np.minimum(np.where(own, etas, HIGHEST * unit[: self.size, 0]), HIGHEST)
-        parameters = np.array([one.parameters for one in self.cages])[cage]
+        parameters = np.array([one.parameters for one in self.cages]).reshape(len(self.cages), -1)[cage]
         way = 2.0 * unit[: self.size, 1] - 1.0
         blank = Points(
             kick=kick, restitution_factor=eta, parameters=parameters, offset=way, grew=np.zeros(self.size)
@@ -264,10 +270,11 @@ def _near(law: Surrogate, blank: Points) -> Array:
     found = np.zeros(blank.offset.size)
     for kick, mode in enumerate(law.mode):
         own = blank.kick == kick
-        terms = features(blank.restitution_factor[own], law.scale.standard(blank.parameters[own]))
-        z = REACH * blank.offset[own]
-        width = np.exp(np.where(z < 0.0, mode[-2], mode[-1]))
-        found[own] = terms @ mode[:-2] + z * width
+        terms = law.terms(blank.restitution_factor[own], blank.parameters[own])
+        z, pieces = REACH * blank.offset[own], width_pieces(blank.restitution_factor[own])
+        below, above = pieces @ mode[-WIDTHS : -WIDTHS // 2], pieces @ mode[-WIDTHS // 2 :]
+        width = np.exp(np.where(z < 0.0, below, above))
+        found[own] = terms @ mode[:-WIDTHS] + z * width
     return found
 
 

@@ -1,0 +1,164 @@
+"""The verb `sensitivity`: probabilities of stable and of best, what drives the doubt, what to test next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Event
+from typing import TYPE_CHECKING
+
+from separatrix.errors import InputError
+
+if TYPE_CHECKING:
+    from separatrix.chain import CageState
+    from separatrix.cli.answers import Work
+    from separatrix.sensitivity import AllowedFriction, NextTest, Question, SobolAnswer, StableRegion
+    from separatrix.stability.pool import Progress
+    from separatrix.study import Study
+    from separatrix.uncertainty.model import Model
+    from separatrix.uncertainty.records import UncertainRanking
+    from separatrix.units import Array
+
+SAMPLES = 4096
+FEWEST, MOST = 64, 65_536
+
+DESIGN = 1024
+"""Samples of each matrix behind the Sobol indices and the next test."""
+
+INVERSE = 512
+"""Samples behind the inverse answers; a film's are asked at every point of its plane."""
+
+STAGES = {"boundary": 0.35, "surrogate": 0.25, "chain": 0.25, "verdicts": 0.05, "drivers": 0.1}
+"""Parts of the work, and what share of the time each takes, roughly."""
+
+STEPS = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Doubt:
+    """What drives the doubt, which test to run next, and the inverse answers."""
+
+    sobol: SobolAnswer
+    next_test: NextTest
+    allowed_friction: tuple[AllowedFriction, ...]
+    films: tuple[StableRegion, ...]
+    films_reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensitivityAnswer:
+    """The uncertain ranking, the doubt behind it (None if an interrupt left it out), and the first cage."""
+
+    cage: CageState
+    ranking: UncertainRanking
+    doubt: Doubt | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensitivityOptions:
+    """What follows the verb.
+
+    Raises
+    ------
+    InputError
+        It is not a sensible number of samples.
+    """
+
+    samples: int = SAMPLES
+
+    def __post_init__(self) -> None:
+        if not FEWEST <= self.samples <= MOST or self.samples.bit_count() != 1:
+            cure = f"Points fill their space evenly in powers of two: {SAMPLES}."
+            rule = f"must be a power of two from {FEWEST} to {MOST}"
+            raise InputError("--samples", rule, value=str(self.samples), cure=cure)
+
+    def compute(self, study: Study, work: Work) -> SensitivityAnswer:
+        """Answer the verb."""
+        return sensitivity(study, work, self.samples)
+
+
+def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> SensitivityAnswer:
+    """Sample the study through the chain; what drives the doubt follows from the same model.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Interrupted before the probabilities were there; later they are the answer.
+    """
+    from separatrix.chain import cage_state
+    from separatrix.ranking import ranking_question
+    from separatrix.uncertainty.answer import uncertain_ranking
+
+    first = ranking_question(study).candidates[0]
+    state = cage_state(study, material=first.material, friction=0.0)
+    stop = Event()
+    stage = stages(work.progress)
+    ranking, model, values = uncertain_ranking(study, samples, jobs=work.jobs, stage=stage, stop=stop)
+    try:
+        doubt = doubt_of(model, values, stage("drivers"))
+    except KeyboardInterrupt:
+        doubt = None
+    return SensitivityAnswer(cage=state, ranking=ranking, doubt=doubt)
+
+
+def stages(progress: Progress | None) -> Callable[[str], Progress | None]:
+    """Return what gives each stage its part of one progress."""
+    starts, total = {}, 0.0
+    for name, share in STAGES.items():
+        starts[name] = total
+        total += share
+
+    def stage(name: str) -> Progress | None:
+        if progress is None:
+            return None
+        begun, told = STEPS * starts[name], progress
+
+        def part(done: int, of: int) -> None:
+            told(round(begun + STEPS * STAGES[name] * done / max(of, 1)), STEPS)
+
+        part(0, 1)
+        return part
+
+    return stage
+
+
+def doubt_of(model: Model, values: Array, progress: Progress | None) -> Doubt:
+    """Sobol indices, next test and inverse answers of the model behind a ranking."""
+    from separatrix import sensitivity as doubts
+
+    told = progress or (lambda _done, _of: None)
+    question, wider = _question(model, values)
+    design = doubts.sampled_design(question, DESIGN, seed=model.study.stability.seed)
+    told(1, 4)
+    sobol = wider(doubts.indices_of(question, design))
+    tests = doubts.default_measurements(question, reducible=doubts.reducible_shares(model))
+    following = doubts.next_test(question, design, tests)
+    told(2, 4)
+    some = values[:INVERSE]
+    allowed = doubts.allowed_friction(question, some)
+    told(3, 4)
+    films, reason = _films(model, question, some)
+    told(4, 4)
+    return Doubt(sobol=sobol, next_test=following, allowed_friction=allowed, films=films, films_reason=reason)
+
+
+def _question(model: Model, values: Array) -> tuple[Question, Callable[[SobolAnswer], SobolAnswer]]:
+    """Return the model as a question, with its chain fitted to the samples if that varies."""
+    from separatrix import sensitivity as doubts
+
+    question = doubts.question_of(model)
+    if not model.chain_varies:
+        return question, lambda answer: answer
+    fitted, error = doubts.fitted_question(question, values, question.evaluate(values))
+    return fitted, lambda answer: doubts.with_fit_error(answer, error)
+
+
+def _films(model: Model, question: Question, values: Array) -> tuple[tuple[StableRegion, ...], str]:
+    """Which films keep each case stable; the reason if there is no film to choose."""
+    from separatrix import sensitivity as doubts
+    from separatrix.chain import restitution_state
+
+    if model.study.film.material is None:
+        return (), "The races are bare: there is no film to choose."
+    grid = doubts.friction_grid(model.study, restitution_state(model.study))
+    return doubts.stable_regions(question, values, grid), ""

@@ -1,0 +1,241 @@
+"""Text of an uncertain ranking: probabilities, what drives the doubt, the next test, inverse answers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from separatrix.report.cage import chain_facts, study_facts
+from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
+
+Document = Mapping[str, Any]
+
+HEADERS = (
+    "group",
+    "material",
+    "friction of\nnext cage",
+    "threshold\n(5-95 %)",
+    "margin\n(5-95 %)",
+    "P(stable)\n(95 %)",
+    "P(un-\nstable)",
+    "P(best)",
+)
+MARK, GUESS = "*", "?"
+MOST_SENTENCES = 6
+SHOWN_SIZES = 4
+
+LEGEND = paragraph(
+    "group: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean "
+    "and standard deviation. threshold: largest restitution factor eta at which the cage is stable; margin: "
+    "threshold less the eta of bearing and film; median and the ends between which nine in ten samples "
+    "lie. P(stable): at most one run in ten grows, from every kick; P(unstable): more than half grow, from "
+    "every kick; the rest is undecided. P(best): largest threshold of its environment."
+)
+
+
+def sensitivity(document: Document) -> list[str]:
+    """Probabilities in every environment and overall, then everything behind them."""
+    return [
+        *(_environment(one["name"], one["materials"]) for one in document["environments"]),
+        _environment("over all environments, mean friction", document["overall"]),
+        "\n".join([LEGEND, *_marks(document)]),
+        section("Uncertain inputs", *_inputs(document)),
+        section("Boundary", *(_boundary(one) for one in document["boundaries"])),
+        section("Convergence of P(stable), where it is least decided", _convergence(document)),
+        *_doubt(document),
+        section("What this holds for", facts(_holds_for(document))),
+        paragraph(_in_short(document), first="In short: ", indent="          "),
+    ]
+
+
+def _environment(name: str, rows: Sequence[Document]) -> str:
+    shared = Counter(row["tie_group"] for row in rows)
+    cells = [_row(row, tied=shared[row["tie_group"]] > 1) for row in rows]
+    return section(name[:1].upper() + name[1:], table(HEADERS, cells, left=2))
+
+
+def _row(row: Document, *, tied: bool) -> list[str]:
+    if row["friction"] is None:
+        return [ABSENT, row["name"], "not measured", *[ABSENT] * (len(HEADERS) - 3)]
+    marks = (GUESS if row["friction_scatter_assumed"] else "") + (MARK if row["extrapolation"] else "")
+    threshold, stable = (_between(row, key) for key in ("restitution_threshold", "probability_stable"))
+    return [
+        f"{row['tie_group']}{'=' if tied else ''}",
+        row["name"],
+        f"{number(row['friction'])} +- {number(row['friction_deviation'])}{marks}",
+        threshold,
+        f"{row['margin_low']:+.2f} to {row['margin_high']:+.2f}",
+        stable,
+        number(row["probability_unstable"], 2),
+        number(row["probability_best"], 2),
+    ]
+
+
+def _between(row: Document, key: str) -> str:
+    return f"{number(row[key], 2)} ({number(row[f'{key}_low'], 2)}-{number(row[f'{key}_high'], 2)})"
+
+
+def _marks(document: Document) -> Iterator[str]:
+    """Yield what the marks beside frictions mean, if there are any."""
+    rows = [row for one in document["environments"] for row in one["materials"]]
+    if any(row["friction_scatter_assumed"] for row in rows):
+        share = f"{100.0 * document['default_scatter']:.3g} % of the mean"
+        yield paragraph(
+            f"{GUESS} its scatter was not measured: {share} is taken, a guess ([ranking] friction_scatter)."
+        )
+    words = dict.fromkeys(text for row in rows for text in row["extrapolation"])
+    if words:
+        yield paragraph(
+            f"{MARK} not tested as the pocket rubs: {'. '.join(words)}. Where the tests themselves are not "
+            "known, no scatter is added for that."
+        )
+
+
+def _inputs(document: Document) -> list[str]:
+    """Return the inputs that are no frictions one by one, and how many frictions there are of what origin."""
+    rows = document["inputs"]
+    frictions = [row for row in rows if _is_friction(row)]
+    others = [row for row in rows if not _is_friction(row)]
+    origins = Counter(row["source"] for row in frictions)
+    told = ", ".join(f"{count} {SOURCES[source]}" for source, count in origins.items())
+    shown = [
+        (row["name"], row["distribution"] + (" (moves the boundary)" if row["moves_boundary"] else ""))
+        for row in others
+    ]
+    shown += [("frictions", f"{len(frictions)}: {told}")] if frictions else []
+    failed = document["failed"]
+    shown.append(
+        ("samples", f"{document['samples']}" + (f", of which {failed} have no answer" if failed else ""))
+    )
+    return [facts(shown), *(paragraph(note) for note in document["notes"])]
+
+
+SOURCES = {
+    "study": "from the study",
+    "measured": "with measured scatter",
+    "assumed": "with the default scatter, a guess",
+}
+
+
+def _is_friction(row: Document) -> bool:
+    return str(row["name"]).startswith("ranking.") and ".material." not in row["name"]
+
+
+def _boundary(one: Document) -> str:
+    """Return how a boundary was found, and how far it can be trusted."""
+    error = one["surrogate"]
+    moved = ", ".join(one["parameters"])
+    first = f"It moves with {moved}." if moved else "No uncertain input changes the cage itself."
+    cages = f"of {error['cages']} other cages" if moved else "of the same cage"
+    decides = "" if error["decides"] else " THAT IS TOO MUCH TO DECIDE ANYTHING: narrow these inputs."
+    return paragraph(
+        f"{first} Traced, and fitted to {error['runs']} single runs {cages}; {one['runs']} runs in all. The "
+        f"friction at which it lies is known to {100.0 * error['error']:.1f} %, of that "
+        f"{100.0 * error['misfit']:.1f} % misfit, found in {error['held_out']} runs held out; deviance of a "
+        f"held-out run {error['deviance']:.2f}, without a law {error['deviance_constant']:.2f}. The error is "
+        f"in every interval.{decides}"
+    )
+
+
+def _convergence(document: Document) -> str:
+    """Return P(stable) of the least decided case of each environment for several numbers of samples."""
+    sizes = list(range(len(document["sizes"])))[-SHOWN_SIZES:]
+    headers = ["case", *(f"{document['sizes'][k]}\nsamples" for k in sizes)]
+    rows = []
+    for place in dict.fromkeys(row["environment"] for row in document["convergence"]):
+        own = [row for row in document["convergence"] if row["environment"] == place]
+        least = min(own, key=lambda row: abs(row["probability_stable"][-1] - 0.5))
+        rows.append([f"{least['name']}, {place or 'overall'}", *(_at(least, k) for k in sizes)])
+    return table(headers, rows)
+
+
+def _at(row: Document, k: int) -> str:
+    value, low, high = (row[f"probability_stable{end}"][k] for end in ("", "_low", "_high"))
+    return f"{number(value, 2)} ({number(low, 2)}-{number(high, 2)})"
+
+
+def _doubt(document: Document) -> Iterator[str]:
+    """Yield what drives the doubt, the next test, and the inverse answers."""
+    if document["sobol"] is None:
+        yield section("What drives the doubt", paragraph(document["doubt_reason"]))
+        return
+    yield section("What drives the doubt", *_drivers(document))
+    told = document["next_test"]["sentences"]
+    yield section("Which test to run next", *(paragraph(text) for text in told[:MOST_SENTENCES]))
+    allowed = list(dict.fromkeys(one["sentence"] for one in document["allowed_friction"]))
+    yield section("Which friction a new material may have", *map(paragraph, allowed))
+    yield section("Which film keeps the cage stable", *_films(document))
+
+
+def _drivers(document: Document) -> list[str]:
+    """Return the sentences of the cases that are not decided; one if only frictions are uncertain."""
+    if all(_is_friction(row) for row in document["inputs"]):
+        text = "Only frictions are uncertain: each case's doubt is that of its own friction, and of the runs."
+        return [paragraph(text)]
+    cases = zip(document["sobol"]["cases"], document["sobol"]["sentences"], strict=True)
+    open_cases = [text for case, text in cases if 0.05 < case["probability_stable"]["value"] < 0.95]
+    shown = open_cases or document["sobol"]["sentences"]
+    left = len(shown) - MOST_SENTENCES
+    more = [paragraph(f"... and {left} more: sensitivity.json has all of them.")] if left > 0 else []
+    return [paragraph(text) for text in shown[:MOST_SENTENCES]] + more
+
+
+def _films(document: Document) -> list[str]:
+    """Return a table for each environment: film thickness that keeps a material stable, by race friction."""
+    films = document["films"]
+    if not films:
+        return [paragraph(document["films_reason"])]
+    head = paragraph(
+        f"Film thickness with a probability of STABLE of {films[0]['probability']:.2f} or more, by the "
+        "friction of ball on race; all else as it is, with its doubt."
+    )
+    blocks = [head]
+    for place in dict.fromkeys(one["environment"] for one in films):
+        own = [one for one in films if one["environment"] == place]
+        headers = [place, *(_value(own[0]["other"], row["y"]) for row in own[0]["rows"])]
+        cells = [[one["candidate"], *(_spans(row["probable"]) for row in one["rows"])] for one in own]
+        blocks += ["", table(headers, cells)]
+    return blocks
+
+
+def _value(name: str, value: float) -> str:
+    return f"f {value:.3g}" if name == "film.race_friction" else quantity(value, "Pa")
+
+
+def _spans(spans: Sequence[Document]) -> str:
+    return " or ".join(_span(span) for span in spans) or "none"
+
+
+def _span(span: Document) -> str:
+    low, high = (quantity(span[end], "m") for end in ("low", "high"))
+    if span["from_edge"] and span["to_edge"]:
+        return "any"
+    if span["to_edge"]:
+        return f">= {low}"
+    return f"<= {high}" if span["from_edge"] else f"{low} to {high}"
+
+
+def _holds_for(document: Document) -> list[tuple[str, str]]:
+    kicks = ", ".join(f"{kick:g}" for kick in document["kicks"])
+    return [
+        *study_facts(document["study"]),
+        *chain_facts(document["chain"]),
+        ("Kicks", f"{kicks} m/s"),
+        ("Seed", f"{document['seed']}; {document['runs']} runs in all"),
+    ]
+
+
+def _in_short(document: Document) -> str:
+    """Return the leaders over all environments in a sentence."""
+    rows = [row for row in document["overall"] if row["tie_group"] == 1]
+    if not rows:
+        return "no candidate was measured."
+    names = " and ".join(row["name"] for row in rows)
+    first = rows[0]
+    tie = " cannot be told apart at the top" if len(rows) > 1 else " is best"
+    low, high = first["probability_stable_low"], first["probability_stable_high"]
+    return (
+        f"{names}{tie} over all environments; {first['name']} is stable with a probability of "
+        f"{number(first['probability_stable'], 2)} ({number(low, 2)} to {number(high, 2)})."
+    )
