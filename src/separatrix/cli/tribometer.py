@@ -145,7 +145,13 @@ def _of_file(path: Path, chosen: ColumnMap | None, how: ReductionOptions) -> lis
     from separatrix.tribometer.reading import read_log
     from separatrix.tribometer.reduction import reduction
 
-    return [reduction(log, how) for log in read_log(path, chosen)]
+    try:
+        return [reduction(log, how) for log in read_log(path, chosen)]
+    except InputError as error:
+        if not error.where.startswith("ReductionOptions."):
+            raise
+        where = f"{printable(path.name, 150)}: --run-in"
+        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
 
 
 def _with_others(wrong: Sequence[InputError]) -> InputError:
@@ -205,7 +211,7 @@ def _deliver(
     written = None if options.out is None else str(options.out)
     found = document([r.log for r in reductions], [r.test for r in reductions], fit, written=written)
     if options.plots_folder is not None:
-        _draw(reductions, options.plots_folder)
+        _draw(reductions, options, options.plots_folder)
     if options.out is not None and tests is not None:
         _write(tests, options.out)
     plots = None if options.plots_folder is None else str(options.plots_folder)
@@ -225,21 +231,24 @@ def _write(tests: Sequence[FrictionTest], out: Path) -> None:
             raise exists_already(out)
 
 
-def _draw(reductions: Sequence[Reduction], folder: Path) -> None:
-    """Write a page of plots for each test."""
+def _draw(reductions: Sequence[Reduction], options: TribometerOptions, folder: Path) -> None:
+    """Write a page of plots for each test, and the data that it is drawn from."""
+    from separatrix import results
     from separatrix.figures import save
     from separatrix.figures.tribometer import page
-    from separatrix.results import labelled
     from separatrix.results.friction_tests import page_data
 
     names: dict[str, int] = {}
-    with staged(folder) as stage:
-        for one in reductions:
+    with staged(folder) as stage, progress_bar("pages of plots", quiet=options.quiet) as progress:
+        for done, one in enumerate(reductions, 1):
             name = file_name(one.log.source)
             names[name] = number = names.get(name, 0) + 1
-            data, place = page_data(one), stage / (name if number == 1 else f"{name}-{number}")
-            labelled.save(data, place.with_name(f"{place.name}.nc"))
-            save(page(data), place.with_name(f"{place.name}.png"))
+            path = stage / (name if number == 1 else f"{name}-{number}")
+            data = page_data(one)
+            results.save(data, path.with_name(f"{path.name}.nc"))
+            save(page(data), path.with_name(f"{path.name}.png"))
+            if progress is not None:
+                progress(done, len(reductions))
 
 
 def file_name(source: str) -> str:
