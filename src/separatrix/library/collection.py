@@ -13,6 +13,7 @@ from separatrix.errors import DataError, InputError
 from separatrix.library.reading import Content, read_library
 from separatrix.library.records import KINDS, PROPERTIES, Choice, FrictionTable, LibraryFile, Record, choose
 from separatrix.study import Candidate, Material
+from separatrix.toml_text import path_text
 from separatrix.units import Kelvin, printable, shown
 
 SHIPPED_FILES = {
@@ -217,9 +218,13 @@ def library_files(path: Path) -> list[Path]:
     """
     if not path.is_dir():
         return [path]
-    found = sorted(file for file in path.glob("*.toml") if not file.name.startswith("."))
+    try:
+        names = sorted(file.name for file in path.iterdir())
+    except OSError as error:
+        raise InputError(path_text(path), f"cannot be read ({error.strerror})") from None
+    found = [path / name for name in names if name.endswith(".toml") and not name.startswith(".")]
     if len(found) > MOST_FILES:
-        raise InputError(printable(str(path), 200), f"holds more than {MOST_FILES} library files")
+        raise InputError(path_text(path), f"holds more than {MOST_FILES} library files")
     return found
 
 
