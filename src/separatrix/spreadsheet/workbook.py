@@ -15,7 +15,11 @@ from separatrix.spreadsheet.sheet import SheetReader, TextReader
 from separatrix.units import printable
 
 MOST_SHEETS = 500
+FED = 32 * 1024
+"""Bytes parsed at a time: who wants only the first rows waits for no more."""
+
 _OLE_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_LOOKED_THROUGH = ("xl/worksheets/sheet", "xl/sharedStrings")
 _BUILT_IN = dict.fromkeys((*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)), "date")
 _BUILT_IN |= {9: "percent", 10: "percent"}
 """Number formats that have a number instead of a code (ECMA-376, part 1, 18.8.30)."""
@@ -66,8 +70,9 @@ class Workbook:
         parser = parser_of(reader.start, reader.end, reader.text)
         guard = Guard(self.label, part)
         for piece in guard(self.archive.pieces(part)):
-            feed(parser, piece, guard, last=False)
-            yield from reader.finished()
+            for start in range(0, len(piece), FED):
+                feed(parser, piece[start : start + FED], guard, last=False)
+                yield from reader.finished()
         feed(parser, b"", guard, last=True)
         yield from reader.finished()
 
@@ -84,6 +89,7 @@ def open_workbook(path: Path) -> Workbook:
     _refuse_other_kinds(path, label)
     archive = open_archive(path, label)
     _refuse_macros(archive)
+    _refuse_entities(archive)
     main = _main_part(archive)
     targets = relations(archive, main)
     sheets: dict[str, str] = {}
@@ -124,6 +130,14 @@ def _refuse_macros(archive: Archive) -> None:
     if macro is not None or b"macroEnabled" in types:
         cure = "Save it as .xlsx, which keeps no macros."
         raise InputError(archive.label, "has macros; they are never run, and it is not read", cure=cure)
+
+
+def _refuse_entities(archive: Archive) -> None:
+    """Look through the parts, read or not; sheets and their texts are looked through when they are read."""
+    for name in archive.members:
+        if name.endswith((".xml", ".rels", ".vml")) and not name.startswith(_LOOKED_THROUGH):
+            for _ in Guard(archive.label, name)(archive.pieces(name)):
+                pass
 
 
 def _main_part(archive: Archive) -> str:

@@ -187,7 +187,8 @@ def _in_cell(document: Document, problem: InputError) -> InputError:
     for said, better in _IN_CELLS.items():
         rule, cure = rule.replace(said, better), cure.replace(said, better)
     unit = re.fullmatch(r'Write "\S+ (.+)"\.', cure)
-    if found is not None and unit and rule.startswith("needs a unit") and f"{found} unit" in document.cells:
+    is_bare = rule.startswith("needs a unit") and re.fullmatch(r"[-+.0-9eE]+", problem.value) is not None
+    if found is not None and unit and is_bare and f"{found} unit" in document.cells:
         where, cure = f"{document.cells[f'{found} unit']}: {name}", f"Write {unit[1]} there."
     return InputError(where, rule, problem.unit, problem.value, cure)
 

@@ -1,0 +1,227 @@
+# ruff: noqa: E501 - one case a line
+"""Wrong workbooks and measurement files, studies and logs: each is refused in one line that says where and why."""
+
+import pytest
+from minimal_xlsx import Fault, Formula, Shown, parts, workbook, zipped
+
+from separatrix.errors import InputError
+from separatrix.study_file import read_study
+from separatrix.tribometer import xlsx
+
+HEAD = ["key", "value", "+-", "unit", "meaning"]
+STUDY = {
+    "bearing": [
+        HEAD,
+        ["ball_diameter", 11.1125, None, "mm"],
+        ["pitch_diameter", 65.0, None, "mm"],
+        ["ball_count", 13.0],
+        ["contact_angle", 25.0, None, "deg"],
+        ["inner_conformity", 0.52],
+        ["outer_conformity", 0.52],
+        ["ball_material", "440C"],
+        ["ring_material", "440C"],
+    ],
+    "operation": [HEAD, ["inner_speed", 15000.0, None, "rpm"], ["axial_load", 300.0, None, "daN"]],
+    "film": [
+        HEAD,
+        ["race_friction", 0.1],
+        ["material", "PTFE transfer film"],
+        ["thickness", 0.5, None, "um"],
+    ],
+    "cage": [HEAD, ["mass", 25.0, None, "g"], ["pocket_clearance", 0.6, None, "mm"]],
+}
+CANDIDATES = [
+    [None, None, "GPa", None, "air, 440C", "air, 440C"],
+    ["name", "material", "elastic_modulus", "poisson_ratio", "mean", "standard_deviation"],
+    ["Mine", None, 5.0, 0.4, 0.12, 0.01],
+]
+
+
+def study(sheet, row, *cells):
+    """Return the sheets of a study with one row, counted from 1, replaced or added."""
+    rows = [list(one) for one in STUDY.get(sheet, [HEAD])]
+    rows[row - 1 : row] = [list(cells)]
+    return {**STUDY, sheet: rows}
+
+
+def mass(*cells):
+    """Return the study whose mass, in cage!A2:E2, is given like this."""
+    return study("cage", 2, "mass", *cells)
+
+
+def candidate(row, column, value):
+    """Return the study with candidates in place, one cell of them changed."""
+    rows = [[*one] for one in CANDIDATES]
+    rows[row - 1][column - 1] = value
+    return {**STUDY, "candidates": rows}
+
+
+def linked(sheets):
+    """Return a workbook that takes values from another one."""
+    return zipped(parts(sheets) | {"xl/externalLinks/externalLink1.xml": "<externalLink/>"})
+
+
+def replaced(part, old, new):
+    """Return the study's workbook with a text in one of its parts replaced."""
+    found = parts(STUDY)
+    return zipped(found | {part: found[part].replace(old, new)})
+
+
+LAUGHS = (
+    '<?xml version="1.0"?><!DOCTYPE sst [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">'
+    '<!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;">]><sst>&c;</sst>'
+)
+SHEET_1 = "xl/worksheets/sheet1.xml"
+MACRO_TYPES = '<Types><Override ContentType="application/vnd.ms-excel.sheet.macroEnabled.main+xml"/></Types>'
+
+STUDIES = [
+    ("no unit", mass(25.0), 'sheet cage, cell D2: [cage] mass needs a unit of mass; got 25. Write g there.'),
+    ("unit of something else", mass(25.0, None, "mm"), 'cell B2: [cage] mass needs a unit of mass (kg, g, mg'),
+    ("unit twice", mass("25 g", None, "g"), 'cell B2: [cage] mass needs a unit of mass'),
+    ("decimal comma", mass("25,5", None, "g"), 'needs a decimal point, not a comma; got "25,5 g"'),
+    ("no number", mass("heavy", None, "g"), 'cell B2: [cage] mass must be one number and one unit of mass'),
+    ("negative", mass(-25.0, None, "g"), "cell B2: [cage] mass must be > 0"),
+    ("truth value", mass(True, None, "g"), "cell B2: [cage] mass"),
+    ("error", mass(Fault("#REF!"), None, "g"), "cell B2 shows an error instead of a value; got #REF!"),
+    ("date", mass(Shown(46_000.0, 1), None, "g"), "cell B2 holds a date or a time of day"),
+    ("percentage with unit", mass(Shown(0.2, 2), None, "g"), "cell B2 is a percentage with a unit"),
+    ("formula unsaved", mass(Formula("20+5"), None, "g"), 'formula without a saved value; got "=20+5"'),
+    ("number as unit", mass(25.0, None, 3.0), "cell D2 must be text; got 3.0"),
+    ("width without value", mass(None, 0.2, "g"), "cell C2 is a width without a value"),
+    ("width that is no width", mass(25.0, "some", "g"), "cell B2: [cage] mass, after +-,"),
+    ("value without key", study("cage", 4, None, 3.0), "cell B4 is a value without a key"),
+    ("key twice", study("cage", 4, "mass", 30.0, None, "g"), "cell A4: mass is given a second time. It stands in A2"),
+    ("unknown key", study("cage", 4, "mas", 30.0), "cell B4: [cage] mas is no key of this section. Did you mean mass?"),
+    ("key elsewhere", study("cage", 4, "bore", 50.0, None, "mm"), "[cage] bore is no key of this section. It belongs in [bearing]"),
+    ("key of odd signs", study("cage", 4, "mass (kg)", 1.0), 'cell A4 must be the name of a key; got "mass (kg)"'),
+    ("name and parts", study("bearing", 10, "ball_material.density", 7.0, None, "kg/m3"), "is given as a value of its own, too"),
+    ("parts and name", study("bearing", 8, "ring_material.density", 7.0, None, "kg/m3"), "is given by rows of its parts, too"),
+    ("text for a ratio", study("film", 2, "race_friction", "0.1"), "cell B2: [film] race_friction must be a plain number, without a unit; got \"0.1\". Enter it as a number, not as text."),
+    ("fraction of a ball", study("bearing", 4, "ball_count", 12.5), "cell B4: [bearing] ball_count must be a whole number; got 12.5"),
+    ("no such choice", study("cage", 4, "guidance", "outside"), 'cell B4: [cage] guidance must be "outer", "inner" or "ball"'),
+    ("no such material", study("bearing", 8, "ball_material", "440D"), 'cell B8: [bearing] ball_material is no bearing material'),
+    ("number as material", study("bearing", 8, "ball_material", 440.0), "must be the name of a bearing material, or its properties in rows"),
+    ("part of a material", study("bearing", 8, "ball_material.elastic_modulus", 200.0, None, "mm"), "cell B8: [bearing] ball_material lacks: poisson_ratio"),
+    ("unit in a material", {**STUDY, "film": [*STUDY["film"][:2], ["material.elastic_modulus", 4.0, None, "mm"], ["material.poisson_ratio", 0.4]]}, "sheet film, cell B3: [film] material.elastic_modulus needs a unit of pressure"),
+    ("item of a list", study("stability", 2, "kicks", "0.1; fast", None, "m/s"), "cell B2: [stability] kicks, item 2, must be one number"),
+    ("external link", linked(mass(Formula("[1]Sheet1!A1", 25.0), None, "g")), "cell B2 is a formula in a workbook that takes values from other files"),
+    ("title a number", {**STUDY, "study": [HEAD, ["title", 3.0]]}, "sheet study, cell B2: title must be text"),
+    ("section on the first sheet", {**STUDY, "study": [HEAD, ["mass", 3.0, None, "g"]]}, "cell B2: mass is no key of this sheet"),
+    ("extends itself", {**STUDY, "study": [HEAD, ["extends", "case.xlsx"]]}, "cell B2: extends leads back to a file"),
+    ("extends nothing", {**STUDY, "study": [HEAD, ["extends", "base.xlsx"]]}, "extends names no file beside this one"),
+    ("missing section", {k: v for k, v in STUDY.items() if k != "film"}, "case.xlsx lacks the section [film]"),
+    ("missing key", study("cage", 2, "gravity", 1.0, None, "g0"), "[cage] lacks: mass"),
+    ("no headings", {**STUDY, "cage": [["mass", 25.0, None, "g"]]}, "sheet cage has no headings key and value"),
+    ("column twice", {**STUDY, "cage": [["key", "value", "value"], ["mass", "25 g"]]}, 'is a second column of that heading; got "value"'),
+    ("sheet misspelt", {**STUDY, "cagge": STUDY["cage"]}, "sheet cagge is no section of a study. Did you mean cage?"),
+    ("nothing in it", {"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value in it"),
+    ("candidate: friction", candidate(3, 5, 7.0), "sheet candidates, cell E3: [ranking] candidates[1].friction.\"air, 440C\".mean"),
+    ("candidate: text", candidate(3, 5, "low"), "sheet candidates, cell E3: [ranking]"),
+    ("candidate: no name", candidate(3, 1, None), "cell A3 must name the candidate of row 3"),
+    ("candidate: heading", candidate(2, 5, "average"), 'cell E2 is no heading of candidates; got "average"'),
+    ("candidate: environment", {**STUDY, "candidates": [[], ["name", "mean"], ["Mine", 0.1]]}, "cell B1 must name the environment"),
+    ("candidate: twice", candidate(2, 6, "mean"), "cell F2 is a second column of that heading"),
+    ("candidate: named and given", candidate(3, 2, "Armalon"), "cell C3 is a property of a material that is also named"),
+    ("candidate: modulus", candidate(3, 3, -5.0), "cell C3: [ranking] candidates[1].material.elastic_modulus must be > 0"),
+    ("candidate: unheaded", candidate(2, 6, None), "cell F2 must say what the column holds"),
+]  # fmt: skip
+
+FILES = [
+    ("macros", zipped(parts(STUDY) | {"xl/vbaProject.bin": b"x"}), "has macros; they are never run"),
+    ("macros by type", zipped(parts(STUDY) | {"[Content_Types].xml": MACRO_TYPES}), "has macros"),
+    ("old macro sheet", zipped(parts(STUDY) | {"xl/macrosheets/sheet1.xml": "<x/>"}), "has macros"),
+    ("entities", zipped(parts(STUDY) | {SHEET_1: LAUGHS}), f"has a part that declares entities: {SHEET_1}"),
+    ("entities in texts", replaced("xl/styles.xml", "<styleSheet", "<!DOCTYPE x []><styleSheet"), "declares entities"),
+    ("UTF-16", zipped(parts(STUDY) | {SHEET_1: parts(STUDY)[SHEET_1].encode("utf-16")}), "part that is not UTF-8"),
+    ("other encoding", replaced(SHEET_1, "<worksheet", '<?xml version="1.0" encoding="utf-7"?><worksheet'), "not UTF-8"),
+    ("cut XML", replaced(SHEET_1, "</worksheet>", ""), f"has a damaged part, {SHEET_1}: no element found"),
+    ("rows out of order", replaced(SHEET_1, '<row r="3"', '<row r="1"'), "sheet bearing is damaged: row 1 is out of order"),
+    ("cell out of order", replaced(SHEET_1, 'r="B3"', 'r="A3"'), "sheet bearing is damaged: cell A3 is out of order"),
+    ("no such text", replaced(SHEET_1, "<v>13.0</v>", "<v>13.0</v></c><c r=\"C4\" t=\"s\"><v>5</v>"), "there is no text number 5"),
+    ("number that is none", replaced(SHEET_1, "<v>13.0</v>", "<v>13.0.0</v>"), '"13.0.0" is no number'),
+    ("missing sheet", zipped({k: v for k, v in parts(STUDY).items() if k != SHEET_1}), f"lacks its part {SHEET_1}"),
+    ("no workbook", zipped({"a.txt": "x"}), "is a zip file but no workbook"),
+    ("a document", zipped({"_rels/.rels": parts(STUDY)["_rels/.rels"].replace("xl/workbook", "word/document")}), "is a document but no workbook"),
+    ("OpenDocument", zipped({"mimetype": "application/vnd.oasis.opendocument.spreadsheet", "content.xml": "<x/>"}), "is an OpenDocument file"),
+    ("binary workbook", zipped(parts(STUDY) | {"xl/workbook.bin": b"x"}), "is a binary workbook, .xlsb"),
+    ("old kind or password", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "is an .xls workbook of the old kind, or has a password"),
+    ("text", b"key,value\n", "is not a zip file"),
+    ("empty", b"", "is empty"),
+    ("bomb", zipped(parts(STUDY) | {"xl/media/a.bin": bytes(9_000_000)}), "would expand by more than 100:1"),
+]  # fmt: skip
+
+ROWS = [["Time", "COF"], ["s", "-"], *([float(i), 0.1] for i in range(5))]
+
+
+def rows(row, column, value):
+    """Return the sheet of a log with one cell changed."""
+    found = [[*one] for one in ROWS]
+    found[row - 1][column - 1] = value
+    return {"a": found}
+
+
+LOGS = [
+    ("text among numbers", rows(5, 2, "high"), 'sheet a, cell B5 must be a number or empty; got "high"'),
+    ("number as text", rows(5, 2, "0,12"), "cell B5 must be a number or empty; got \"0,12\". Enter it as a number"),
+    ("truth value", rows(5, 2, True), "cell B5 must be a number or empty; got true"),
+    ("formula unsaved", rows(5, 2, Formula("A5/10")), 'cell B5 holds a formula without a saved value; got "=A5/10"'),
+    ("no names", {"a": ROWS[2:]}, "sheet a, row 1 has numbers without names above them"),
+    ("no table", {"a": ROWS[:2]}, "has no sheet with rows of numbers under a row of names"),
+    ("second table", {"a": [*ROWS, ["end of test"], [1.0, 2.0]]}, "row 9 has numbers again, after the table ended with row 8"),
+    ("unnamed column", {"a": [*ROWS, [5.0, 0.1, 3.0]]}, "cell C8 stands in a column that has no name"),
+    ("external link", linked(rows(5, 2, Formula("[1]a!A1", 0.1))), "cell B5 is a formula in a workbook that takes values from other files"),
+    ("dates in part", rows(5, 1, Shown(0.5, 1)), "column A holds both plain numbers and dates"),
+    ("dates with a unit", {"a": [["Time", "COF"], ["min", "-"], [Shown(0.5, 1), 0.1], [Shown(0.6, 1), 0.1]]}, 'column A holds dates or times of day, which have no unit; got "min"'),
+]  # fmt: skip
+
+
+def refusal(read, path):
+    """Return the one line with which a file is refused."""
+    with pytest.raises(InputError) as caught:
+        read(path)
+    text = str(caught.value)
+    assert "\n" not in text
+    assert text.startswith("case.")
+    return text
+
+
+def written(tmp_path, content):
+    """Return the path of a workbook with these sheets, or of a file with these bytes."""
+    path = tmp_path / "case.xlsx"
+    path.write_bytes(content if isinstance(content, bytes) else workbook(content))
+    return path
+
+
+def cases(table):
+    """Return a table's cases, named by what is wrong in each."""
+    return pytest.mark.parametrize(
+        ("content", "words"), [case[1:] for case in table], ids=[case[0] for case in table]
+    )
+
+
+def test_what_the_cases_begin_with_is_right(tmp_path):
+    """Without the mistakes the study, its candidates and the log are read."""
+    (tmp_path / "case.xlsx").write_bytes(workbook({**STUDY, "candidates": CANDIDATES}))
+    found = read_study(tmp_path / "case.xlsx")
+    assert (found.cage.mass, found.ranking.candidates[0].friction["air, 440C"].mean) == (0.025, 0.12)
+    (tmp_path / "log.xlsx").write_bytes(workbook({"a": ROWS}))
+    assert len(xlsx.read_tables(tmp_path / "log.xlsx")[0].columns[0]) == 5
+
+
+@cases(STUDIES)
+def test_a_wrong_study_is_refused_by_the_cell(tmp_path, content, words):
+    """One mistake in a workbook that is otherwise right: sheet, cell, rule, value and cure."""
+    assert words in refusal(read_study, written(tmp_path, content))
+
+
+@cases(FILES)
+@pytest.mark.parametrize("read", [read_study, xlsx.read_tables], ids=["study", "log"])
+def test_a_wrong_file_is_refused_as_study_and_as_log(tmp_path, read, content, words):
+    """What is wrong with the file itself is said in the same words to both readers."""
+    assert words in refusal(read, written(tmp_path, content))
+
+
+@cases(LOGS)
+def test_a_wrong_log_is_refused_by_the_cell(tmp_path, content, words):
+    """What is neither a number nor missing is never left out in silence."""
+    assert words in refusal(xlsx.read_tables, written(tmp_path, content))
