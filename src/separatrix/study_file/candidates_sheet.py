@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.spreadsheet import Cell
 from separatrix.study_file.document import Document, Entry
 from separatrix.study_file.sheet_cells import SheetText
-from separatrix.study_file.sheet_values import number_text, plain_number
+from separatrix.study_file.sheet_values import is_list, list_of, number_text, plain_number
 from separatrix.toml_values import nearest
 from separatrix.units import shown
 
@@ -112,11 +112,18 @@ def _candidate(
         path = _path(column)
         _set(item, path, _value(cell, column), where)
         document.cells[f"[ranking] candidates[{number}].{_dotted(path)}"] = where
+        if column.what == "mean":
+            document.cells[f"[ranking] candidates[{number}].{_dotted(path[:-1])}"] = where
     if item and "name" not in item:
         at = next((column.number for column in columns if column.what == "name"), 1)
         rule = f"must name the candidate of row {row}"
         raise InputError(sheet.at(row, at), rule, cure="Name it, or clear the row.")
-    return item
+    return {key: _frictions(part) if key == "friction" else part for key, part in item.items()}
+
+
+def _frictions(by_environment: dict[str, Any]) -> dict[str, Any]:
+    """Return frictions with a mean alone as that: a number, or what is known of an uncertain one."""
+    return {name: one["mean"] if set(one) == {"mean"} else one for name, one in by_environment.items()}
 
 
 def _path(column: _Column) -> tuple[str, ...]:
@@ -144,4 +151,6 @@ def _value(cell: Cell, column: _Column) -> Any:
         if column.what == "standard_deviation" and cell.format == "percent":
             return f"{number_text(float(f'{100.0 * cell.value:.12g}'))} %"
         return f"{number_text(cell.value)} {column.unit}" if column.unit else plain_number(cell.value)
+    if isinstance(cell.value, str) and column.environment and is_list(column.what, cell.value):
+        return list_of(cell.value, "")
     return cell.value

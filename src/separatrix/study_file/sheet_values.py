@@ -32,7 +32,7 @@ def written_value(field: Field) -> Any:
     if isinstance(text, str) and is_list(field.key, text):
         if field.spread is not None:
             raise InputError(field.spread_place, "is a width beside a list", cure="Clear one of them.")
-        return [_item(part.strip(), field.unit) for part in text.split(SEPARATOR) if part.strip()]
+        return list_of(text, field.unit)
     if field.spread is not None:
         return _spread(field)
     value = _alone(field.value, field.unit, field.value_place)
@@ -44,6 +44,11 @@ def is_list(key: str, text: str) -> bool:
     parts = [part.strip() for part in text.split(SEPARATOR)]
     numbers = len(parts) > 1 and all(_BEGINS_AS_NUMBER.match(part) for part in parts if part)
     return numbers or _takes_list(key)
+
+
+def list_of(text: str, unit: str) -> list[Any]:
+    """Return the items of a list in one cell."""
+    return [_item(part.strip(), unit) for part in text.split(SEPARATOR) if part.strip()]
 
 
 def number_text(value: float) -> str:

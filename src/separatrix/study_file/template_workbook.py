@@ -8,6 +8,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from separatrix import library
+from separatrix.errors import InputError
 from separatrix.spreadsheet.cells import column_name
 from separatrix.spreadsheet.writing import (
     HEADING,
@@ -151,6 +152,8 @@ def _rows(one: TemplateKey, values: Mapping[str, Any]) -> Iterator[tuple[str, Wr
 
 def _candidates(sheet: Worksheet, items: Sequence[Mapping[str, Any]], choices: _Choices) -> None:
     """Write the candidates: their frictions by environment, with room for more of them."""
+    for item in items:
+        _check_columns(item)
     columns = list(_candidate_columns(items))
     for number, column in enumerate(columns, 1):
         put(sheet, 1, number, column.above, HEADING, exact=True)
@@ -163,6 +166,15 @@ def _candidates(sheet: Worksheet, items: Sequence[Mapping[str, Any]], choices: _
         choices.add(sheet, row, "cage.material", "")
     sheet.freeze_panes = "B3"
     widths(sheet, *(26.0 if column.below in ("name", "material") else 20.0 for column in columns))
+
+
+def _check_columns(item: Mapping[str, Any]) -> None:
+    """Refuse a friction in a form that has no columns."""
+    for environment, friction in item["friction"].items():
+        if isinstance(friction, Mapping) and not set(friction) <= set(MEASURED):
+            where, forms = f"{item['name']}, {environment}", ", ".join(friction)
+            cure = 'Write it like "0.12 +- 20 %".'
+            raise InputError(where, f"has no column in a workbook for {forms}", cure=cure)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,9 +192,9 @@ class _CandidateColumn:
             value = value.get(key) if isinstance(value, Mapping) else None
         if self.below == "mean" and value is None:
             value = item.get("friction", {}).get(self.above)
-        if isinstance(value, Mapping):
+        if value is None or isinstance(value, Mapping):
             return None
-        written = next(iter(rows_of(self.below, value)))[1] if value is not None else Written()
+        written = next(iter(rows_of(self.below, value)))[1]
         return written.value if written.unit in ("", self.above) and not written.spread else value
 
 

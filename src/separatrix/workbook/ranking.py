@@ -67,6 +67,7 @@ WHICH = (
     Column(key="name", heading="material", width=24),
 )
 OVERALL = "overall"
+ALWAYS = frozenset({"rank", "name", "verdict"})
 ELSEWHERE = frozenset({"within_reach"})
 
 
@@ -88,7 +89,7 @@ def add_evidence(book: Workbook, document: Mapping[str, Any]) -> None:
 
 def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]) -> None:
     """Write one line for each candidate, and the columns in which any has a value."""
-    given = [column for column in columns if _is_given(rows, column.key)]
+    given = [column for column in columns if column.key in ALWAYS or _is_given(rows, column.key)]
     headings(sheet, [column.heading for column in given], keep_columns=2)
     for number, row in enumerate(rows, 2):
         for place, column in enumerate(given, 1):

@@ -1,0 +1,362 @@
+"""Workbooks that are written: a template reads back as the study, results hold what `rank.json` does."""
+
+import dataclasses
+import json
+import time
+import zipfile
+
+import openpyxl
+import pytest
+from minimal_xlsx import Formula, Shown, workbook
+
+from separatrix.cli import main, run
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.spreadsheet import open_workbook
+from separatrix.spreadsheet.writing import (
+    add_sheet,
+    new_workbook,
+    put,
+    sheet_title,
+    text_for_cell,
+    workbook_bytes,
+)
+from separatrix.study_file import read_study, shipped_studies
+from separatrix.study_file.document import SECTIONS, load
+from separatrix.study_file.sections import _READERS
+from separatrix.study_file.shipped import template_path
+from separatrix.study_file.template_rows import _REQUIRED, _WHOLE, meaning, template_keys
+from separatrix.study_file.template_workbook import study_workbook, template_workbook
+from separatrix.workbook import results_workbook
+
+STUDY = """
+title = "= A title that begins like a formula"
+extends = "cryogenic-turbopump"
+
+[film]
+thickness = "0.5 um +- 20 %"
+race_friction = { between = [0.08, 0.12] }
+
+[cage]
+mass = "25.0000000000000001 g"
+pocket_clearance = { mean = "0.6 mm", standard_deviation = "20 um" }
+pocket_position_scatter = "10 um"
+
+[stability]
+kicks = ["0.1 m/s", "50 cm/s", "2 m/s"]
+runs = 4
+duration = "4 ms"
+restitution_factors = [0.3, 0.6, 0.9]
+
+[[ranking.candidates]]
+name = "=cmd|' /C calc'!A0"
+friction."liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.02, count = 8, source = "-2+3" }
+friction."air" = 0.2
+material = { elastic_modulus = "5 GPa", poisson_ratio = 0.4 }
+
+[[ranking.candidates]]
+name = "@SUM(1)"
+friction = { "air" = "0.1 +- 30 %" }
+material = "Armalon"
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with the study above."""
+    place = tmp_path_factory.mktemp("workbooks")
+    (place / "case.toml").write_text(STUDY)
+    return place
+
+
+@pytest.fixture(scope="module")
+def answer(folder):
+    """The document of a small ranking, as it is saved, and the folder of the answer."""
+    small = STUDY.replace('thickness = "0.5 um +- 20 %"', 'thickness = "0.5 um"')
+    small = small.replace("{ between = [0.08, 0.12] }", "0.1").replace('"0.1 +- 30 %"', "0.1")
+    small = small.replace('{ mean = "0.6 mm", standard_deviation = "20 um" }', '"0.6 mm"')
+    (folder / "small.toml").write_text(small)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "_write_data", lambda *_: None)  # the pictures, which take long
+        assert main(["rank", str(folder / "small.toml"), "--out", str(folder / "out"), "--quiet"]) == 0
+    return json.loads((folder / "out" / "rank.json").read_text())
+
+
+def rewritten(path, folder):
+    """Return a study read from the workbook that its own file is turned into."""
+    there = folder / f"{path.stem}.xlsx"
+    there.write_bytes(study_workbook(load(path)))
+    return read_study(there)
+
+
+@pytest.mark.parametrize("name", ["template", *shipped_studies()])
+def test_a_study_written_as_a_workbook_reads_back_the_same(name, tmp_path):
+    """Every number to the last bit, every material and every candidate."""
+    path = shipped_studies().get(name, template_path())
+    assert rewritten(path, tmp_path) == read_study(path)
+
+
+def test_every_way_to_write_a_value_has_cells(folder):
+    """Distributions, lists with and without one unit, long numbers, tables, candidates in place."""
+    expected = read_study(folder / "case.toml")
+    found = rewritten(folder / "case.toml", folder)
+    assert found == expected
+    assert set(found.distributions) == {
+        *("film.thickness", "film.race_friction", "cage.pocket_clearance", "ranking.@SUM(1).air"),
+    }
+    for key, one in expected.distributions.items():
+        assert found.distributions[key].quantile(0.3) == one.quantile(0.3)
+
+
+def test_the_template_is_what_the_verb_new_writes(tmp_path, capsys):
+    """`new --excel` writes the workbook, once; `check` reads it; its name must be that of a workbook."""
+    path = tmp_path / "mine.xlsx"
+    assert main(["new", "--excel", str(path)]) == 0
+    assert path.read_bytes() == template_workbook()
+    assert main(["check", str(path)]) == 0
+    assert "mine.xlsx, sheet cage, cell B2" in capsys.readouterr().out
+    for options in (
+        ["--excel", str(path)],
+        ["--excel", str(tmp_path / "a.toml")],
+        [str(tmp_path / "b.xlsx")],
+    ):
+        assert main(["new", *options]) == 2
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]
+
+
+def test_the_template_says_what_the_text_file_says(tmp_path):
+    """Every key of the text is a row of its section's sheet, with a remark that is whole."""
+    (tmp_path / "t.xlsx").write_bytes(template_workbook())
+    book = openpyxl.load_workbook(tmp_path / "t.xlsx")
+    assert book.sheetnames == ["instructions", "study", *SECTIONS, "candidates", "lists"]
+    for one in template_keys():
+        assert not meaning(one).endswith((":", ",", " of"))
+        if one.section in SECTIONS:
+            keys = [cell.value.split(".")[0] for cell in book[one.section]["A"][1:] if cell.value]
+            assert one.key in keys
+    known = {f"{one.section}.{one.key}" for one in template_keys()}
+    required = {f"{section}.{key}" for section, keys in _REQUIRED.items() for key in keys}
+    assert set(_WHOLE) | required <= known
+    assert known - {f"{s}.{k}" for s in _READERS for k in _READERS[s]} == {
+        *(".title", ".extends", "ranking.candidates.name", "ranking.candidates.friction"),
+        "ranking.candidates.material",
+    }
+
+
+def test_choices_have_lists_of_what_may_be_chosen(tmp_path):
+    """The guidance, the units of a length and the materials of balls can be chosen from lists."""
+    (tmp_path / "t.xlsx").write_bytes(template_workbook())
+    book = openpyxl.load_workbook(tmp_path / "t.xlsx")
+    listed = {}
+    for sheet, key in (("cage", "guidance"), ("bearing", "ball_material"), ("bearing", "ball_diameter")):
+        row = next(cell.row for cell in book[sheet]["A"] if cell.value == key)
+        rules = {str(rule.sqref): rule.formula1 for rule in book[sheet].data_validations.dataValidation}
+        cells = (
+            rules[f"{'D' if key == 'ball_diameter' else 'B'}{row}"].removeprefix("=lists!").replace("$", "")
+        )
+        listed[key] = [cell.value for (cell,) in book["lists"][cells]]
+    assert listed["guidance"] == ["outer", "inner", "ball"]
+    assert "Si3N4" in listed["ball_material"]
+    assert listed["ball_diameter"][:3] == ["m", "cm", "mm"]
+
+
+HEAD = ["key", "value", "+-", "unit"]
+
+
+def variant(path, *rows, **sheets):
+    """Return the study of a workbook that changes the film of the shipped study."""
+    path.write_bytes(
+        workbook({"study": [HEAD, ["extends", "cryogenic-turbopump"]], "film": [HEAD, *rows], **sheets})
+    )
+    return read_study(path)
+
+
+def test_the_width_beside_a_value_is_what_stands_behind_it_in_text(tmp_path):
+    """A percentage as number or text, and a width in the value's unit: two deviations, as behind ``+-``."""
+    for width in (Shown(0.2, 2), "20 %", 0.1, "0.1", "100 nm"):
+        found = variant(tmp_path / "a.xlsx", ["thickness", 0.5, width, "um"])
+        assert found.distributions["film.thickness"].standard_deviation == pytest.approx(5e-8, rel=1e-12)
+    found = variant(tmp_path / "a.xlsx", ["race_friction", 0.1, Shown(0.2, 2)])
+    assert found.distributions["film.race_friction"].standard_deviation == pytest.approx(0.01, rel=1e-12)
+
+
+def test_a_formula_counts_with_its_saved_value_and_is_named(tmp_path):
+    """The value is taken and the study says that it came from a formula, and from which cell."""
+    with pytest.warns(ValidityWarning, match=r"a\.xlsx: the cell holds a formula \(film!B2\)"):
+        found = variant(tmp_path / "a.xlsx", ["thickness", Formula("1/2", 0.5), None, "um"])
+    assert found.film.thickness == 5e-7
+
+
+def test_sheets_of_ones_own_and_rows_without_value_are_passed_over(tmp_path):
+    """A sheet of calculations, with formulas and all, and a key without a value change nothing."""
+    sheets = {"my sums": [["a", Formula("1+1")], ["b", 2.0]], "cage": [HEAD, ["mass", None, None, "g"]]}
+    found = variant(tmp_path / "a.xlsx", ["thickness", 0.25, None, "um"], **sheets)
+    assert found.film.thickness == 2.5e-7
+    assert found.cage == read_study("cryogenic-turbopump").cage
+
+
+def test_headings_may_stand_in_any_order(tmp_path):
+    """Columns are found by their headings; units and widths may be absent when values bring them."""
+    film = [["meaning", "value", "key"], ["thin", "0.25 um", "thickness"]]
+    top = [["key", "value"], ["extends", "cryogenic-turbopump"]]
+    (tmp_path / "a.xlsx").write_bytes(workbook({"study": top, "film": film}))
+    assert read_study(tmp_path / "a.xlsx").film.thickness == 2.5e-7
+
+
+# Results
+
+
+def cells(path):
+    """Return every cell of a workbook that holds something, with its sheet."""
+    return [
+        (s.title, c) for s in openpyxl.load_workbook(path) for row in s for c in row if c.value is not None
+    ]
+
+
+def test_rank_writes_its_workbook_beside_the_document(folder, answer):
+    """The file that `rank --out` leaves is made from the saved document alone, byte for byte."""
+    results_workbook(answer, folder / "again.xlsx")
+    assert (folder / "again.xlsx").read_bytes() == (folder / "out" / "rank.xlsx").read_bytes()
+
+
+def test_numbers_are_those_of_the_document(folder, answer):
+    """Friction, threshold and margin stand in the sheets as the document has them, to the last bit."""
+    book = openpyxl.load_workbook(folder / "out" / "rank.xlsx")
+    for name, rows in [
+        ("overall", answer["overall"]),
+        *((e["name"], e["materials"]) for e in answer["environments"]),
+    ]:
+        table = list(book[name].values)
+        for row, record in zip(table[1:], rows, strict=True):
+            shown = dict(zip(table[0], row, strict=True))
+            assert shown["rank"] == record["rank"]
+            assert shown["friction (-)"] == record["friction"]
+            if record["verdict"] is not None:
+                assert shown["restitution threshold (-)"] == record["restitution_threshold"]
+                assert shown["margin (-)"] == record["margin"]
+            assert shown["verdict"] == (record["verdict"] or "not measured")
+    assert book["overall"].freeze_panes == "C2"
+    assert book["overall"]["D2"].number_format == "0.000"
+
+
+def test_inputs_and_sources_are_there(folder, answer):
+    """Each input has its unit and origin, each friction its scatter; about has version and seed."""
+    book = openpyxl.load_workbook(folder / "out" / "rank.xlsx")
+    lines = {(row[0], row[1]): row[2:] for row in book["inputs"].values}
+    assert lines["film", "thickness"] == (5e-7, "m", 'small.toml, line 6: "0.5 um"')
+    assert lines["cage", "gravity"] == (0, "m/s2", "default")
+    assert {row[1] for row in book["materials"].values} >= {"440C", "PTFE transfer film"}
+    frictions = [row[:5] for row in book["frictions"].values]
+    assert ("'=cmd|' /C calc'!A0", "liquid nitrogen, 440C", 0.12, 0.02, 8) in frictions
+    about = dict(row for row in book["about"].values if row[0])
+    assert about["program"] == f"separatrix {answer['separatrix_version']}, rank"
+    assert (about["seed"], about["kicks (m/s)"]) == (1, "0.1; 0.5; 2.0")
+
+
+EVIL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+1", "-2+3", "\t=1+1", "\r=1", " =1+1", "＝1+1", "\x07bell"]
+
+
+def with_text_everywhere(value, text):
+    """Return a document with every text in it replaced, except those that mean something to us."""
+    if isinstance(value, dict):
+        kept = ("verdict", "unit")
+        return {k: v if k in kept else with_text_everywhere(v, text) for k, v in value.items()}
+    if isinstance(value, list):
+        return [with_text_everywhere(item, text) for item in value]
+    return text if isinstance(value, str) else value
+
+
+@pytest.mark.parametrize("text", EVIL)
+def test_no_text_is_ever_a_formula(answer, tmp_path, text):
+    """Whatever a user writes, in every place of the document: text cells, no formula, no beginning of one."""
+    results_workbook(with_text_everywhere(answer, text), tmp_path / "evil.xlsx")
+    found = cells(tmp_path / "evil.xlsx")
+    assert {cell.data_type for _, cell in found} <= {"s", "n"}
+    texts = [cell for _, cell in found if isinstance(cell.value, str)]
+    assert not [cell.value for cell in texts if cell.value.lstrip()[:1] in "=+@＝\t\r"]
+    assert not [cell.value for cell in texts if cell.value.startswith("-") and cell.value != "-"]
+    written = [cell for cell in texts if cell.value == text_for_cell(text)]
+    assert len(written) > 50
+    assert all(cell.quotePrefix for cell in written) == (text_for_cell(text)[0] == "'")
+    with zipfile.ZipFile(tmp_path / "evil.xlsx") as archive:
+        sheets = [archive.read(n) for n in archive.namelist() if n.startswith("xl/worksheets/")]
+    assert not [part for part in sheets if b"<f" in part]
+
+
+def test_a_template_keeps_such_a_text_as_it_is(folder):
+    """In a study the text must come back unchanged: a text cell marked as quoted, no apostrophe."""
+    (folder / "case.xlsx").write_bytes(study_workbook(load(folder / "case.toml")))
+    found = {cell.value: cell for _, cell in cells(folder / "case.xlsx")}
+    for text in ("=cmd|' /C calc'!A0", "@SUM(1)", "= A title that begins like a formula", "-2+3"):
+        assert (found[text].data_type, found[text].quotePrefix) == ("s", True)
+
+
+def test_the_same_content_gives_the_same_bytes(answer, tmp_path, monkeypatch):
+    """Neither date nor time nor the order of making shows in the file."""
+    results_workbook(answer, tmp_path / "now.xlsx")
+    now = time.time()
+    monkeypatch.setattr(time, "time", lambda: now + 1e7)
+    monkeypatch.setattr(time, "localtime", lambda *_: time.gmtime(now + 1e7))
+    results_workbook(answer, tmp_path / "later.xlsx")
+    assert (tmp_path / "now.xlsx").read_bytes() == (tmp_path / "later.xlsx").read_bytes()
+
+
+def test_an_unfinished_answer_has_a_workbook_too(answer, tmp_path):
+    """Without a curve and without verdicts, as an interrupt may leave it, what is there is written."""
+    bare = dict.fromkeys(answer["overall"][0]) | {"name": "A", "reason": "Not finished.", "friction": 0.1}
+    document = answer | {"stability": None, "overall": [bare], "environments": []}
+    results_workbook(document, tmp_path / "bare.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "bare.xlsx")
+    assert "stability curve" not in book.sheetnames
+    assert ("A", "not finished") in [row[1:3] for row in book["overall"].values]
+
+
+def test_names_of_sheets_are_legal_and_differ():
+    """At most 31 characters, none of the forbidden ones, no two the same in any case."""
+    names: list[str] = []
+    for wanted in ("a/b:c*[d]?", "x" * 40, "X" * 40, "", "'quoted'", "a/b:c*[d]?"):
+        names.append(sheet_title(wanted, names))
+    assert names == ["a-b-c--d--", "x" * 31, "X" * 27 + " (2)", "sheet", "quoted", "a-b-c--d-- (2)"]
+
+
+def test_what_we_write_we_read(tmp_path):
+    """Numbers and texts put into cells come back through our own reader."""
+    book = new_workbook()
+    sheet = add_sheet(book, "a")
+    for column, value in enumerate((1.5, -3, "-", "=x", True, None, "ends"), 1):
+        put(sheet, 1, column, value)
+    (tmp_path / "a.xlsx").write_bytes(workbook_bytes(book))
+    ((_, found),) = open_workbook(tmp_path / "a.xlsx").rows("a")
+    assert [found[n].value if n in found else None for n in range(1, 8)] == [
+        1.5,
+        -3,
+        "-",
+        "'=x",
+        "yes",
+        None,
+        "ends",
+    ]
+
+
+def test_a_study_in_a_workbook_is_ranked(folder, answer, capsys):
+    """Every verb takes a workbook: its ranking is that of the same study as text."""
+    (folder / "small.xlsx").write_bytes(study_workbook(load(folder / "small.toml")))
+    capsys.readouterr()
+    assert main(["rank", str(folder / "small.xlsx"), "--json", "--quiet"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["overall"] == answer["overall"]
+
+
+def test_a_friction_without_columns_is_refused(tmp_path):
+    """Bounds of a friction have no columns in the sheet of candidates: said, and nothing is left out."""
+    (tmp_path / "a.toml").write_text(STUDY.replace('"0.1 +- 30 %"', "{ between = [0.1, 0.2] }"))
+    with pytest.raises(InputError, match=r"^@SUM\(1\), air has no column in a workbook for between"):
+        study_workbook(load(tmp_path / "a.toml"))
+
+
+def test_variants_of_a_workbook(folder):
+    """A text file may extend a workbook, and a workbook may be extended by one."""
+    (folder / "base.xlsx").write_bytes(study_workbook(load(folder / "case.toml")))
+    (folder / "thin.toml").write_text('extends = "base.xlsx"\n[film]\nthickness = "0.1 um"\n')
+    found, base = read_study(folder / "thin.toml"), read_study(folder / "base.xlsx")
+    assert found.film.thickness == 1e-7
+    assert dataclasses.replace(found.cage) == base.cage
