@@ -1,9 +1,11 @@
 """Where running-in ends: a fall fitted in correlated noise, cut where what is left of it does not count.
 
 A straight line and an exponential excess, A exp(-x/L), are fitted by generalised least squares with noise
-whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. If the excess is believed, the test
-is cut where the part of it that stays in the mean is 15 % of the standard error of that mean. What is left
-is asked again, so that a peak or a fall that is no exponential is cut in pieces.
+whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. The excess is believed if it fits
+better and if the start lies farther from the line than any later stretch as long. The test is then cut where
+what stays of it in the mean is 15 % of the standard error of that mean; what is left is asked again, so that
+a peak or a fall that is no exponential is cut in pieces. All lengths and correlations count with their
+likelihood.
 
 References
 ----------
@@ -120,8 +122,22 @@ def _falls(values: Array) -> _Falls | None:
         return None
     weights = np.exp(-0.5 * (deviance - deviance.min()))
     weights /= weights.sum()
+    row, column = np.unravel_index(int(np.argmax(weights)), weights.shape)
+    if not _stands_out(values - coefficients[row, column, :2] @ straight, float(LENGTHS[column])):
+        return None
     density = float((weights * variances / (1.0 - CORRELATIONS[:, None]) ** 2).sum())
     return _Falls(weights=weights, amplitudes=coefficients[..., -1], density=density)
+
+
+def _stands_out(residual: Array, length: float) -> bool:
+    """Return whether the start lies farther from the straight line than any later stretch as long.
+
+    A slow oscillation has a fall at its start too, and others like it later on.
+    """
+    size = int(np.clip(round(length * residual.size), 1, residual.size // 3))
+    count = residual.size // size
+    means = np.abs(residual[: size * count].reshape(count, size).mean(axis=1))
+    return bool(means[0] > means[1:].max())
 
 
 def _fits(designs: Array, values: Array) -> tuple[Array, Array, Array]:

@@ -1,0 +1,134 @@
+"""Statistics of the reduction: intervals that hold the truth, and second roads to its numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+from synthetic_friction import Recipe, made, recipes
+
+from separatrix.tribometer import run_in, steady
+from separatrix.tribometer.reduction import reduce_log
+
+LOGS = 200
+CHANCE = 1e-4
+"""Probability with which a right reduction fails a test of coverage."""
+
+
+def held(recipes_of_logs, seed):
+    """Share of the logs whose interval holds the truth."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for recipe in recipes_of_logs:
+        known = made(recipe, rng)
+        test = reduce_log(known.log)
+        low, high = test.interval
+        found.append(low <= known.truth(test.run_in_end, test.steady_end) <= high)
+    return sum(found)
+
+
+def test_the_interval_holds_the_known_friction_of_logs_of_every_kind():
+    """Of 200 logs no fewer and no more hold it than a coverage of 93 to 97 % allows, but once in 10 000."""
+    rng = np.random.default_rng(5)
+    kinds = [replace(recipe, rows=min(recipe.rows, 2000)) for recipe in recipes(LOGS, rng)]
+    least, most = binom.ppf(CHANCE, LOGS, 0.93), binom.ppf(1 - CHANCE, LOGS, 0.97)
+    assert least <= held(kinds, 6) <= most
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.01, 0.03])
+def test_the_standard_error_is_the_scatter_of_means(correlation):
+    """The mean of 400 squared errors over the stated variance: one within a factor of the t distribution.
+
+    Without the correlation the stated error would be too small by sqrt(2 tau/step), 6 for 1 % of 2000 rows.
+    """
+    rng = np.random.default_rng(9)
+    ratios = []
+    for _ in range(400):
+        values = (
+            made(Recipe(rows=512, correlation=correlation), rng).log.friction.reshape(256, 2).mean(axis=1)
+        )
+        found = steady.steady_mean(values)
+        ratios.append((found.mean - 0.12) / found.standard_error)
+    within_one = np.mean(np.abs(ratios) < 0.7)
+    assert 0.42 < within_one < 0.60  # t holds 0.49 to 0.51 within 0.7; 400 logs scatter by 0.025
+
+
+def test_a_white_series_has_the_textbook_error():
+    """Without correlation the standard error is s over the root of n, to the scatter of its own estimate."""
+    rng = np.random.default_rng(2)
+    found = [steady.steady_mean(rng.standard_normal(256)).standard_error for _ in range(200)]
+    assert np.median(found) == pytest.approx(1 / 16, rel=0.05)  # 60 cosines: 9 % each, 200 of them
+
+
+def test_a_straight_line_is_no_scatter():
+    """Adding a line changes the mean by its middle and the change by its rise, and no error."""
+    values = np.random.default_rng(3).standard_normal(200)
+    line = 5.0 * ((np.arange(200) + 0.5) / 200) - 1.0
+    plain, tilted = steady.steady_mean(values), steady.steady_mean(values + line)
+    assert tilted.mean - plain.mean == pytest.approx(1.5, rel=1e-12)
+    assert tilted.change - plain.change == pytest.approx(5.0, rel=1e-12)
+    assert tilted.standard_error == pytest.approx(plain.standard_error, rel=1e-9)
+
+
+def test_cosines_keep_the_sum_of_squares():
+    """Parseval: the projections hold all that is left when mean and line are taken off."""
+    values = np.random.default_rng(4).standard_normal(100)
+    x = np.arange(100.0)
+    left = values - np.polyval(np.polyfit(x, values, 1), x)
+    assert (steady.cosines(values) ** 2).sum() == pytest.approx((left**2).sum(), rel=1e-12)
+
+
+def test_scale_and_level_of_friction_change_nothing_but_themselves():
+    """Friction times 3 plus 0.1: cut, degrees of freedom and spans stay, errors are times 3."""
+    known = made(Recipe(rows=1000, run_in=0.1, correlation=0.003), np.random.default_rng(8)).log
+    plain, other = reduce_log(known), reduce_log(replace(known, friction=3.0 * known.friction + 0.1))
+    assert other.run_in_end == plain.run_in_end
+    assert other.degrees_of_freedom == plain.degrees_of_freedom
+    assert other.standard_error == pytest.approx(3.0 * plain.standard_error, rel=1e-9)
+    assert other.friction == pytest.approx(3.0 * plain.friction + 0.1, rel=1e-12)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
+def test_an_exponential_is_cut_where_its_rest_is_small(share):
+    """A fall of known size and length: what stays of it behind the cut, integrated, is the 15 % or less."""
+    rng = np.random.default_rng(11)
+    n, size = 256, 1.0
+    x = (np.arange(n) + 0.5) / n
+    values = size * np.exp(-3.0 * x / share) + 0.02 * rng.standard_normal(n)
+    found = run_in.run_in(values)
+    behind = x > found.end
+    rest = size * np.exp(-3.0 * x[behind] / share).mean()
+    error = 0.02 / np.sqrt(behind.sum())
+    assert found.ends
+    assert rest < 2 * run_in.SHARE * error  # the fall is known to half of its rest
+    assert found.end < 4.0 * share  # exp(-12) of it is left there
+
+
+def test_a_fall_that_is_no_exponential_is_cut_too():
+    """A straight fall over a fifth of the test, which then stops: its end is found to 3 % of the test."""
+    rng = np.random.default_rng(12)
+    x = (np.arange(256) + 0.5) / 256
+    values = np.maximum(0.0, 1.0 - x / 0.2) + 0.05 * rng.standard_normal(256)
+    assert 0.17 < run_in.run_in(values).end < 0.35
+
+
+def test_noise_and_drift_are_seldom_cut():
+    """Without running-in fewer than one of ten logs is cut, for noise with and without correlation."""
+    rng = np.random.default_rng(13)
+    cut = [
+        run_in.run_in(made(Recipe(rows=768, drift=0.02, correlation=c), rng).log.friction[::3]).end > 0.02
+        for c in (0.0, 0.003, 0.01, 0.03)
+        for _ in range(25)
+    ]
+    assert sum(cut) <= 10
+
+
+def test_a_test_too_short_for_its_correlation_is_told_rather_than_trusted():
+    """A correlation of a quarter of the test: three of four logs say so, or that they hold few values."""
+    rng = np.random.default_rng(14)
+    words = ("too short", "short for its scatter", "does not end")
+    tests = [reduce_log(made(Recipe(rows=600, correlation=0.25), rng).log) for _ in range(40)]
+    told = [any(word in flag for flag in test.flags for word in words) for test in tests]
+    assert sum(told) >= 30

@@ -1,0 +1,257 @@
+"""Reduction of a log: what is cut, averaged, told and kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_friction import Recipe, made
+
+from separatrix.figures.tribometer import heading, page
+from separatrix.results import labelled
+from separatrix.results.friction_tests import page_data
+from separatrix.tribometer.log import Conditions, RawLog
+from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
+
+QUIET = Recipe(rows=4000, noise=0.004)
+
+
+def log(recipe=QUIET, seed=0, *, knows_cycle=True, **changes):
+    """A synthetic log; changes are columns, or functions of the time."""
+    one = made(recipe, np.random.default_rng(seed), knows_cycle=knows_cycle).log
+    return replace(one, **{k: v(one.time) if callable(v) else v for k, v in changes.items()})
+
+
+def told(test: TestFriction, words: str) -> str:
+    """The one flag that begins with these words; empty if there is none."""
+    found = [flag for flag in test.flags if flag.startswith(words)]
+    assert len(found) <= 1
+    return found[0] if found else ""
+
+
+def test_a_quiet_test_draws_no_flag():
+    """Steady friction with white noise has nothing to tell; its mean is within 4 standard errors."""
+    test = reduce_log(log())
+    assert test.flags == ()
+    assert abs(test.friction - 0.12) < 4 * test.standard_error
+    assert test.run_in_axis == "time"
+    assert test.cycles == 197  # 4000 rows of 20.3 a cycle are 197.04
+
+
+def test_source_and_conditions_are_kept():
+    """What the log is stays with its friction."""
+    one = log()
+    test = reduce_log(one)
+    assert (test.source, test.checksum, test.conditions) == (one.source, one.checksum, one.conditions)
+
+
+def test_the_cut_can_be_given_in_time_distance_or_cycles():
+    """The same cut in three units gives the same mean; its method says that it was given."""
+    one = log(knows_cycle=True)
+    one = replace(one, distance=0.5 * one.time, cycles=one.time / one.conditions.cycle_time)
+    cycle = one.conditions.cycle_time
+    texts = (f"{30 * cycle:.6f} s", f"{15 * cycle:.6f} m", "30 cycles")
+    found = [reduce_log(one, ReductionOptions(run_in_end=text)) for text in texts]
+    assert {test.run_in_method for test in found} == {"given"}
+    assert [test.run_in_axis for test in found] == ["time", "distance", "cycles"]
+    assert found[0].friction == found[1].friction == found[2].friction
+    assert found[2].run_in_end == pytest.approx(30, abs=0.06)  # of the first row behind it
+
+
+def test_a_given_cut_is_kept_to_the_row():
+    """Without cycles the steady part begins with the first row behind the cut."""
+    test = reduce_log(log(knows_cycle=False), ReductionOptions(run_in_end="100 s"))
+    assert 100.0 <= test.run_in_end < 100.11  # the first row behind it; rows are 0.1 s apart
+    assert test.steady_rows == pytest.approx(3000, abs=1)
+
+
+def test_running_in_that_does_not_end_is_told():
+    """An excess that falls over the whole test is flagged, with the place of the last cut."""
+    test = reduce_log(log(replace(QUIET, run_in=0.9, excess=0.2)))
+    assert told(test, "Running-in does not end")
+    assert test.run_in_end > 0.7 * 400
+
+
+def test_long_running_in_is_told():
+    """A cut behind the middle is told with its share."""
+    test = reduce_log(log(replace(QUIET, run_in=0.3, excess=0.4)))
+    assert told(test, "Running-in takes ")
+
+
+def test_modulation_within_a_cycle_does_not_shift_the_mean():
+    """Half a turn too much shifts the mean of rows by 2 A/pi over the turns; whole cycles keep it."""
+    recipe = Recipe(rows=250, noise=1e-4, modulation=0.05, rows_of_a_cycle=20.0)
+    time = np.arange(250) * recipe.step
+    friction = 0.12 + 0.05 * np.sin(2 * np.pi * time / 2.0)
+    one = log(recipe, friction=friction)
+    assert reduce_log(one).cycles == 12
+    assert abs(reduce_log(one).friction - 0.12) < 1e-9  # sines over whole turns cancel to rounding
+    rows = reduce_log(one, ReductionOptions(whole_cycles=False)).friction
+    assert rows - 0.12 == pytest.approx(0.05 * 2 / np.pi * 0.5 / 12.5, rel=0.05)  # 20 rows a turn: 1 %
+
+
+def test_the_cycle_can_be_found_if_asked():
+    """Nobody's cycle is guessed; with the option the line of the spectrum gives it, and that is told."""
+    one = log(replace(QUIET, modulation=0.03), knows_cycle=False)
+    assert reduce_log(one).cycles == 0
+    found = reduce_log(one, ReductionOptions(find_cycle=True))
+    assert told(found, "The cycle was found in the spectrum")
+    assert found.cycles == pytest.approx(197, abs=2)
+
+
+def test_no_cycle_is_found_in_noise():
+    """White noise has no line: that is told, and means are over rows."""
+    test = reduce_log(log(knows_cycle=False), ReductionOptions(find_cycle=True))
+    assert test.cycles == 0
+    assert told(test, "No line stands out")
+
+
+def test_too_slow_sampling_of_cycles_is_told():
+    """With fewer than four rows a cycle there is no mean over the turn."""
+    test = reduce_log(log(replace(QUIET, rows_of_a_cycle=2.5)))
+    assert told(test, "The log has 2.5 rows a cycle")
+    assert test.cycles == 0
+
+
+def test_too_few_whole_cycles_are_told():
+    """Three whole cycles give no means over cycles: the rows do, and that is told."""
+    test = reduce_log(log(Recipe(rows=200, rows_of_a_cycle=60.0)))
+    assert told(test, "The steady part holds 3 whole cycles")
+    assert test.cycles == 0
+
+
+def test_drift_is_told_per_hour_and_per_kilometre():
+    """0.05 over 400 s are 0.45 an hour, over 200 m 0.25 a kilometre."""
+    one = log(replace(QUIET, drift=0.05))
+    test = reduce_log(one)
+    assert abs(test.drift_rate - 0.05 / 399.9) < 4 * test.drift_error
+    assert " per h " in told(test, "Friction drifts by 0.4")
+    test = reduce_log(replace(one, distance=0.5 * one.time))
+    assert " per km " in told(test, "Friction drifts by 0.2")
+
+
+def test_stick_slip_is_told_with_frequency_and_amplitude():
+    """A saw-tooth of 0.06 at 2.1 Hz: its first harmonic is 2/pi of that from peak to peak."""
+    one = log(friction=lambda t: 0.12 + 0.06 * (2.1 * t % 1.0 - 0.5) + 0.004 * _noise(t.size))
+    test = reduce_log(one)
+    assert test.stick_slip_frequency == pytest.approx(2.1, rel=0.01)  # a place of the spectrum is 1 %
+    assert test.stick_slip_amplitude == pytest.approx(0.06 * 2 / np.pi, rel=0.1)  # the window's edges
+    assert "stick-slip" in told(test, "Friction oscillates at 2.1 Hz")
+
+
+def test_the_modulation_of_a_known_cycle_is_no_stick_slip():
+    """What repeats with each turn is the turn's; without the time of a cycle it is told as one of two."""
+    recipe = replace(QUIET, modulation=0.04)
+    assert told(reduce_log(log(recipe)), "Friction oscillates") == ""
+    assert "once per turn" in told(reduce_log(log(recipe, knows_cycle=False)), "Friction oscillates")
+
+
+def test_a_seizure_ends_the_steady_part_before_it():
+    """Friction that rises to 0.6 at 300 s and stays: the mean is that of what was before."""
+    one = log(friction=lambda t: np.where(t > 300.0, 0.6, 0.12) + 0.004 * _noise(t.size))
+    test = reduce_log(one)
+    assert "at 5.00" in told(test, "Seizure or a failed film").replace("at 5 min", "at 5.00")
+    assert test.steady_end <= 300.0
+    assert abs(test.friction - 0.12) < 4 * test.standard_error
+
+
+def test_a_spike_is_told_and_does_not_end_the_test():
+    """Friction that comes back after 2 s is a spike."""
+    one = log(friction=lambda t: np.where((t > 200) & (t < 202), 0.6, 0.12) + 0.004 * _noise(t.size))
+    test = reduce_log(one)
+    assert told(test, "Friction spikes once")
+    assert test.steady_end > 390.0
+
+
+def test_a_lost_load_ends_the_steady_part_and_a_late_one_begins_it():
+    """Rows before the load is on, and after it is off, do not count."""
+    one = log(normal_force=lambda t: np.where((t > 40.0) & (t < 350.0), 10.0, 0.5))
+    test = reduce_log(one)
+    assert told(test, "The normal force reaches its 10 N only at 40")
+    assert told(test, "The normal force falls from 10 N")
+    assert test.run_in_end >= 40.0
+    assert test.steady_end <= 350.0
+
+
+def test_steps_of_friction_and_wear_are_told():
+    """A step of a quarter of the friction, and a jump of the wear depth."""
+    one = log(
+        friction=lambda t: np.where(t > 240.0, 0.15, 0.12) + 0.004 * _noise(t.size),
+        wear_depth=lambda t: 1e-8 * t + 1e-5 * (t > 120.0) + 1e-8 * _noise(t.size),
+    )
+    test = reduce_log(one, ReductionOptions(run_in_end="10 s"))
+    assert "at 3.99" in told(test, "Friction rises in one step by 0.03")  # at 240 s, in spans of 1.5 s
+    assert "at 11" in told(test, "Wear depth jumps by 10 um").replace("at 12", "at 11")  # spans of 1.6 s
+
+
+def test_a_test_too_short_for_its_correlation_is_told():
+    """A correlation over a third of the test: the interval is not to be trusted, and that is said."""
+    test = reduce_log(log(replace(QUIET, correlation=0.3), seed=3))
+    assert told(test, "Friction stays alike over") or told(test, "The steady part holds")
+
+
+def test_friction_that_no_contact_has_is_told():
+    """A mean of -0.1 is a wrong zero or sign."""
+    test = reduce_log(log(friction=lambda t: -0.1 + 0.004 * _noise(t.size)))
+    assert "check zero, sign and units" in told(test, "Friction lies outside 0 to 2")
+
+
+def test_a_gap_is_told():
+    """A tenth of the test without rows is told; the mean bridges it."""
+    one = log()
+    kept = (one.time < 200.0) | (one.time > 240.0)
+    short = replace(one, friction=one.friction[kept], time=one.time[kept])
+    assert told(reduce_log(short), "No row lies in 10 %")
+
+
+def test_friction_without_noise_is_reduced():
+    """A log that never varies has its value, no error, and no NaN."""
+    test = reduce_log(log(friction=lambda t: np.full(t.size, 0.125)))
+    assert test.friction == 0.125
+    assert test.standard_error == 0.0
+    assert test.half_width == 0.0
+
+
+def test_an_interval_is_students():
+    """Half of it is t(0.975) of the degrees of freedom times the standard error: 2.571 for five."""
+    test = replace(reduce_log(log()), standard_error=0.01, degrees_of_freedom=5)
+    assert test.half_width == pytest.approx(0.02571, abs=5e-6)  # the table's digits
+    assert test.interval == (test.friction - test.half_width, test.friction + test.half_width)
+
+
+def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
+    """The dataset goes through a file, and every panel has labels with units."""
+    one = log(replace(QUIET, run_in=0.1), temperature=lambda t: 77.0 + 0.0 * t)
+    data = page_data(reduction(one))
+    labelled.save(data, tmp_path / "test.nc")
+    figure = page(labelled.load(tmp_path / "test.nc"))
+    assert len(figure.axes) == 6
+    for axes in figure.axes:
+        assert "[" in axes.get_xlabel()
+        assert "[" in axes.get_ylabel()
+        assert axes.get_title(loc="left")
+
+
+def test_the_heading_of_a_page_names_conditions_numbers_and_flags():
+    """Who reads the page alone knows what it is of."""
+    data = page_data(reduction(log(replace(QUIET, drift=0.05))))
+    text = " ".join(heading(data))
+    for words in ("PTFE on 440C", "gaseous nitrogen", "77 K", "pV 0.5 MPa m/s", "(95 %)", "drifts by"):
+        assert words in text
+
+
+def test_a_page_of_a_long_log_is_small():
+    """200 000 rows give a dataset of a few thousand numbers."""
+    size = 200_000
+    time = np.arange(size) * 0.1
+    one = RawLog(
+        source="long", checksum="", format="made", friction=0.1 + 0.01 * _noise(size), time=time,
+        conditions=Conditions(cycle_time=1.0),
+    )  # fmt: skip
+    data = page_data(reduction(one))
+    assert sum(variable.size for variable in data.variables.values()) < 20_000
+
+
+def _noise(size):
+    return np.random.default_rng(8).standard_normal(size)
