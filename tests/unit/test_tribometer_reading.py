@@ -202,6 +202,39 @@ def test_a_number_can_mean_missing(tmp_path):
     assert read(tmp_path, content, columns).missing == 1
 
 
+@pytest.mark.parametrize("abscissa", ["time [s]", "distance [m]", "cycles"])
+def test_a_row_without_its_abscissa_is_left_out(tmp_path, abscissa):
+    """A friction that stands nowhere is of no use."""
+    columns = {"time [s]": TIME, "distance [m]": TIME, "cycles": TIME}
+    columns[abscissa] = np.where(np.arange(ROWS) == 30, np.nan, TIME)
+    log = read(tmp_path, raw_logs.plain_csv(columns | {"COF": FRICTION}, missing="x"))
+    assert log.missing == 1
+    np.testing.assert_array_equal(log.friction, as_written(np.delete(FRICTION, 30)))
+
+
+def test_other_columns_may_have_gaps(tmp_path):
+    """A missing temperature costs no row."""
+    temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
+    columns = {"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}
+    log = read(tmp_path, raw_logs.plain_csv(columns))
+    assert log.rows == ROWS
+    assert np.isnan(log.temperature).sum() == 5
+    assert log.conditions.temperature == 293.15
+
+
+def test_quotes_around_names_and_numbers_are_taken_off(tmp_path):
+    """As spreadsheets write them."""
+    lines = ['"time [s]";"COF"', *(f'"{i},5";"0,{100 + i}"' for i in range(ROWS))]
+    log = read(tmp_path, "\n".join(lines).encode())
+    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
+    """The header is shown as the user knows it."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, encoding="utf-8-sig")
+    assert read(tmp_path, content).columns[0].header == "time [s]"
+
+
 def test_friction_in_percent_is_divided(tmp_path):
     """12 % is 0.12."""
     log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF [%]": FRICTION * 100.0}))
@@ -471,6 +504,7 @@ def test_no_name_and_unit_have_two_meanings():
 def test_names_are_written_as_they_are_compared():
     """Each name of the table is found under itself, and every meaning has names."""
     assert set(NAMES) == set(MEANINGS)
+    assert len(NAMES["friction"]) == 1  # no second choice: of two columns none is taken
     for meaning, groups in NAMES.items():
         for group in groups:
             assert all(meaning in ranks(name) for name in group.split("; "))

@@ -173,7 +173,7 @@ def _decided(
         if meaning in given:
             continue
         sure = {i: o[0] for i, o in options.items() if len(o) == 1 and o[0].meaning == meaning and o[0].scale}
-        if meaning != "friction" and sure:
+        if sure:
             best = min(option.rank for option in sure.values())
             sure = {i: option for i, option in sure.items() if option.rank == best}
         if len(sure) == 1:

@@ -90,9 +90,16 @@ def _in_utf8(raw: bytes, encoding: str, source: str) -> bytes:
     if encoding not in _ASCII_BELOW:
         return _recoded(raw, encoding, source)
     cut = raw.find(b"\n", 16384) + 1
-    if cut == 0 or not raw[cut:].isascii():
+    if cut == 0 or not _ascii_from(raw, cut):
         return _recoded(raw, encoding, source)
     return _recoded(raw[:cut], encoding, source) + raw[cut:]
+
+
+def _ascii_from(raw: bytes, start: int) -> bool:
+    import numpy as np
+
+    rest = np.frombuffer(raw, np.uint8)[start:]
+    return bool(len(rest) == 0 or rest.max() < 128)
 
 
 def _recoded(raw: bytes, encoding: str, source: str) -> bytes:

@@ -319,14 +319,16 @@ def _loaded(body: bytes, separator: str, needed: list[int]) -> Array:
 
 def _with_missing(body: bytes, dialect: Dialect) -> bytes:
     """The body with ``nan`` for every field that is empty or means that there is no value."""
-    words = sorted((word for word in dialect.missing if word), key=len, reverse=True)
+    words = sorted((word for word in dialect.missing if word and not is_number(word)), key=len, reverse=True)
+    words = [word for word in words if "#" not in word or b"#" in body]
     marks = b"|".join(re.escape(word.encode()) for word in words)
     if dialect.separator == " ":
         return re.sub(rb"(?i)(?<!\S)(?:" + marks + rb")(?!\S)", b"nan", body)
     separator = re.escape(dialect.separator.encode())
     if b" " in body:
         body = re.sub(rb" *([" + separator + rb"\n]) *", rb"\1", body)
-    pattern = rb"(?i)([" + separator + rb"\n])(?:" + marks + rb")?(?=[" + separator + rb"\n])"
+    quick = b"" if any(word[0].isdigit() for word in words) else rb"(?![0-9.])"
+    pattern = rb"(?i)([" + separator + rb"\n])" + quick + rb"(?:" + marks + rb")?(?=[" + separator + rb"\n])"
     return re.sub(pattern, rb"\1nan", b"\n" + body)[1:]
 
 
