@@ -1,6 +1,7 @@
 """Next test, inverse questions, fitted restitution factor, and their sentences."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -27,6 +28,8 @@ from separatrix.sensitivity import (
     modulus_grid,
     next_test,
     next_test_sentences,
+    question_of,
+    reducible_shares,
     region_sentences,
     sampled_design,
     sampled_values,
@@ -37,6 +40,7 @@ from separatrix.sensitivity import (
 from separatrix.sensitivity.design import evaluated
 from separatrix.sensitivity.region import damping_ratios, restitution_factors
 from separatrix.sensitivity.spans import spans_above
+from separatrix.study import Friction
 from separatrix.study_file import read_study
 
 # Two candidates; the film's number x0 enters both, each has a friction. Means are far above the scatter, so
@@ -502,3 +506,154 @@ def test_a_uniform_input_is_told_by_its_quantiles():
     values = sampled_values(asked, 128).reshape(16, 8)
     counts = np.sort(np.floor(values * 8), axis=1)
     assert (counts == np.arange(8)).all()
+
+
+def test_the_nominal_stretch_is_the_verdicts_not_the_margins():
+    """A judge that asks for a margin of 0.1: its stretch of thickness begins later than that of margin 0."""
+    asked = of_film()
+
+    def strict(values, eta):
+        limit = 1.0 - 4.0 * values[:, 3:4]
+        found = answer(limit - eta, limit)
+        return replace(found, verdict=np.where(limit - eta >= 0.1, 1, 0))
+
+    values = sampled_values(asked, 128)
+    (lenient,) = stable_regions(asked, values, film_grid())
+    (severe,) = stable_regions(replace(asked, judge=strict), values, film_grid())
+    low, high = (one.rows[2].nominal[0].low for one in (lenient, severe))
+    exact = [1e-6 * (damping_ratio_for(0.4 - more) / 0.1 - 1.0) for more in (0.0, 0.1)]
+    assert (low, high) == pytest.approx(exact, rel=0.02)  # an eighth of the grid's step of 12 %
+
+
+def cases_in(*environments):
+    """One undecided case in each environment, all of one film and each of its own friction."""
+    known = [FILM, *[OWN for _ in environments]]
+    cases = [
+        Case(candidate="A", environment=name, inputs=(0, 1 + k), friction=1 + k)
+        for k, name in enumerate(environments)
+    ]
+    margins = [lambda x, k=k: x[:, 0] + 0.1 * x[:, 1 + k] - 31.05 for k in range(len(environments))]
+    return question(known, *margins, cases=cases)
+
+
+def test_words_count_cases_where_there_are_several_environments():
+    """A material may be undecided in one and settled in another."""
+    asked = cases_in("gas", "liquid")
+    lines = next_test_sentences(
+        next_test(asked, sampled_design(asked, 1024), [Measurement(input=0, error=0.0005)])
+    )
+    assert " of 2 undecided cases" in lines[0]
+    assert "A in gas" in lines[0]
+
+
+def test_words_name_the_best_test_even_where_it_settles_too_little():
+    """An expected number below one half of a case."""
+    asked = two_candidates()
+    lines = next_test_sentences(
+        next_test(asked, sampled_design(asked, 1024), [Measurement(input=0, error=0.007)])
+    )
+    assert lines[0].startswith(
+        "No single measurement settles any of 2 undecided materials; the best, measuring the"
+    )
+    assert "would settle 0.4 of 2 undecided materials" in lines[0]
+
+
+def test_frictions_of_one_pocket_have_one_answer():
+    """Two environments differ in the test, not in the pocket: one answer, for the candidate."""
+    known = [FACTOR, *[Normal(mean=0.1, standard_deviation=0.01)] * 2]
+    asked = question(
+        known,
+        lambda x: 1.0 - x[:, 1] - x[:, 0],
+        lambda x: 1.0 - x[:, 2] - x[:, 0],
+        cases=[
+            Case(candidate="A", environment=name, friction=1 + k) for k, name in enumerate(("gas", "liquid"))
+        ],
+    )
+    (found,) = allowed_friction(asked, sampled_values(asked, 128))
+    assert (found.like, found.all_alike) == (("A",), True)
+
+
+def test_different_pockets_have_their_own_answers():
+    """Each names the candidates whose pockets it holds for."""
+    known = [FACTOR, *[Normal(mean=0.1, standard_deviation=0.01)] * 2]
+    asked = question(
+        known,
+        lambda x: 1.0 - x[:, 1] - x[:, 0],
+        lambda x: 0.9 - x[:, 2] - x[:, 0],
+        cases=[Case(candidate=name, environment="gas", friction=1 + k) for k, name in enumerate("AB")],
+    )
+    found = allowed_friction(asked, sampled_values(asked, 128))
+    assert [one.like for one in found] == [("A",), ("B",)]
+    assert allowed_sentence(found[1]).startswith("A new material with the pockets of B may have")
+
+
+def test_samples_that_do_not_share_out_evenly_are_all_counted():
+    """A sample that failed may be missing: 4095 give nearly the same friction as 4096."""
+    asked = friction_limit(lambda f: 1.0 - f)
+    values = sampled_values(asked, 4096)
+    (whole,), (less,) = (allowed_friction(asked, one) for one in (values, values[1:]))
+    assert less.most.value == pytest.approx(whole.most.value, abs=1e-3)  # one sample of the 5 %
+
+
+def of_the_chain():
+    """Stands for the chain's model: two candidates, one of them in two environments, and a film."""
+    measured, unrepeated = STUDY.ranking.candidates[:2]
+    known = [
+        SimpleNamespace(key=key, unit=unit, distribution=one, central=one.mean, source=source)
+        for key, unit, one, source in (
+            ("film.thickness", "m", LogNormal(mean=5e-7, standard_deviation=1e-7), "study"),
+            ("ranking.A.gas", "-", Normal(mean=0.1, standard_deviation=0.01), "assumed"),
+            ("ranking.A.liquid", "-", Normal(mean=0.2, standard_deviation=0.01), "measured"),
+            ("ranking.B.gas", "-", Normal(mean=0.1, standard_deviation=0.01), "measured"),
+        )
+    ]
+    cases = [
+        SimpleNamespace(candidate=name, environment=place, place=k, columns=columns, count=len(columns))
+        for name, place, k, columns in (
+            ("A", "gas", 0, (1,)),
+            ("A", "liquid", 0, (2,)),
+            ("B", "gas", 1, (3,)),
+            ("A", "", 0, (1, 2)),
+            ("B", "", 1, (3,)),
+        )
+    ]
+
+    def judge(values, eta):
+        limit = np.column_stack([1.0 - values[:, list(case.columns)].mean(axis=1) for case in cases])
+        return answer(limit - eta, limit)
+
+    frictions = [Friction(mean=0.1), Friction(mean=0.2, standard_deviation=0.01, count=4)]
+    candidates = (
+        replace(measured, name="A", friction={"gas": frictions[0], "liquid": frictions[1], "air": None}),
+        replace(unrepeated, name="B", friction={"gas": Friction(mean=0.1, standard_deviation=0.01)}),
+    )
+    return SimpleNamespace(
+        inputs=known,
+        cases=cases,
+        judge=judge,
+        evaluate=lambda values: judge(values, 1e6 * values[:, :1] * np.array([1.0, 1.0, 1.1, 1.0, 1.1])),
+        study=SimpleNamespace(ranking=SimpleNamespace(candidates=candidates)),
+    )
+
+
+def test_the_chains_model_is_asked_of_each_environment():
+    """Its cases but those over all environments; the shared inputs enter all, a friction its own."""
+    model = of_the_chain()
+    asked = question_of(model)
+    assert [(case.candidate, case.environment) for case in asked.cases] == [
+        ("A", "gas"),
+        ("A", "liquid"),
+        ("B", "gas"),
+    ]
+    assert [case.inputs for case in asked.cases] == [(0, 1), (0, 2), (0, 3)]
+    values = sampled_values(asked, 128)
+    found = evaluated(asked, values)
+    again = asked.judge(values, found.threshold - found.margin)
+    np.testing.assert_allclose(again.margin, found.margin, atol=1e-12)  # rounding
+    over = question_of(model, overall=True)
+    assert [(case.inputs, case.friction) for case in over.cases] == [((0, 1, 2), None), ((0, 3), 3)]
+
+
+def test_more_tests_take_away_what_is_not_from_cage_to_cage():
+    """Of s^2 (1 + 1/n) the part 1/(n + 1): a half for one test, a fifth for four, none without a count."""
+    assert reducible_shares(of_the_chain()) == {1: 0.5, 2: 0.2, 3: 0.0}

@@ -194,7 +194,7 @@ def _nominal(question: Question, centre: Array, nominal: Evaluated, zeta: Array,
     """1 where the verdict with every input at its centre is STABLE, shape (y, fine, case)."""
     factor = restitution_factors(zeta[:, :, None] * ratio)
     if question.judge is None:
-        return (nominal.threshold[0] >= factor).astype(float)
+        return np.asarray((nominal.threshold[0] >= factor).astype(float))
     flat = factor.reshape(-1, factor.shape[-1])
     judged = is_stable(question.judge(np.repeat(centre, len(flat), axis=0), flat))
     return np.asarray(judged.astype(float).reshape(factor.shape))
