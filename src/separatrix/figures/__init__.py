@@ -7,7 +7,16 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.figures import bearing, forces, ranking, restitution, simulation, stability, traction
+from separatrix.figures import (
+    bearing,
+    forces,
+    ranking,
+    restitution,
+    sensitivity,
+    simulation,
+    stability,
+    traction,
+)
 from separatrix.figures import map as maps
 from separatrix.figures.heading import headed
 from separatrix.figures.style import journal, save, settled
@@ -24,9 +33,16 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
     "map": {"stability-map": maps.map},
     "simulate": {"simulation": simulation.run, "simulation-forces": forces.forces},
     "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
+    "sensitivity": {
+        "sensitivity-probabilities": sensitivity.probabilities,
+        "sensitivity-convergence": sensitivity.convergence,
+    },
 }
 """Verb -> name of the file -> what draws it."""
 
+
+EACH = {"rank": ranking.environments, "sensitivity": sensitivity.each}
+"""Verb -> what yields its further pictures: one for each environment."""
 
 NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness"}
 """Verb -> dimension without which nothing is drawn: an interrupted ranking, bare races without a film."""
@@ -63,6 +79,5 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
             yield name, settled(headed(draw(data), data))
-        if verb == "rank":
-            for name, figure in ranking.environments(data):
-                yield name, settled(headed(figure, data))
+        for name, figure in EACH[verb](data) if verb in EACH else ():
+            yield name, settled(headed(figure, data))
