@@ -12,10 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from separatrix.errors import InputError
-from separatrix.units import Array, format_quantity, shown
+from separatrix.units import format_quantity, shown
+
+if TYPE_CHECKING:
+    from separatrix.units import Array
 
 CUT = 5.0
 """Standard deviations from the middle at which a normal distribution ends."""

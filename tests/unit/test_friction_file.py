@@ -1,0 +1,165 @@
+"""Friction files written and read back, and studies that rank by them."""
+
+import json
+import sys
+import tomllib
+from subprocess import run
+
+import pytest
+
+from separatrix.errors import InputError
+from separatrix.friction_file import friction_text, read_friction, write_friction
+from separatrix.friction_fit import FrictionTest, TestedFriction
+from separatrix.pocket_contact import PocketConditions
+from separatrix.ranking.friction import friction_seen, frictions_seen
+from separatrix.study import Friction, Operation
+from separatrix.study_file import read_study
+
+SMALL = """
+[[test]]
+material = "Armalon"
+counterface = "440C"
+medium = "liquid nitrogen"
+friction = 0.08
+
+[[test]]
+material = "My compound"
+counterface = "440C"
+medium = "liquid nitrogen"
+friction = 0.2
+slip_speed = ["1 m/s", "5 m/s"]
+temperature = "77 K"
+sample = "s1"
+"""
+POCKET = PocketConditions(
+    slip_speed=21.0, slip_speed_low=21.0, slip_speed_high=21.0, impact_force=80.0, pressure=1.5e8,
+    max_pressure=2.25e8, contact_radius=4e-4,
+)  # fmt: skip
+TURNING = Operation(inner_speed=100.0, axial_load=10.0, temperature=77.0, fluid="liquid nitrogen")
+
+
+def whole(**changes):
+    """A test with every field."""
+    return FrictionTest(**{
+        "material": 'PEEK "x" \\ 30 %', "counterface": "440C", "medium": "liquid nitrogen",
+        "friction": 0.1 + 0.2 / 3.0, "standard_error": 1e-3 / 3.0, "standard_deviation": 0.01,
+        "effective_count": 88.25, "temperature": (77.35, 78.0), "slip_speed": (1.0 / 3.0, 5.0),
+        "pressure": (1e6 / 3.0, 1e6 / 3.0), "sample": "s1", "test": "t1", "run_in_end": 12.3,
+        "run_in_axis": "cycles", "flags": ("drift: 2 % in 1 km", "too short"), "source": "a.csv",
+        "checksum": "ab" * 32, "reduced_by": "separatrix 0.1.0",
+    } | changes)  # fmt: skip
+
+
+def study(folder, text=SMALL, ranking=""):
+    """A study beside a friction file."""
+    (folder / "friction.toml").write_text(text)
+    path = folder / "study.toml"
+    path.write_text(f'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n{ranking}\n')
+    return path
+
+
+@pytest.mark.parametrize("axis", ["time", "distance", "cycles"])
+def test_a_written_test_is_read_back_to_the_last_bit(tmp_path, axis):
+    """Every field, with numbers that no short decimal holds, quotes and backslashes."""
+    tests = (whole(run_in_axis=axis), whole(checksum="cd" * 32, flags=(), sample=None))
+    write_friction(tests, tmp_path / "friction.toml")
+    assert read_friction(tmp_path / "friction.toml") == tests
+
+
+def test_only_four_keys_are_needed(tmp_path):
+    """What slid on what, in what, and the friction; nothing else is made up."""
+    (tmp_path / "friction.toml").write_text(SMALL)
+    first, second = read_friction(tmp_path / "friction.toml")
+    assert first == FrictionTest(
+        material="Armalon", counterface="440C", medium="liquid nitrogen", friction=0.08
+    )
+    assert second.slip_speed == (1.0, 5.0)
+    assert second.temperature == (77.0, 77.0)
+    assert first.pressure_velocity is None
+
+
+def test_the_file_is_toml_that_says_what_it_is():
+    """A comment tells a person how to go on; any reader of TOML takes the rest."""
+    text = friction_text([whole()])
+    assert text.startswith("# Friction of cage materials")
+    assert tomllib.loads(text)["test"][0]["run_in_end"] == "12.3 cycles"
+
+
+def test_a_file_that_exists_is_not_overwritten(tmp_path):
+    """Whatever it holds, it stays."""
+    path = tmp_path / "friction.toml"
+    path.write_text("# mine")
+    with pytest.raises(InputError, match="exists already, and was not touched"):
+        write_friction([whole()], path)
+    assert path.read_text() == "# mine"
+
+
+def test_a_study_ranks_the_materials_of_a_friction_file(tmp_path):
+    """Environments and candidates in their order; a material of the library has its elastic record."""
+    asked = read_study(study(tmp_path)).ranking
+    assert asked.environments == ("liquid nitrogen, 440C",)
+    assert [c.name for c in asked.candidates] == ["Armalon", "My compound"]
+    assert asked.candidates[0].material.name == "Armalon"
+    assert asked.candidates[1].material is None
+    friction = asked.candidates[1].friction["liquid nitrogen, 440C"]
+    assert friction.mean == pytest.approx(0.2, rel=1e-12)  # rounding of exp and log
+    assert isinstance(friction.law, TestedFriction)
+    assert "friction.toml, sha256" in friction.source
+
+
+def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
+    """The keys materials and friction_scatter hold for a file as for a table."""
+    path = study(tmp_path, ranking='materials = ["My compound"]\nfriction_scatter = 0.2')
+    (candidate,) = frictions_seen(read_study(path)).ranking.candidates
+    seen = candidate.friction["liquid nitrogen, 440C"]
+    assert seen.standard_error == pytest.approx(0.04, rel=1e-9)
+    assert seen.assumed_scatter
+
+
+def test_the_cage_asks_for_what_its_pocket_rubs():
+    """A table of 1 to 5 m/s at 77 K, a pocket at 21 m/s in the other medium: the mean stays, words say so."""
+    table = read_study("cryogenic-turbopump").ranking.candidates[2]
+    seen = friction_seen(table.friction["gaseous nitrogen, 440C"], POCKET, TURNING, 0.09)
+    assert seen.mean == 0.07
+    assert seen.standard_error == pytest.approx(0.0063)
+    assert seen.standard_deviation > seen.standard_error
+    assert seen.extrapolation == (
+        "slip speed 21 m/s is beyond the tested 1 to 5 m/s (held at 5 m/s)",
+        "pressure of the tests is not stated (asked for 150 MPa)",
+        "tested in gaseous nitrogen, not in liquid nitrogen",
+    )
+
+
+def test_a_bare_number_scatters_as_an_unrepeated_test():
+    """A number without scatter gets the assumed one; a stated one stays; neither draws words."""
+    bare = friction_seen(Friction(mean=0.2), POCKET, TURNING, 0.09)
+    assert (bare.standard_error, bare.standard_deviation) == pytest.approx((0.018, 0.018))
+    assert bare.assumed_scatter
+    stated = friction_seen(Friction(mean=0.2, standard_deviation=0.04, count=4), POCKET, TURNING, 0.09)
+    assert (stated.standard_error, stated.standard_deviation) == pytest.approx((0.02, 0.04))
+    assert not stated.assumed_scatter
+    assert bare.extrapolation == stated.extrapolation == ()
+
+
+def test_the_shipped_study_rubs_at_25_metres_a_second():
+    """The pocket of the shipped study: regression, 25.1 m/s and 169 MPa in a blow of the middle kick."""
+    from separatrix.chain import cage_state
+    from separatrix.ranking.friction import conditions_of
+
+    shipped = read_study("cryogenic-turbopump")
+    found = conditions_of(shipped, cage_state(shipped))
+    assert found.slip_speed == pytest.approx(25.124, rel=1e-4)  # digits of the number
+    assert found.pressure == pytest.approx(169.415e6, rel=1e-4)
+    assert found.max_pressure == pytest.approx(1.5 * found.pressure)
+
+
+def test_reading_a_friction_file_needs_no_numpy(tmp_path):
+    """A wrong file is refused before anything heavy is imported."""
+    path = tmp_path / "friction.toml"
+    path.write_text(SMALL)
+    code = (
+        "import sys, json; from pathlib import Path; from separatrix.friction_file import read_friction; "
+        "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
+    )
+    found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
+    assert json.loads(found.stdout) is False
