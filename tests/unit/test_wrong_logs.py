@@ -88,6 +88,10 @@ WRONG = {
         changed(csv(), 9, "3.5,1 000"),
         'line 9, column "COF" must be a number; got "1 000"',
     ),
+    "a blank that cannot be seen": (
+        changed(csv(), 9, "3.5,\u00a00.1"),
+        'line 9, column "COF" must be a number; got "\\xa00.1"',
+    ),
     "a decimal comma in one row": (
         changed(csv(separator=";"), 9, "3,5;0,1"),
         'has points and commas in its numbers; got "3,5" and "0.000000"',

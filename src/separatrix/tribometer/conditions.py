@@ -96,9 +96,11 @@ _FIELDS = frozenset(Conditions.__dataclass_fields__)
 def _from_metadata(key: str, text: str, found: Found) -> None:
     name, beside = header_parts(key)[0]
     conditions = [c for c, names in KEYS.items() if plain(name) in names.split("; ")]
-    if conditions and conditions[0] in TEXTS:
+    if not text or not conditions:
+        return
+    if conditions[0] in TEXTS:
         found.add(conditions[0], text, f'"{printable(key)}" in the file')
-    elif conditions:
+    else:
         _number_from_metadata(key, text, beside, conditions, found)
 
 

@@ -22,6 +22,11 @@ from separatrix.units import Array, printable
 HEAD = 300
 """Lines in which the table's separator and decimal sign are looked for first."""
 
+_FLOAT = re.compile(
+    r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
+)
+"""What numpy's reader takes for a number."""
+
 _COMMA = bytes.maketrans(b",.", b".'")
 _BACK = str.maketrans(".'", ",.")
 """With decimal commas a point is no part of a number: it becomes a mark that none can have, and back."""
@@ -54,6 +59,7 @@ class _Found:
     rows: list[tuple[int, int]] = field(default_factory=list)
 
     def count(self) -> int:
+        """Rows of the table."""
         return sum(stop - start for start, stop in self.rows)
 
 
@@ -336,27 +342,20 @@ def _no_number(
     body: bytes, dialect: Dialect, needed: list[int], where: Callable[[int], str], names: tuple[str, ...]
 ) -> InputError:
     """The first field that is no number, found row by row."""
-    for row, line in enumerate(body.decode().split("\n")):
-        parts = dialect.fields(line)
+    for row, line in enumerate(body.decode().removesuffix("\n").split("\n")):
+        parts = line.split() if dialect.separator == " " else line.split(dialect.separator)
         for column in needed:
-            text = parts[column] if column < len(parts) else ""
-            if text != "nan" and not _is_float(text):
-                name = printable(names[column]) or f"number {column + 1}"
+            text = parts[column].strip(" ") if column < len(parts) else ""
+            if not _FLOAT.fullmatch(text):
                 text = text.translate(_BACK) if dialect.decimal == "," else text
-                said = f"missing = [{_toml(text)}]"
-                cure = f"If that means a missing value, add below [format] in the column map: {said}."
-                return InputError(
-                    f'{where(row)}, column "{name}"', "must be a number", "", f'"{printable(text)}"', cure
-                )
-    return InputError(where(0), "cannot be read as numbers")
+                return _not_a_number(where(row), names[column] or f"number {column + 1}", text)
+    return InputError(where(0), "begins rows that cannot be read as numbers")
 
 
-def _is_float(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return "_" not in text
+def _not_a_number(line: str, column: str, text: str) -> InputError:
+    cure = f"If that means a missing value, add below [format] in the column map: missing = [{_toml(text)}]."
+    where = f'{line}, column "{printable(column)}"'
+    return InputError(where, "must be a number", "", f'"{printable(text)}"', cure)
 
 
 def _toml(text: str) -> str:

@@ -24,7 +24,8 @@ def _recognised(head: str) -> bool:
 def _table_name(lines: list[str]) -> str:
     steps = [found[1] for line in lines if (found := _STEP.match(line))]
     runs = [found[1] for line in lines if (found := _RUN.match(line))]
-    return ", ".join([f"run {runs[-1]}"] * bool(runs) + [f"step {steps[-1]}"] * bool(steps))
+    numbers = (("run", runs), ("step", steps))
+    return ", ".join(f"{word} {found[-1]}" for word, found in numbers if found)
 
 
 LAYOUT = Layout(
