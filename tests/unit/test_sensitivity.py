@@ -468,14 +468,24 @@ def test_bare_races_have_no_film_to_choose():
 
 
 def test_a_fitted_restitution_factor_tells_its_error():
-    """The error in samples not fitted is that of fresh samples, within a factor of three; indices agree."""
+    """The error in samples left out is that of fresh samples: within a factor of two over six seeds.
+
+    A single seed may miss by four: a few samples in the tails make most of it.
+    """
+    asked, told, found = of_film(), 0.0, 0.0
+    for seed in range(6):
+        values, fresh = (sampled_values(asked, 1024, seed=s) for s in (seed, 100 + seed))
+        fitted, error = fitted_question(asked, values, evaluated(asked, values))
+        told += error.restitution_factor**2
+        found += np.mean((evaluated(fitted, fresh).margin - evaluated(asked, fresh).margin) ** 2)
+    assert 0.25 < told / found < 4.0
+
+
+def test_indices_of_a_fit_hold_those_of_the_model():
+    """The model's own indices lie in the intervals, widened by the error of the fit."""
     asked = of_film()
     values = sampled_values(asked, 512)
     fitted, error = fitted_question(asked, values, evaluated(asked, values))
-    fresh = sampled_values(asked, 512, seed=9)
-    miss = evaluated(fitted, fresh).margin - evaluated(asked, fresh).margin
-    root = np.sqrt(np.mean(miss**2))
-    assert root / 3.0 < error.restitution_factor < 3.0 * root
     assert error.missed < 1e-4  # a smooth function of three inputs
     true, told = (indices_of(one, sampled_design(one, 1024)) for one in (asked, fitted))
     widened = with_fit_error(told, error)

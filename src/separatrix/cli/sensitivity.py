@@ -25,6 +25,9 @@ FEWEST, MOST = 64, 65_536
 DESIGN = 1024
 """Samples of each matrix behind the Sobol indices and the next test."""
 
+FITTED = 1024
+"""Samples of the chain that its fit takes; its error is told by leaving each of them out."""
+
 INVERSE = 512
 """Samples behind the inverse answers; a film's are asked at every point of its plane."""
 
@@ -134,7 +137,7 @@ def doubt_of(model: Model, values: Array, progress: Progress | None) -> Doubt:
     tests = doubts.default_measurements(question, reducible=doubts.reducible_shares(model))
     following = doubts.next_test(question, design, tests)
     told(2, 4)
-    some = values[:INVERSE]
+    some = doubts.sampled_values(question, INVERSE, seed=model.study.stability.seed)
     allowed = doubts.allowed_friction(question, some)
     told(3, 4)
     films, reason = _films(model, question, some)
@@ -149,7 +152,8 @@ def _question(model: Model, values: Array) -> tuple[Question, Callable[[SobolAns
     question = doubts.question_of(model)
     if not model.chain_varies:
         return question, lambda answer: answer
-    fitted, error = doubts.fitted_question(question, values, question.evaluate(values))
+    some = values[:FITTED]
+    fitted, error = doubts.fitted_question(question, some, question.evaluate(some))
     return fitted, lambda answer: doubts.with_fit_error(answer, error)
 
 
