@@ -254,4 +254,4 @@ def _draw(reductions: Sequence[Reduction], options: TribometerOptions, folder: P
 def file_name(source: str) -> str:
     """Name of a test as the name of a file: letters, digits, dots and dashes."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "._-") else "-" for c in source)
-    return "-".join(part for part in plain.split("-") if part).strip(".")[:100] or "test"
+    return "-".join(part for part in plain.split("-") if part).strip(".-")[:100] or "test"
