@@ -108,6 +108,8 @@ def open_workbook(path: Path) -> Workbook:
 
 def _refuse_other_kinds(path: Path, label: str) -> None:
     try:
+        if not path.is_file():  # a pipe may never end
+            raise InputError(label, "is not a regular file")
         with path.open("rb") as file:
             start = file.read(8)
     except OSError as error:

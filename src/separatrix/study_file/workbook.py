@@ -32,11 +32,13 @@ _KEY = re.compile(r"[A-Za-z0-9_]+(?:\.[A-Za-z0-9_ -]+){0,2}")
 
 def is_workbook(path: Path) -> bool:
     """Whether a file is a workbook, by its name or its first bytes."""
-    if path.suffix.casefold() in (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods"):
-        return path.is_file()
     try:
+        if not path.is_file():  # a pipe may never end
+            return False
+        if path.suffix.casefold() in (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods"):
+            return True
         with path.open("rb") as file:
-            return path.is_file() and file.read(4) in MAGICS
+            return file.read(4) in MAGICS
     except (OSError, ValueError):
         return False
 
