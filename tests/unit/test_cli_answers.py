@@ -49,7 +49,7 @@ MATERIAL = "name friction restitution_threshold margin probability_stable verdic
 EXTRA = {"map": ("--points", "3", "--runs", "2")}
 """Options without which a verb would take long."""
 
-KEPT = {"map": {"map-points.sqlite"}}
+KEPT = {"map": {"map-points.sqlite"}, "rank": {"rank.xlsx"}}
 """Files beside the answer."""
 
 pytestmark = pytest.mark.usefixtures("elsewhere")
