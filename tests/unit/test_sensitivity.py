@@ -174,7 +174,7 @@ def test_samples_and_a_mean_of_zero_can_be_measured():
 def test_three_more_tests_of_a_friction_are_the_default():
     """Single tests scatter as the irreducible part; what is no friction is measured to 10 %."""
     film, first, second = default_measurements(two_candidates(), reducible={1: 0.5})
-    assert (film.error, film.repeats, film.reducible) == (0.1, 1, 1.0)
+    assert (film.error, film.repeats, film.reducible) == (0.05, 1, 1.0)
     assert (first.repeats, first.reducible) == (3, 0.5)
     assert first.error == pytest.approx(0.02 * np.sqrt(0.5))  # rounding
     assert second.error == pytest.approx(0.02)
@@ -190,7 +190,7 @@ def test_words_of_the_next_test():
     ]
     lines = next_test_sentences(next_test(asked, sampled_design(asked, 1024), tests))
     assert lines[0].startswith(
-        "Measuring the x0 to 0.1 % would settle 0.8 of 2 undecided materials (95 % interval "
+        "Measuring the x0 to 0.2 % would settle 0.8 of 2 undecided materials (95 % interval "
     )
     assert lines[1] == "Next to nothing would be settled by measuring the x1 or the x2."
 
@@ -219,7 +219,7 @@ def test_words_for_the_only_undecided_one():
         next_test(asked, sampled_design(asked, 1024), [Measurement(input=0, error=0.001)])
     )
     assert lines[0].startswith(
-        "Measuring the x0 to 0.1 % would settle the one undecided material, c0 in gas, with"
+        "Measuring the x0 to 0.2 % would settle the one undecided material, c0 in gas, with"
     )
 
 

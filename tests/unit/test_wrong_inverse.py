@@ -174,7 +174,7 @@ WRONG = [
         "a measurement without error",
         lambda: Measurement(input=0, error=0.0),
         "Measurement.error must be > 0",
-        "10 % is 0.1",
+        "A tenth is 0.1",
     ),
     (
         "a negative error",
@@ -182,7 +182,7 @@ WRONG = [
         "Measurement.error must be > 0",
         "got -0.1",
     ),
-    ("an error in per cent", lambda: Measurement(input=0, error=20.0), "must be <= 10", "10 % is 0.1"),
+    ("an error in per cent", lambda: Measurement(input=0, error=20.0), "must be <= 10", "A tenth is 0.1"),
     (
         "an error that is no number",
         lambda: Measurement(input=0, error=float("nan")),

@@ -33,7 +33,9 @@ from separatrix.units import Array, Ratio
 RESULTS = 128
 """Results of a test that are looked at, equally likely."""
 
-ERROR: Ratio = 0.10
+ERROR: Ratio = 0.05
+"""Standard deviation of what is measured to 10 %, written ``+- 10 %`` in a study."""
+
 REPEATS = 3
 FEWEST_EFFECTIVE = 100
 """Samples that a result must leave some weight on; a test sharper than that is taken as this sharp."""
@@ -105,7 +107,7 @@ def default_measurements(
     question : Question
         Whose inputs.
     error : float
-        Of an input that is no friction [-].
+        Standard deviation of the test of an input that is no friction, as a share of its value [-].
     repeats : int
         Of a friction.
     reducible : mapping, optional

@@ -93,7 +93,8 @@ class Measurement:
     input : int
         Place of the input.
     error : float
-        Standard deviation of the measured value about the true one [-], as a share of the true value.
+        Standard deviation of the measured value about the true one [-], as a share of the true value. In
+        words it is doubled: "to 10 %" is what a study writes as ``+- 10 %``, two standard deviations.
     repeats : int, optional
         Tests of that error whose mean is taken.
     reducible : float
@@ -102,14 +103,14 @@ class Measurement:
     """
 
     input: int
-    error: Ratio = 0.1
+    error: Ratio = 0.05
     repeats: int = 1
     reducible: Ratio = 1.0
 
     def __post_init__(self) -> None:
         _check.settle(
             _check.whole(self, "input", 0, 100_000),
-            _check.positive(self, "error", 1e-6, 10.0, hint="10 % is 0.1."),
+            _check.positive(self, "error", 1e-6, 10.0, hint="A tenth is 0.1."),
             _check.whole(self, "repeats", 1, 1000),
             _check.between(self, "reducible", 0.0, 1.0),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from separatrix.distribution import COVERAGE
 from separatrix.sensitivity.inverse import percent
 from separatrix.sensitivity.records import (
     AllowedFriction,
@@ -191,7 +192,7 @@ def act(test: Measurement, words: str) -> str:
     """What a person would do: the test as the subject of a sentence."""
     if test.repeats > 1:
         return f"Measuring {words} {test.repeats} more times"
-    return f"Measuring {words} to {100 * test.error:.3g} %"
+    return f"Measuring {words} to {100 * COVERAGE * test.error:.3g} %"
 
 
 def allowed_sentence(answer: AllowedFriction) -> str:
