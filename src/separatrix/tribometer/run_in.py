@@ -1,11 +1,10 @@
 """Where running-in ends: a fall fitted in correlated noise, cut where what is left of it does not count.
 
-A straight line and an exponential excess, A exp(-x/L), are fitted by generalised least squares with noise
-whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. The excess is believed if it fits
-better and if the start lies farther from the line than any later stretch as long. The test is then cut where
-what stays of it in the mean is 15 % of the standard error of that mean; what is left is asked again, so that
-a peak or a fall that is no exponential is cut in pieces. All lengths and correlations count with their
-likelihood.
+A straight line and an excess that falls, A exp(-x/L) or A (1 - x/L), are fitted by generalised least squares
+with noise whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. The excess is believed
+if it fits better and if the start lies farther from the line than any later stretch as long. The test is then
+cut where what stays of it in the mean is 15 % of the standard error of that mean; what is left is asked
+again, so that a peak or another fall is cut in pieces. All shapes and correlations count with their weight.
 
 References
 ----------
@@ -22,10 +21,13 @@ import numpy as np
 
 from separatrix.units import Array, Ratio
 
-METHOD = "exponential excess in correlated noise, cut where its rest no longer counts"
+METHOD = "falling excess in correlated noise, cut where its rest no longer counts"
 
 LENGTHS = np.geomspace(0.002, 0.3, 26)
 """Lengths in which the excess of friction falls to 1/e, tried as shares of what is looked at."""
+
+RAMPS = np.geomspace(0.02, 0.6, 16)
+"""Lengths of straight falls that then stop, tried as shares of what is looked at."""
 
 CORRELATIONS = np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97])
 """Correlations of neighbouring spans tried."""
@@ -43,6 +45,9 @@ PASSES = 4
 """Falls that may follow on one another."""
 
 
+_SHAPES = np.concatenate([LENGTHS, RAMPS])
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RunIn:
     """End of running-in, as a share of the stretch that was looked at."""
@@ -51,7 +56,7 @@ class RunIn:
     amplitude: Ratio
     """Of the last excess that was believed, at its start [-]; 0 if none was."""
     length: Ratio
-    """In which it falls to 1/e, as a share of the whole stretch."""
+    """In which it falls to 1/e, or to nothing if straight, as a share of the whole stretch."""
     rest: Ratio
     """What is left of it in the mean behind the end [-]."""
     ends: bool
@@ -86,36 +91,36 @@ def run_in(values: Array) -> RunIn:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Falls:
-    """Falls that may be, one for each correlation and length tried."""
+    """Falls that may be, one for each correlation and shape tried."""
 
     weights: Array
-    """How likely each is, all together one, shape (correlation, length)."""
+    """How likely each is, all together one, shape (correlation, fall)."""
     amplitudes: Array
-    """Shape (correlation, length) [-]."""
+    """Shape (correlation, fall) [-]."""
     density: float
     """Spectral density of the noise at zero frequency, one span being the unit of time."""
 
     def rest(self, share: Array) -> Array:
         """Return the root mean square of what they add to the mean behind each cut, shape (cut,)."""
-        length = LENGTHS[:, None]
-        tail = length * (np.exp(-share / length) - np.exp(-1.0 / length)) / (1.0 - share)
+        length, ramp = LENGTHS[:, None], RAMPS[:, None]
+        exponential = length * (np.exp(-share / length) - np.exp(-1.0 / length))
+        straight = np.maximum(0.0, ramp - share) ** 2 / (2.0 * ramp)
+        tail = np.concatenate([exponential, straight]) / (1.0 - share)
         return np.asarray(np.sqrt((self.weights * self.amplitudes**2).sum(axis=0) @ tail**2), dtype=float)
 
     @property
     def best(self) -> tuple[float, float]:
         """Amplitude and length of the most likely one."""
         row, column = np.unravel_index(int(np.argmax(self.weights)), self.weights.shape)
-        return float(self.amplitudes[row, column]), float(LENGTHS[column])
+        return float(self.amplitudes[row, column]), float(_SHAPES[column])
 
 
 def _falls(values: Array) -> _Falls | None:
     """Return the falls that may be, if the best fits better than none."""
     n = values.size
     x = (np.arange(n) + 0.5) / n
-    half = 0.5 / n / LENGTHS[:, None]
-    falls = np.exp(-x / LENGTHS[:, None]) * np.sinh(half) / half
-    straight = np.stack([np.ones(n), x - 0.5])
-    designs = np.concatenate([np.broadcast_to(straight, (LENGTHS.size, 2, n)), falls[:, None]], axis=1)
+    straight, falls = np.stack([np.ones(n), x - 0.5]), _shapes(x)
+    designs = np.concatenate([np.broadcast_to(straight, (len(falls), 2, n)), falls[:, None]], axis=1)
     without, _, _ = _fits(straight[None], values)
     deviance, coefficients, variances = _fits(designs, values)
     if without.min() - deviance.min() < GAIN:
@@ -123,10 +128,19 @@ def _falls(values: Array) -> _Falls | None:
     weights = np.exp(-0.5 * (deviance - deviance.min()))
     weights /= weights.sum()
     row, column = np.unravel_index(int(np.argmax(weights)), weights.shape)
-    if not _stands_out(values - coefficients[row, column, :2] @ straight, float(LENGTHS[column])):
+    if not _stands_out(values - coefficients[row, column, :2] @ straight, float(_SHAPES[column])):
         return None
     density = float((weights * variances / (1.0 - CORRELATIONS[:, None]) ** 2).sum())
     return _Falls(weights=weights, amplitudes=coefficients[..., -1], density=density)
+
+
+def _shapes(x: Array) -> Array:
+    """Return the falls tried, one at the start, as means over spans around x, shape (fall, span)."""
+    half = 0.5 / x.size / LENGTHS[:, None]
+    exponential = np.exp(-x / LENGTHS[:, None]) * np.sinh(half) / half
+    ramp, edge = RAMPS[:, None], np.arange(x.size + 1) / x.size
+    straight = -np.diff(np.maximum(0.0, ramp - edge) ** 2) * x.size / (2.0 * ramp)
+    return np.concatenate([exponential, straight])
 
 
 def _stands_out(residual: Array, length: float) -> bool:
