@@ -119,7 +119,7 @@ def probabilities(data: xr.Dataset) -> Figure:
     count = data.sizes["material"]
     shape: Any = {"nrows": len(places), "ncols": 2, "sharex": "col", "squeeze": False}
     shape["gridspec_kw"] = {"width_ratios": (2.0, 1.0)}
-    figure, axes = canvas(PAGE, len(places) * (0.5 + 0.17 * count), **shape)
+    figure, axes = canvas(PAGE, 0.6 + len(places) * (0.6 + 0.16 * count), **shape)
     for row, name in enumerate(places):
         part = _part(data, row)
         _verdicts(axes[row, 0], part)
@@ -227,7 +227,7 @@ def drivers(data: xr.Dataset) -> Figure:
               if np.nan_to_num(own[:, :, i]).max() >= LEAST][:MOST]  # fmt: skip
     names = [FRICTIONS if i == own.shape[2] - 1 else str(data["input"].values[i]) for i in chosen]
     rows = [(e, m) for e in range(own.shape[0]) for m in range(own.shape[1]) if np.isfinite(own[e, m]).any()]
-    figure, axes = canvas(PAGE, 1.2 + 0.16 * len(rows))
+    figure, axes = canvas(PAGE, 1.8 + 0.16 * len(rows))
     left = np.zeros(len(rows))
     for k, (i, name) in enumerate(zip(chosen, names, strict=True)):
         share = np.array([np.nan_to_num(own[e, m, i]) for e, m in rows])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from threading import Event
@@ -258,7 +259,7 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
         replace(
             row,
             friction=float(nominal_friction),
-            friction_deviation=float(found.friction[:, i].std()),
+            friction_deviation=_deviation(model, i),
             verdict=VERDICTS[int(nominal.verdict[0, i])],
             nominal_threshold=float(nominal.threshold[0, i]),
             nominal_margin=float(nominal.margin[0, i]),
@@ -270,6 +271,13 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
         )
     ]
     return [replace(row, reason=_reason(row)) for row in rows]
+
+
+def _deviation(model: Model, place: int) -> float:
+    """Standard deviation of the friction of a case, whose parts are independent [-]."""
+    case = model.cases[place]
+    parts = [model.inputs[column].distribution.standard_deviation for column in case.columns]
+    return math.hypot(*parts) / case.count
 
 
 def _nominal(model: Model) -> Evaluated:

@@ -1,0 +1,225 @@
+"""The verb `sensitivity`: keys, text, files, threads, interrupts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from separatrix import results
+from separatrix.cli import main, sensitivity
+from separatrix.cli.sensitivity import STAGES, stages
+from separatrix.figures import figures
+from separatrix.report.sensitivity import MARK
+from separatrix.uncertainty import training
+
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small uncertain ranking"
+
+[film]
+thickness = { between = ["0.4 um", "0.6 um"] }
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 8
+duration = "10 ms"
+restitution_factors = [0.2, 0.5, 0.8]
+
+[[ranking.candidates]]
+name = "A"
+friction = { air = { mean = 0.1, standard_deviation = 0.02, count = 4 }, vacuum = 0.15 }
+
+[[ranking.candidates]]
+name = "B"
+friction = { air = "0.3 +- 10 %" }
+"""
+KEYS = (
+    "samples failed notes default_scatter inputs environments overall sizes convergence clouds boundaries "
+    "boundary_draws kicks runs sobol next_test allowed_friction films films_reason doubt_reason chain cage "
+    "complete seed study"
+)
+OF_A_ROW = (
+    "name friction friction_deviation friction_scatter_assumed extrapolation restitution_factor reason "
+    "restitution_threshold restitution_threshold_low restitution_threshold_high margin margin_low "
+    "margin_high verdict nominal_threshold nominal_margin probability_stable probability_stable_low "
+    "probability_stable_high probability_undecided probability_unstable probability_lowest_friction "
+    "probability_best probability_best_low probability_best_high tie_group"
+)
+PARTS = ("stable", "undecided", "unstable")
+
+
+@pytest.fixture(autouse=True)
+def _small(tmp_path, monkeypatch):
+    """Run in a folder with nothing but the small study, with few runs and samples."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(training, "RUNS", 200)
+    monkeypatch.setattr(sensitivity, "DESIGN", 128)
+    monkeypatch.setattr(sensitivity, "INVERSE", 128)
+    Path("small.toml").write_text(SMALL)
+
+
+def asked(capsys, *options: str) -> dict:
+    """Return the document of the small study."""
+    assert main(["sensitivity", "small.toml", "--json", "--samples", "64", *options]) == 0
+    return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+
+
+def row(document, environment, name):
+    """Return the row of a candidate."""
+    one = next(one for one in document["environments"] if one["name"] == environment)
+    return next(row for row in one["materials"] if row["name"] == name)
+
+
+def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
+    """Every candidate in every environment, with probabilities that add up and lie in their intervals."""
+    found = asked(capsys)
+    assert set(KEYS.split()) <= set(found)
+    assert set(OF_A_ROW.split()) <= set(found["overall"][0])
+    rows = [r for one in found["environments"] for r in one["materials"] if r["friction"]] + found["overall"]
+    assert len(rows) == 5
+    for one in rows:
+        assert sum(one[f"probability_{part}"] for part in PARTS) == pytest.approx(1.0, abs=1e-12)
+        for part in (*PARTS, "best"):
+            low, value, high = (one[f"probability_{part}{end}"] for end in ("_low", "", "_high"))
+            assert 0.0 <= low <= value <= high <= 1.0
+        assert one["restitution_threshold_low"] <= one["restitution_threshold"]
+
+
+def test_what_was_not_measured_is_missing(capsys):
+    """Everything is null but name and reason; it has no part in being best."""
+    found = asked(capsys)
+    missing = row(found, "vacuum", "B")
+    assert missing["reason"] == "not measured in vacuum"
+    assert missing["friction"] is missing["probability_stable"] is missing["tie_group"] is None
+    assert row(found, "vacuum", "A")["probability_best"] == 1.0
+
+
+def test_each_friction_has_the_scatter_that_is_known_of_it(capsys):
+    """A measured one that of the next cage, an unrepeated one the default, a written one its own."""
+    found = asked(capsys)
+    expected = {("air", "A"): 0.02 * (1 + 1 / 4) ** 0.5, ("vacuum", "A"): 0.09 * 0.15, ("air", "B"): 0.015}
+    for place, deviation in expected.items():
+        known = row(found, *place)
+        assert known["friction_deviation"] == pytest.approx(deviation, rel=1e-4)  # tails are cut at 5 of them
+        assert known["friction_scatter_assumed"] is (place == ("vacuum", "A"))
+
+
+def test_inputs_say_where_they_come_from(capsys):
+    """Name, distribution as it was written, and its source."""
+    inputs = {one["name"]: one for one in asked(capsys)["inputs"]}
+    assert inputs["film.thickness"]["source"] == "study"
+    assert inputs["ranking.A.air"]["source"] == "measured"
+    assert inputs["ranking.A.vacuum"]["source"] == "assumed"
+    assert not any(one["moves_boundary"] for one in inputs.values())
+
+
+def test_any_number_of_threads_gives_the_same_answer(capsys):
+    """To the last bit."""
+    assert asked(capsys, "--jobs", "1") == asked(capsys, "--jobs", "2")
+
+
+def test_another_seed_gives_another_answer_of_the_same_kind(capsys):
+    """Another draw of samples and runs: the medians differ by less than nine in ten samples do."""
+    first = asked(capsys)
+    Path("small.toml").write_text(SMALL.replace("runs = 8", "runs = 8\nseed = 9"))
+    one, other = (row(found, "air", "A") for found in (first, asked(capsys)))
+    threshold = "restitution_threshold"
+    assert one[threshold] != other[threshold]
+    assert one[f"{threshold}_low"] < other[threshold] < one[f"{threshold}_high"]
+
+
+def test_the_first_samples_are_those_of_a_smaller_question(capsys):
+    """The last point of the convergence is the answer; earlier ones are wider."""
+    found = asked(capsys, "--samples", "128")
+    assert found["sizes"] == [64, 128]
+    for one in found["convergence"]:
+        place = one["environment"]
+        rows = found["overall"] if place == "" else next(
+            e["materials"] for e in found["environments"] if e["name"] == place)  # fmt: skip
+        known = next(r for r in rows if r["name"] == one["name"])
+        assert one["probability_stable"][-1] == known["probability_stable"]
+
+
+def test_text_and_files(capsys):
+    """Sections in their order; document, dataset and pictures in the folder, and each drawn again from it."""
+    assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    heads = ("Air", "Vacuum", "Over all environments", "Uncertain inputs", "Boundary", "Convergence",
+             "What drives", "Which test", "Which friction", "Which film", "In short")  # fmt: skip
+    places = [text.index(head) for head in heads]
+    assert places == sorted(places)
+    assert "0.150 +- 0.01" in text
+    assert MARK not in text.split("Uncertain inputs")[0]
+    assert max(len(line) for line in text.splitlines()) <= 112
+    pictures = {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-drivers",
+                "sensitivity-1-air", "sensitivity-2-vacuum"}  # fmt: skip
+    assert {path.stem for path in Path("here").glob("*.png")} == pictures
+    data = results.load(Path("here") / "sensitivity.nc")
+    assert {name for name, _ in figures("sensitivity", data)} == pictures
+    assert data["material_probability_stable"].attrs["units"] == "-"
+    assert data["cloud_friction"].dims == ("environment", "material", "sample")
+
+
+def test_an_interrupt_of_the_last_stage_keeps_the_probabilities(capsys, monkeypatch):
+    """One line on standard error, status 130, complete: false; what was left out is null."""
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sensitivity, "doubt_of", interrupt)
+    assert main(["sensitivity", "small.toml", "--json", "--samples", "64"]) == 130
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert (found["complete"], found["sobol"], err.count("\n")) == (False, None, 1)
+    assert found["overall"][0]["probability_stable"] is not None
+    assert "interrupted" in found["doubt_reason"]
+
+
+def test_an_earlier_interrupt_writes_nothing(capsys, monkeypatch):
+    """One line, status 130, no file."""
+
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("separatrix.uncertainty.model.trained", interrupt)
+    assert main(["sensitivity", "small.toml", "--samples", "64"]) == 130
+    out, err = capsys.readouterr()
+    assert (out, err) == ("", "separatrix: interrupted; nothing was written.\n")
+    assert [path.name for path in Path().iterdir()] == ["small.toml"]
+
+
+def test_stages_fill_one_progress():
+    """From 0 to the end, never back."""
+    told = []
+    stage = stages(lambda done, total: told.append(done / total))
+    for name in STAGES:
+        part = stage(name)
+        part(1, 2)
+        part(2, 2)
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    assert stages(None)("chain") is None
+
+
+def test_the_paper_table_with_the_default_scatter(capsys):
+    """Armalon's friction is the lowest with 0.67 on Chromex 40 in gas, tied with three; else over 0.99."""
+    Path("paper.toml").write_text(
+        'extends = "cryogenic-turbopump"\n[stability]\nkicks = ["0.5 m/s"]\nruns = 8\nduration = "10 ms"\n'
+        "restitution_factors = [0.2, 0.5, 0.8]\n"
+    )
+    assert main(["sensitivity", "paper.toml", "--json", "--samples", "1024", "--quiet"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    rows = [row(found, one["name"], "Armalon") for one in found["environments"]]
+    lowest = [one["probability_lowest_friction"] for one in rows]
+    assert lowest[0] == pytest.approx(0.667, abs=0.001)  # the quadrature's, three digits
+    assert min(lowest[1:]) > 0.99
+    first = found["environments"][0]["materials"]
+    tied = {one["name"] for one in first if one["tie_group"] == 1}
+    assert tied == {"Armalon", "Meldin 7211", "PEEK WG 101", "PEEK 450 CA 30"}
+    # the order of thresholds is that of frictions: the same within the scatter of 1024 samples
+    assert [one["probability_best"] for one in rows] == pytest.approx(lowest, abs=0.04)
+    assert found["default_scatter"] == 0.09
+    assert np.mean([one["friction_scatter_assumed"] for one in rows]) == 1.0
