@@ -14,6 +14,9 @@ from separatrix.units import Array, Ratio
 DRAWN = 2**14
 """Results behind the quantiles."""
 
+FAR = 1e-9
+"""Weight that a sample keeps however far it is: a result without a near sample leaves all as it was."""
+
 _HALF_STEP = 2.0**-31
 
 
@@ -52,9 +55,11 @@ class Likelihood:
         return np.asarray(np.quantile(drawn, (np.arange(count) + 0.5) / count))
 
     def weights(self, x: Array, results: Array) -> Array:
-        """Weight of each sample under each result, shape (result, sample), not normalised."""
+        """Weight of each sample under each result, shape (result, sample), not normalised [-]."""
         deviation = self.deviation(x)
-        return np.asarray(np.exp(-0.5 * ((results[:, None] - self.centre(x)) / deviation) ** 2) / deviation)
+        height = self.known.standard_deviation / deviation
+        away = (results[:, None] - self.centre(x)) / deviation
+        return np.asarray(height * np.exp(-0.5 * away**2) + FAR)
 
 
 def likelihood(known: Distribution, test: Measurement, samples: int, fewest: int) -> Likelihood:

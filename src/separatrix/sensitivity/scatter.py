@@ -27,9 +27,9 @@ def jackknife(sums: Array, quantity: Callable[[Array], Array]) -> tuple[Array, A
     quantity : callable
         Takes sums of shape (...,), gives any shape; called once with all blocks and once without each.
     """
-    blocks, all_of_them = len(sums), sums.sum(axis=0)
-    value = np.asarray(quantity(all_of_them))
-    without = np.array([quantity(all_of_them - one) for one in sums])
+    blocks = len(sums)
+    value = np.asarray(quantity(sums.sum(axis=0)))
+    without = np.array([quantity(np.delete(sums, k, axis=0).sum(axis=0)) for k in range(blocks)])
     squares = np.sum((without - without.mean(axis=0)) ** 2, axis=0)
     half = stdtrit(blocks - 1, 0.975) * np.sqrt((blocks - 1) / blocks * squares)
     return value, np.asarray(half)
