@@ -43,6 +43,7 @@ class _Sheet:
     name: str
 
     def at(self, place: str = "") -> str:
+        """File, sheet, and a place in it."""
         where = f"{self.workbook.label}, sheet {printable(self.name)}"
         return f"{where}, {place}" if place else where
 
