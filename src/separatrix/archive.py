@@ -94,6 +94,8 @@ def open_archive(path: Path, label: str | None = None) -> Archive:
             _check_ends(file.read(4), _tail(file, size), name)
         with zipfile.ZipFile(path) as container:
             infos = container.infolist()
+    except InputError:  # which is a ValueError, too
+        raise
     except OSError as error:
         raise InputError(name, f"cannot be read: {os.strerror(error.errno or 0)}") from None
     except (zipfile.BadZipFile, NotImplementedError, ValueError, struct.error) as error:

@@ -131,7 +131,7 @@ def overlapping() -> bytes:
 
 GOOD = zipped(MEMBERS)
 WRONG = [
-    ("text", b"time;friction\n", "is not a zip file"),
+    ("text", b"time;friction\n", "case.xlsx is not a zip file, which a workbook is. Open"),
     ("empty", b"", "is not a zip file"),
     ("cut short", GOOD[:-30], "damaged zip file"),
     ("without directory", GOOD[: GOOD.find(b"PK\x01\x02")], "its directory is missing"),

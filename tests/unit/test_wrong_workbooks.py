@@ -88,7 +88,7 @@ STUDIES = [
     ("formula unsaved", mass(Formula("20+5"), None, "g"), 'formula without a saved value; got "=20+5"'),
     ("number as unit", mass(25.0, None, 3.0), "cell D2 must be text; got 3.0"),
     ("width without value", mass(None, 0.2, "g"), "cell C2 is a width without a value"),
-    ("width that is no width", mass(25.0, "some", "g"), "cell B2: [cage] mass, after +-,"),
+    ("width that is no width", mass(25.0, "some", "g"), "cell C2: [cage] mass, after +-,"),
     ("value without key", study("cage", 4, None, 3.0), "cell B4 is a value without a key"),
     ("key twice", study("cage", 4, "mass", 30.0, None, "g"), "cell A4: mass is given a second time. It stands in A2"),
     ("unknown key", study("cage", 4, "mas", 30.0), "cell B4: [cage] mas is no key of this section. Did you mean mass?"),
@@ -145,7 +145,7 @@ FILES = [
     ("OpenDocument", zipped({"mimetype": "application/vnd.oasis.opendocument.spreadsheet", "content.xml": "<x/>"}), "is an OpenDocument file"),
     ("binary workbook", zipped(parts(STUDY) | {"xl/workbook.bin": b"x"}), "is a binary workbook, .xlsb"),
     ("old kind or password", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "is an .xls workbook of the old kind, or has a password"),
-    ("text", b"key,value\n", "is not a zip file"),
+    ("text", b"key,value\n", "case.xlsx is not a zip file, which a workbook is. Open"),
     ("empty", b"", "is empty"),
     ("bomb", zipped(parts(STUDY) | {"xl/media/a.bin": bytes(9_000_000)}), "would expand by more than 100:1"),
 ]  # fmt: skip

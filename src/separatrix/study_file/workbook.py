@@ -126,6 +126,7 @@ def _entries(document: Document, section: str, sheet: SheetText) -> dict[str, En
     for field in _known_once(sheet):
         document.cells[f"[{section}] {field.key}"] = field.value_place
         document.cells[f"[{section}] {field.key} unit"] = field.unit_place
+        document.cells[f"[{section}] {field.key}, after +-,"] = field.spread_place
         key, *inside = field.key.split(".")
         value = written_value(field)
         if inside:
@@ -182,7 +183,7 @@ def _in_cell(document: Document, problem: InputError) -> InputError:
     if ", sheet " not in place:
         return problem
     key = name.partition(", item")[0].strip()
-    found = next((k for k in _shorter(key) if k in document.cells), None)
+    found = name if name in document.cells else next((k for k in _shorter(key) if k in document.cells), None)
     where, rule, cure = problem.where, problem.rule, problem.cure
     if found is not None:
         where = f"{document.cells[found]}: {name}"
