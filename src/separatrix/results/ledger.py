@@ -114,10 +114,14 @@ def _asked(study: Study) -> dict[str, Any]:
     return {key: value for key, value in values.items() if key not in ("name", "title", "origins")}
 
 
+SETTLED = ("record", "records", "law")
+"""Keys of what is behind a number: a record of the library, the tests; the number itself stands beside."""
+
+
 def _without_records(value: Any) -> Any:
     """The same without whole records of the library: their numbers stand in the materials."""
     if isinstance(value, dict):
-        return {key: _without_records(v) for key, v in value.items() if key not in ("record", "records")}
+        return {key: _without_records(v) for key, v in value.items() if key not in SETTLED}
     return [_without_records(item) for item in value] if isinstance(value, list) else value
 
 

@@ -7,6 +7,7 @@ from enum import Enum
 from typing import Any
 
 from separatrix.distribution import Distribution, described
+from separatrix.friction_fit import FrictionTest, TestedFriction
 from separatrix.study import Candidate, Film, Friction, Material, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
@@ -130,7 +131,12 @@ def _ranking(study: Study) -> dict[str, Any] | None:
         return None
     candidates = [_candidate(candidate) for candidate in study.ranking.candidates]
     table = study.records.get("ranking.friction")
-    item = {"environments": list(study.ranking.environments), "candidates": candidates, "table": table}
+    item = {
+        "environments": list(study.ranking.environments),
+        "candidates": candidates,
+        "friction_scatter": _value(study, study.ranking, "ranking", "friction_scatter"),
+        "table": table,
+    }
     key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
     return _origin(study, key, item)
 
@@ -144,7 +150,15 @@ def _candidate(candidate: Candidate) -> dict[str, Any]:
 
 
 def _friction(friction: Friction) -> dict[str, Any]:
-    return {
-        name: getattr(friction, name)
-        for name in ("mean", "standard_deviation", "count", "source", "confidence")
-    }
+    """A friction, and every test behind it if it comes from a friction file."""
+    names = ("mean", "standard_deviation", "count", "source", "confidence")
+    item: dict[str, Any] = {name: getattr(friction, name) for name in names}
+    if isinstance(friction.law, TestedFriction):
+        item["tests"] = [_test(test) for test in friction.law.own]
+    return item
+
+
+def _test(test: FrictionTest) -> dict[str, Any]:
+    """A friction test in SI units; pairs are the lowest and the highest value."""
+    values = ((f.name, getattr(test, f.name)) for f in fields(test))
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
