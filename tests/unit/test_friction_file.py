@@ -163,3 +163,35 @@ def test_reading_a_friction_file_needs_no_numpy(tmp_path):
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     assert json.loads(found.stdout) is False
+
+
+def test_figures_name_in_their_legend_what_was_not_tested():
+    """Each sentence once, in whatever order the candidates bring them; nothing where all was tested."""
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from separatrix.figures.ranking import _untested
+
+    axes = Figure().subplots()
+    _untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
+    assert axes.get_legend_handles_labels()[1] == ["friction: too fast", "friction: too hot"]
+
+
+def test_a_saved_ranking_holds_the_sentences_as_one_text():
+    """Lists of different length would not fit in one array."""
+    from separatrix.results.labelled import _flatten_one
+
+    assert _flatten_one("extrapolation", ["too fast", "too hot"]) == {
+        "extrapolation": ((), "too fast; too hot")
+    }
+
+
+def test_a_result_holds_every_test_behind_a_friction(tmp_path):
+    """The resolved study repeats the tests whole, in SI, so that the file may change afterwards."""
+    from separatrix.study_file import resolved
+
+    found = resolved(read_study(study(tmp_path)))["ranking"]
+    (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
+    assert (test["friction"], test["slip_speed"], test["sample"]) == (0.2, [1.0, 5.0], "s1")
+    assert found["friction_scatter"]["value"] == 0.09
+    json.dumps(found, allow_nan=False)

@@ -42,7 +42,8 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
         "runs": 64,
     }
     values = known if friction is not None else dict.fromkeys(known)
-    return {"name": name, "rank": rank, "friction": friction, "reason": "So it is.", **values, **other}
+    always = {"name": name, "rank": rank, "friction": friction, "reason": "So it is.", "extrapolation": []}
+    return {**always, **values, **other}
 
 
 def document(*rows: dict) -> dict:
@@ -61,6 +62,16 @@ def test_a_missing_measurement_has_dashes_not_numbers():
     """No friction, threshold, margin or probability, and the words instead of a verdict."""
     line = ranking._table([row("A", None, None)]).splitlines()[-1]
     assert line.split() == ["-", "A", "-", "-", "-", "-", "not", "measured"]
+
+
+def test_frictions_that_were_not_tested_are_marked_and_explained_once():
+    """A mark in the row; below, each sentence once, with names where it is not said of all."""
+    rows = [row("A", 1, extrapolation=["too fast", "too hot"]), row("B", 2, extrapolation=["too fast"])]
+    text = ranking._table([*rows, row("C", 3)])
+    assert [line.split()[2][-1] for line in text.splitlines()[-3:]] == ["*", "*", "0"]
+    (_, note) = ranking.footnotes(rows)
+    assert note == "  * not tested as the pocket rubs: too fast. too hot (A)."
+    assert ranking.footnotes([row("C", 3)]) == []
 
 
 def test_the_evidence_stands_beside_each_candidate():
