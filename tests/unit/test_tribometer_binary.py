@@ -188,6 +188,12 @@ def test_raw_values_are_scaled_as_the_file_says(tmp_path):
     assert table.columns[1].tolist() == [1.0, 1.5, 2.0, 2.5]
 
 
+def test_a_number_of_scalings_that_none_has_is_refused(tmp_path):
+    """npTDMS would count up to it: a thousand million scalings are refused before it does."""
+    with pytest.raises(InputError, match=r"at most 100 scalings a channel; got 1000000000\."):
+        measured(tmp_path, channel("COF", [0.1, 0.2], NI_Number_Of_Scales=10**9))
+
+
 def test_points_in_time_become_seconds_since_the_first(tmp_path):
     """Time stamps are kept to the microsecond; 1e-6 s is their resolution in the writer."""
     moments = np.datetime64("2026-01-01T00:00:00") + np.arange(3) * np.timedelta64(250, "ms")

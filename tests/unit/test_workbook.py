@@ -39,7 +39,7 @@ race_friction = { between = [0.08, 0.12] }
 [cage]
 mass = "25.0000000000000001 g"
 pocket_clearance = { mean = "0.6 mm", standard_deviation = "20 um" }
-pocket_position_scatter = "10 um"
+pocket_position_scatter = "10.123456789012 um"
 
 [stability]
 kicks = ["0.1 m/s", "50 cm/s", "2 m/s"]
@@ -298,6 +298,9 @@ def test_the_same_content_gives_the_same_bytes(answer, tmp_path, monkeypatch):
     monkeypatch.setattr(time, "localtime", lambda *_: time.gmtime(now + 1e7))
     results_workbook(answer, tmp_path / "later.xlsx")
     assert (tmp_path / "now.xlsx").read_bytes() == (tmp_path / "later.xlsx").read_bytes()
+    with zipfile.ZipFile(tmp_path / "now.xlsx") as archive:
+        core = archive.read("docProps/core.xml")
+    assert core.count(b"2000-01-01T00:00:00Z<") == 2
 
 
 def test_an_unfinished_answer_has_a_workbook_too(answer, tmp_path):
