@@ -233,6 +233,7 @@ def test_every_dimensional_variable_has_a_unit(folder):
         "rank",
         "whirl_direction",
         "within_reach",
+        "friction_scatter_assumed",
     }
     for verb in (verb.name for verb in VERBS if verb.writes_files):
         data = results.load(folder / verb / f"{verb}.nc")
