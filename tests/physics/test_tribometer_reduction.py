@@ -56,10 +56,10 @@ def test_the_standard_error_is_the_scatter_of_means(correlation):
 
 
 def test_a_white_series_has_the_textbook_error():
-    """Without correlation the standard error is s over the root of n, to the scatter of its own estimate."""
+    """Without correlation the standard error is s over the root of n, up to a tenth more."""
     rng = np.random.default_rng(2)
     found = [steady.steady_mean(rng.standard_normal(256)).standard_error for _ in range(200)]
-    assert np.median(found) == pytest.approx(1 / 16, rel=0.05)  # 60 cosines: 9 % each, 200 of them
+    assert 0.98 / 16 < np.median(found) < 1.1 / 16  # 60 cosines: 9 % each, 200 of them 0.8 %
 
 
 def test_a_straight_line_is_no_scatter():

@@ -34,7 +34,7 @@ STEP_GAIN, STEP_SIZE = 0.4, 0.1
 of the mean."""
 
 JUMP = 10.0
-"""A jump of wear over the usual scatter of its increments; it is also a fifth of all wear."""
+"""A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,10 +148,10 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
 
 def wear_step(spans: Spans) -> tuple[float, float] | None:
     """Return place and size of a sudden change of wear depth; else None."""
-    increments = np.diff(spans.means)
+    increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may lie
     excess = increments - np.median(increments)
     scatter = 1.4826 * float(np.median(np.abs(excess)))
     k = int(np.argmax(np.abs(excess)))
     if abs(excess[k]) <= JUMP * scatter or abs(excess[k]) < 0.2 * float(np.ptp(spans.means)):
         return None
-    return spans.start + spans.width * (k + 1), float(excess[k])
+    return spans.start + spans.width * (k + 1.5), float(excess[k])

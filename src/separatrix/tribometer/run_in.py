@@ -48,6 +48,10 @@ PASSES = 4
 _SHAPES = np.concatenate([LENGTHS, RAMPS])
 
 
+ROUNDING = 1e-12
+"""Share of friction below which differences are those of rounding."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RunIn:
     """End of running-in, as a share of the stretch that was looked at."""
@@ -74,6 +78,8 @@ def run_in(values: Array) -> RunIn:
     n, first = values.size, 0
     found = RunIn(end=0.0, amplitude=0.0, length=0.0, rest=0.0, ends=True)
     latest = int(LATEST * n)
+    if np.ptp(values) <= ROUNDING * np.abs(values).max():
+        return found
     for _ in range(PASSES):
         falls = _falls(values[first:])
         if falls is None:

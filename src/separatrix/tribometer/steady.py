@@ -43,6 +43,9 @@ LONG = 4.5
 """Corner below which the correlation is too long for the stated interval: 7 % of the stretch."""
 
 
+ROUNDING = 1e-12
+"""Share of friction below which differences are those of rounding."""
+
 MIXED = 0.2
 """White part from which the correlated one is no more than a guess."""
 
@@ -86,7 +89,7 @@ class SteadyMean:
     @property
     def is_long(self) -> bool:
         """Whether the correlation is too long for the error to be trusted."""
-        return self.corner < LONG and self.floor < MIXED
+        return self.corner < LONG and self.floor < MIXED and self.density > 0.0
 
 
 def half_width(standard_error: float, degrees_of_freedom: int) -> float:
@@ -129,6 +132,8 @@ def cosines(values: Array) -> Array:
     """
     x = _places(values.size)
     level = values - values.mean()
+    if np.ptp(level) <= ROUNDING * np.abs(values).max():
+        return np.zeros(values.size - 1)
     return np.asarray(dct(level - x * (x @ level) / (x @ x), type=2, norm="ortho")[1:], dtype=float)
 
 
