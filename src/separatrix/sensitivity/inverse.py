@@ -23,8 +23,7 @@ POINTS = 97
 
 NOMINAL_POINTS = 2049
 
-At = Callable[[Array], Evaluated]
-"""What the model says of values of shape (sample, input)."""
+_Ask = Callable[[Array], Evaluated]
 
 
 def allowed_friction(
@@ -127,7 +126,7 @@ def _shares(question: Question, values: Array, frictions: Array, scattered: Arra
     return np.array(share), np.array(half)
 
 
-def _asked_again(question: Question, values: Array) -> At:
+def _asked_again(question: Question, values: Array) -> _Ask:
     """Model for other frictions, on which the restitution factor does not depend."""
     if question.judge is None:
         return question.evaluate
