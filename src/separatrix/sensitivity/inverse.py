@@ -21,6 +21,9 @@ PROBABILITY: Ratio = 0.95
 POINTS = 97
 """Frictions at which samples are judged; between them the probability is a straight line."""
 
+FINER = 8
+"""Parts of a step in which the probability crosses what is asked; they are judged as well."""
+
 NOMINAL_POINTS = 2049
 
 _Ask = Callable[[Array], Evaluated]
@@ -63,8 +66,13 @@ def allowed_friction(
     _require(question, probability, scatter, searched, points)
     if len(values) < 2 * BLOCKS:
         raise InputError("values", f"must be at least {2 * BLOCKS} samples", "", str(len(values)))
-    frictions, fine = _frictions(searched, points), _frictions(searched, NOMINAL_POINTS)
-    share, half = _shares(question, values, frictions, _scattered(len(values), scatter))
+    fine, scattered = _frictions(searched, NOMINAL_POINTS), _scattered(len(values), scatter)
+    frictions = _frictions(searched, points)
+    coarse = _shares(question, values, frictions, scattered)
+    more = _crossed(frictions, *coarse, probability)
+    added = _shares(question, values, more, scattered) if more.size else coarse
+    frictions, places = np.unique(np.concatenate((frictions, more)), return_index=True)
+    share, half = (np.concatenate(both)[places] for both in zip(coarse, added, strict=True))
     nominal = _nominal(question, fine)
     answers: dict[AllowedFriction, list[str]] = {}
     for c, case in enumerate(question.cases):
@@ -110,6 +118,14 @@ def require_within(name: str, value: object, low: float, high: float) -> None:
 def _frictions(searched: Ratio, points: int) -> Array:
     """0, then equal ratios up to the end of the search."""
     return np.concatenate(([0.0], np.geomspace(searched / 1000.0, searched, points - 1)))
+
+
+def _crossed(frictions: Array, share: Array, half: Array, probability: Ratio) -> Array:
+    """Frictions inside each step in which the probability of a case, or an end of its interval, crosses."""
+    above = np.stack([one >= probability for one in (share - half, share, share + half)])
+    steps = np.flatnonzero((above[:, 1:] != above[:, :-1]).any(axis=(0, 2)))
+    inside = [np.linspace(frictions[i], frictions[i + 1], FINER + 1)[1:-1] for i in steps]
+    return np.concatenate([np.empty(0), *inside])
 
 
 def _scattered(samples: int, scatter: Ratio) -> Array:
