@@ -48,6 +48,9 @@ HIGHEST: Ratio = 0.97
 FIRST_REACH, REACH = 0.6, 3.0
 """How far from the boundary runs are placed: in ln f at first, then in logits of P(grow)."""
 
+LEAST_WIDTH = 0.08
+"""Width of logit P in ln f below which runs are not drawn together: the tails must be seen too."""
+
 HELD_OUT = 5
 """One run in so many is held out of the fit that is tried."""
 
@@ -273,7 +276,7 @@ def _near(law: Surrogate, blank: Points) -> Array:
         terms = law.terms(blank.restitution_factor[own], blank.parameters[own])
         z, pieces = REACH * blank.offset[own], width_pieces(blank.restitution_factor[own])
         below, above = pieces @ mode[-WIDTHS : -WIDTHS // 2], pieces @ mode[-WIDTHS // 2 :]
-        width = np.exp(np.where(z < 0.0, below, above))
+        width = np.maximum(np.exp(np.where(z < 0.0, below, above)), LEAST_WIDTH)
         found[own] = terms @ mode[:-WIDTHS] + z * width
     return found
 
