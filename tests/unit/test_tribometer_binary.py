@@ -189,7 +189,7 @@ def test_raw_values_are_scaled_as_the_file_says(tmp_path):
 
 
 def test_a_number_of_scalings_that_none_has_is_refused(tmp_path):
-    """npTDMS would count up to it: a thousand million scalings are refused before it does."""
+    """The library would count up to it: a thousand million scalings are refused before it does."""
     with pytest.raises(InputError, match=r"at most 100 scalings a channel; got 1000000000\."):
         measured(tmp_path, channel("COF", [0.1, 0.2], NI_Number_Of_Scales=10**9))
 

@@ -26,6 +26,7 @@ from separatrix.study_file.sections import _READERS
 from separatrix.study_file.shipped import template_path
 from separatrix.study_file.template_rows import _REQUIRED, _WHOLE, meaning, template_keys
 from separatrix.study_file.template_workbook import study_workbook, template_workbook
+from separatrix.units import parse
 from separatrix.workbook import results_workbook
 
 STUDY = """
@@ -192,6 +193,13 @@ def test_sheets_of_ones_own_and_rows_without_value_are_passed_over(tmp_path):
     found = variant(tmp_path / "a.xlsx", ["thickness", 0.25, None, "um"], **sheets)
     assert found.film.thickness == 2.5e-7
     assert found.cage == read_study("cryogenic-turbopump").cage
+
+
+def test_a_number_in_a_cell_loses_no_digit(tmp_path):
+    """The number of the cell and its unit give what the same digits give as text."""
+    assert variant(tmp_path / "a.xlsx", ["thickness", 0.123456789012, None, "um"]).film.thickness == parse(
+        "0.123456789012 um", "m"
+    )
 
 
 def test_headings_may_stand_in_any_order(tmp_path):
