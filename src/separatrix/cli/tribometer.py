@@ -90,7 +90,7 @@ def _refuse(paths: Sequence[Path], options: TribometerOptions) -> None:
             "--out", f"must name a file that ends in {SUFFIX}", "", shown(str(options.out)), cure
         )
     if options.out.exists() or options.out.is_symlink():
-        from separatrix.friction_file import exists_already
+        from separatrix.friction_file.refusal import exists_already
 
         raise exists_already(options.out)
 
@@ -223,7 +223,8 @@ def _deliver(
 
 def _write(tests: Sequence[FrictionTest], out: Path) -> None:
     """Write the friction file aside, then rename it into place; a file that came meanwhile stays."""
-    from separatrix.friction_file import exists_already, friction_text
+    from separatrix.friction_file import friction_text
+    from separatrix.friction_file.refusal import exists_already
 
     with staged(out.parent) as stage:
         (stage / out.name).write_text(friction_text(tests), encoding="utf-8")

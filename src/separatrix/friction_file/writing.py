@@ -9,6 +9,7 @@ from pathlib import Path
 
 from separatrix.errors import InputError
 from separatrix.friction_file.reading import AXES
+from separatrix.friction_file.refusal import exists_already
 from separatrix.friction_fit import FrictionTest
 
 HEADER = """\
@@ -46,12 +47,6 @@ def write_friction(tests: Sequence[FrictionTest], path: Path) -> None:
         raise exists_already(path) from None
     except OSError as error:
         raise InputError(str(path), f"cannot be written ({error.strerror or error})") from None
-
-
-def exists_already(path: Path) -> InputError:
-    """Refusal to overwrite."""
-    cure = "It may hold numbers that a person wrote: name a new file, or remove it first."
-    return InputError(f"--out {path}", "exists already, and was not touched", cure=cure)
 
 
 def _lines(test: FrictionTest) -> Iterator[str]:
