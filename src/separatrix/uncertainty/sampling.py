@@ -17,7 +17,7 @@ from math import sqrt
 
 import numpy as np
 
-from separatrix.distribution import Distribution, Normal
+from separatrix.distribution import Distribution, LogNormal
 from separatrix.errors import InputError
 from separatrix.study import Candidate, Friction, Study
 from separatrix.study_numbers import Setter, setter, settled_in, study_numbers, value_of
@@ -121,7 +121,10 @@ def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
 
 
 def _frictions(study: Study) -> Iterator[UncertainInput]:
-    """Measured frictions whose distribution the study does not give, with their scatter."""
+    """Measured frictions whose distribution the study does not give, with their scatter.
+
+    Log-normal, as the fit to tests and `probability_lowest` take them: friction scatters by a share of itself.
+    """
     ranking = study.ranking
     for candidate in ranking.candidates if ranking else ():
         for environment, friction in candidate.friction.items():
@@ -131,11 +134,11 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
             scatter = ranking.friction_scatter if ranking else 0.0
             deviation, source = next_cage_deviation(friction, scatter)
             if deviation > 0.0:
-                normal = Normal(mean=friction.mean, standard_deviation=deviation)
+                scattered = LogNormal(mean=friction.mean, standard_deviation=deviation)
                 yield UncertainInput(
                     key=key,
                     unit="-",
-                    distribution=settled_in(study, key, normal),
+                    distribution=settled_in(study, key, scattered),
                     central=friction.mean,
                     source=source,
                 )
