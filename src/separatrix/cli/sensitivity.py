@@ -138,7 +138,9 @@ def doubt_of(model: Model, values: Array, progress: Progress | None) -> Doubt:
     following = doubts.next_test(question, design, tests)
     told(2, 4)
     some = doubts.sampled_values(question, INVERSE, seed=model.study.stability.seed)
-    allowed = doubts.allowed_friction(question, some)
+    ranking = model.study.ranking
+    scatter = ranking.friction_scatter if ranking else 0.0
+    allowed = doubts.allowed_friction(question, some, scatter=scatter)
     told(3, 4)
     films, reason = _films(model, question, some)
     told(4, 4)

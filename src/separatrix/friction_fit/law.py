@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import exp, hypot, log, sqrt
+from math import exp, log, sqrt
 
 from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.records import FrictionTest, Prediction
@@ -57,6 +57,7 @@ class StatedFriction:
     """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
 
     Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
+    Outside its conditions that is said, and its scatter left as it is: nobody knows the tests behind it.
     """
 
     mean: Ratio
@@ -74,18 +75,16 @@ class StatedFriction:
         temperature: Kelvin | None = None,
         medium: str | None = None,
     ) -> Prediction:
-        """Friction foretold for these conditions: the printed mean, its scatter widened where not tested."""
+        """Friction foretold for these conditions: the printed mean, and in what respect they were not tested."""
         asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
         within = held(asked, self.ranges, {})
         stated = self.standard_deviation
         scatter = self.default_scatter * self.mean if stated is None else stated
-        widening = self.mean * within.widening
         other = () if self.medium is None else other_medium(medium, (self.medium,))
         return Prediction(
             mean=self.mean,
             standard_error=scatter if stated is None else scatter / sqrt(self.count or 1),
-            standard_deviation=hypot(scatter, widening),
+            standard_deviation=scatter,
             extrapolation=(*within.sentences, *other),
-            widening=widening,
             assumed_scatter=stated is None,
         )

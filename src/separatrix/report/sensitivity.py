@@ -164,7 +164,9 @@ def _doubt(document: Document) -> Iterator[str]:
     told = document["next_test"]["sentences"]
     yield section("Which test to run next", *(paragraph(text) for text in told[:MOST_SENTENCES]))
     allowed = list(dict.fromkeys(one["sentence"] for one in document["allowed_friction"]))
-    yield section("Which friction a new material may have", *map(paragraph, allowed))
+    error = max(one["surrogate"]["error"] for one in document["boundaries"])
+    known = f"The boundary behind it is known to {100.0 * error:.1f} % of its friction."
+    yield section("Which friction a new material may have", *map(paragraph, [*allowed, known]))
     yield section("Which film keeps the cage stable", *_films(document))
 
 

@@ -202,8 +202,9 @@ def allowed_sentence(answer: AllowedFriction) -> str:
         return f"{who}: {answer.reason}"
     nominal = "none" if answer.most_nominal is None else f"{answer.most_nominal:.3f}"
     most = f"{answer.most.value:.3f} ({answer.most.low:.3f} to {answer.most.high:.3f})"
+    scatter = f", with a scatter of {percent(answer.scatter)} of it," if answer.scatter > 0.0 else ""
     text = (
-        f"{who} may have a pocket friction of at most {most} to be stable with a probability "
+        f"{who} may have a pocket friction of at most {most}{scatter} to be stable with a probability "
         f"of {percent(answer.probability)} (nominally {nominal})."
     )
     return f"{text} {answer.reason}".rstrip()

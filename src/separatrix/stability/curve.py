@@ -236,7 +236,7 @@ def curve_of_points(
     complete: bool = True,
     jobs: int = 1,
 ) -> StabilityCurve:
-    """Return the curve of the points that were finished, rising restitution factors first, with its limits."""
+    """Return the curve of the finished points, rising restitution factors first, with its limits."""
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
     hard = work_through(lambda eta: hard_limit(cage, eta, settings), etas, jobs=jobs)

@@ -123,7 +123,8 @@ def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
 def _frictions(study: Study) -> Iterator[UncertainInput]:
     """Measured frictions whose distribution the study does not give, with their scatter.
 
-    Log-normal, as the fit to tests and `probability_lowest` take them: friction scatters by a share of itself.
+    Log-normal, as the fit to tests and `probability_lowest` take them: friction scatters by a share of
+    itself.
     """
     ranking = study.ranking
     for candidate in ranking.candidates if ranking else ():
