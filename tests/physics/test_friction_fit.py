@@ -112,7 +112,7 @@ def test_the_own_error_of_a_single_test_adds_to_the_assumed_scatter():
 
 
 def test_the_fit_of_one_test_is_the_printed_mean_of_a_table():
-    """Second road: a table's single mean, which is never fitted, foretells the same."""
+    """Second road: a table's single mean, never fitted, foretells the same, but does not widen."""
     conditions = {"slip_speed": 21.0, "pressure": 1e8, "temperature": 300.0, "medium": "air"}
     ranges = {"slip_speed": (1.0, 5.0), "temperature": (77.0, 77.0)}
     stated = StatedFriction(mean=0.12, ranges=ranges, medium="liquid nitrogen", default_scatter=0.09)
@@ -120,6 +120,10 @@ def test_the_fit_of_one_test_is_the_printed_mean_of_a_table():
     a, b = stated.at(**conditions), one.at(**conditions)
     assert a.extrapolation == b.extrapolation
     assert len(a.extrapolation) == 4
+    for name in ("mean", "standard_error"):
+        assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)
+    assert a.widening == 0.0 < b.widening
+    a, b = (friction.at(slip_speed=3.0, temperature=77.0) for friction in (stated, one))
     for name in ("mean", "standard_error", "standard_deviation", "widening", "next_cage"):
         assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)
 

@@ -234,6 +234,9 @@ def test_every_dimensional_variable_has_a_unit(folder):
         "whirl_direction",
         "within_reach",
         "friction_scatter_assumed",
+        "tie_group",
+        "input_mean",  # each in the unit that stands beside it, in input_unit
+        "input_standard_deviation",
     }
     for verb in (verb.name for verb in VERBS if verb.writes_files):
         data = results.load(folder / verb / f"{verb}.nc")

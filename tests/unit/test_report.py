@@ -14,6 +14,7 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
         "restitution_threshold_low": 0.55,
         "restitution_threshold_high": 0.64,
         "margin": 0.3,
+        "probability_lowest_friction": 0.5,
         "probability_stable": 1.0,
         "probability_low": 0.98,
         "probability_high": 1.0,

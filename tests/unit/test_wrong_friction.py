@@ -98,7 +98,10 @@ WRONG_STUDIES = {
         'friction = "friction.toml"\nmaterials = ["Armalom"]',
         ("materials names a material that friction.toml lacks", "Did you mean Armalon?"),
     ),
-    "scatter 0": ('friction = "friction.toml"\nfriction_scatter = 0', ("friction_scatter must lie between 0.001", "got 0")),
+    "scatter 0": (
+        'friction = "friction.toml"\nfriction_scatter = 0',
+        ("friction_scatter must lie between 0.001", "got 0"),
+    ),
     "scatter in percent": (
         'friction = "friction.toml"\nfriction_scatter = 9',
         ("friction_scatter must lie between 0.001 and 1", "got 9", "0.09 stands for 9 %"),

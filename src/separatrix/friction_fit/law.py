@@ -75,7 +75,7 @@ class StatedFriction:
         temperature: Kelvin | None = None,
         medium: str | None = None,
     ) -> Prediction:
-        """Friction foretold for these conditions: the printed mean, and in what respect they were not tested."""
+        """Friction foretold for these conditions: the printed mean, and what of them was not tested."""
         asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
         within = held(asked, self.ranges, {})
         stated = self.standard_deviation

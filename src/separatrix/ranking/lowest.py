@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from separatrix.ranking.friction import errors_of
+from separatrix.ranking.friction import MeanFriction, errors_of
 from separatrix.study import Friction
 from separatrix.units import Array, Ratio
 
@@ -45,7 +45,11 @@ def probability_lowest(frictions: Mapping[str, Friction | None], scatter: Ratio 
     scatter : float
         Relative standard deviation of an unrepeated test [-].
     """
-    known = errors_of(frictions, scatter)
+    return lowest_among(errors_of(frictions, scatter))
+
+
+def lowest_among(known: Mapping[str, MeanFriction]) -> LowestFriction:
+    """The same of mean frictions with their standard errors, 0 where there is none."""
     names = list(known)
     logs = [log(max(one.mean, 1e-300)) for one in known.values()]
     errors = [max((one.error or 0.0) / max(one.mean, 1e-300), _LEAST_ERROR) for one in known.values()]

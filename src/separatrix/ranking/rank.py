@@ -10,6 +10,7 @@ from separatrix.cage import Judgement, judge
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
+from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.order import Interval, ranks
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_measured, reason
 from separatrix.ranking.records import RankedEnvironment, RankedMaterial, Ranking
@@ -249,7 +250,12 @@ def _ranked(
     """Rows of one environment, best first; the order of the study within a rank."""
     rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
     places = ranks([_scatter(row) for row in rows])
-    ranked = [replace(row, rank=place) for row, place in zip(rows, places, strict=True)]
+    lowest = lowest_among({name: friction for name, friction in table.items() if friction is not None})
+    chances = [lowest.probabilities.get(row.name) for row in rows]
+    ranked = [
+        replace(row, rank=place, probability_lowest_friction=chance)
+        for row, place, chance in zip(rows, places, chances, strict=True)
+    ]
     return tuple(sorted(ranked, key=_best_first))
 
 

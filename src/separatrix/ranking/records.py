@@ -22,6 +22,8 @@ class RankedMaterial:
     friction_deviation : float or None
         Of a new sample about that mean, a standard deviation, widened where nothing was tested; not
         overall [-].
+    probability_lowest_friction : float or None
+        That no other candidate's mean friction is lower there, by their standard errors [-].
     friction_scatter_assumed : bool or None
         Whether the scatter is that of an unrepeated test, which nobody measured.
     extrapolation : tuple of str
@@ -55,6 +57,7 @@ class RankedMaterial:
     friction: Ratio | None = None
     friction_error: Ratio | None = None
     friction_deviation: Ratio | None = None
+    probability_lowest_friction: Ratio | None = None
     friction_scatter_assumed: bool | None = None
     extrapolation: tuple[str, ...] = ()
     ball_cage_stiffness: NewtonPerMetre | None = None

@@ -59,7 +59,8 @@ def _environment(document: Document, one: Document) -> str:
     """Return verdicts, evidence and reasons of one environment."""
     rows = one["materials"]
     evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
-    return section(_title(one["name"]), _table(rows), *footnotes(rows), "", *evidence, *_reasons(rows))
+    notes = (*footnotes(rows), *lowest(rows), "")
+    return section(_title(one["name"]), _table(rows), *notes, *evidence, *_reasons(rows))
 
 
 def _first(rows: Sequence[Document]) -> list[str]:
@@ -104,6 +105,15 @@ def _row(row: Document, *, tied: bool) -> list[str]:
         _with_interval(row, "probability_stable", "probability"),
         row["verdict"] or ("not measured" if row["friction"] is None else "not finished"),
     ]
+
+
+def lowest(rows: Sequence[Document]) -> list[str]:
+    """Return who has the lowest mean friction, with what probability; nothing if none was measured."""
+    known = [(row["probability_lowest_friction"] or 0.0, row["name"]) for row in rows]
+    likely = [f"{name} {share:.2f}" for share, name in sorted(known, reverse=True) if share >= 0.005]
+    if not likely:
+        return []
+    return ["", paragraph(f"Probability of the lowest mean friction: {', '.join(likely)}.")]
 
 
 MARK = "*"

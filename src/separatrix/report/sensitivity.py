@@ -12,10 +12,10 @@ from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity,
 Document = Mapping[str, Any]
 
 HEADERS = (
-    "group",
+    "tie",
     "material",
     "friction of\nnext cage",
-    "threshold\n(5-95 %)",
+    "threshold",
     "margin\n(5-95 %)",
     "P(stable)\n(95 %)",
     "P(un-\nstable)",
@@ -23,14 +23,13 @@ HEADERS = (
 )
 MARK, GUESS = "*", "?"
 MOST_SENTENCES = 6
-SHOWN_SIZES = 4
 
 LEGEND = paragraph(
-    "group: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean "
-    "and standard deviation. threshold: largest restitution factor eta at which the cage is stable; margin: "
-    "threshold less the eta of bearing and film; median and the ends between which nine in ten samples "
-    "lie. P(stable): at most one run in ten grows, from every kick; P(unstable): more than half grow, from "
-    "every kick; the rest is undecided. P(best): largest threshold of its environment."
+    "tie: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean, and "
+    "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
+    "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
+    "samples lie. P(stable): at most one run in ten grows, from every kick; P(unstable): more than half "
+    "grow, from every kick; the rest is undecided. P(best): largest threshold of its environment."
 )
 
 
@@ -59,14 +58,14 @@ def _row(row: Document, *, tied: bool) -> list[str]:
     if row["friction"] is None:
         return [ABSENT, row["name"], "not measured", *[ABSENT] * (len(HEADERS) - 3)]
     marks = (GUESS if row["friction_scatter_assumed"] else "") + (MARK if row["extrapolation"] else "")
-    threshold, stable = (_between(row, key) for key in ("restitution_threshold", "probability_stable"))
+    share = row["friction_deviation"] / row["friction"] if row["friction"] else 0.0
     return [
         f"{row['tie_group']}{'=' if tied else ''}",
         row["name"],
-        f"{number(row['friction'])} +- {number(row['friction_deviation'])}{marks}",
-        threshold,
+        f"{number(row['friction'])} ({100.0 * share:.0f} %){marks}",
+        number(row["restitution_threshold"], 2),
         f"{row['margin_low']:+.2f} to {row['margin_high']:+.2f}",
-        stable,
+        _between(row, "probability_stable"),
         number(row["probability_unstable"], 2),
         number(row["probability_best"], 2),
     ]
@@ -140,7 +139,8 @@ def _boundary(one: Document) -> str:
 
 def _convergence(document: Document) -> str:
     """Return P(stable) of the least decided case of each environment for several numbers of samples."""
-    sizes = list(range(len(document["sizes"])))[-SHOWN_SIZES:]
+    last = len(document["sizes"]) - 1
+    sizes = sorted({0, last // 2, last})
     headers = ["case", *(f"{document['sizes'][k]}\nsamples" for k in sizes)]
     rows = []
     for place in dict.fromkeys(row["environment"] for row in document["convergence"]):

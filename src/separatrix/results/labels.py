@@ -158,6 +158,7 @@ OTHER_UNITS = {
     "drift_rate": "1/s",
     "drift_rate_law": "1/s",
     "friction": "-",
+    "default_scatter": "-",
     "linear_limit": "-",
     "growth_rate": "1/s",
     "growth_rate_low": "1/s",
