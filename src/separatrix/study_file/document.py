@@ -16,6 +16,7 @@ from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
 MOST_BASES = 8
+WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 MOST_PROBLEMS = 20
 """After so many mistakes a file is read no further."""
 
@@ -126,11 +127,24 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     return _merged(load(target, chain), document)
 
 
-def _own(path: Path) -> Document:
-    from separatrix.study_file import workbook
+def is_workbook(path: Path) -> bool:
+    """Whether a file is a workbook, by its name or its first bytes."""
+    try:
+        if not path.is_file():  # a pipe may never end
+            return False
+        if path.suffix.casefold() in (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods"):
+            return True
+        with path.open("rb") as file:
+            return file.read(4) in WORKBOOK_MAGICS
+    except (OSError, ValueError):
+        return False
 
-    if workbook.is_workbook(path):
-        return workbook.document_of(path)
+
+def _own(path: Path) -> Document:
+    if is_workbook(path):
+        from separatrix.study_file.workbook import document_of
+
+        return document_of(path)
     data, lines = read_toml(path)
     document = Document(label_of(path), lines=lines, folder=path.parent)
     for name, value in data.items():

@@ -26,21 +26,7 @@ from separatrix.units import printable, shown
 STUDY_SHEET = "study"
 """The sheet of what stands above the sections: title, extends, library."""
 
-MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 _KEY = re.compile(r"[A-Za-z0-9_]+(?:\.[A-Za-z0-9_ -]+){0,2}")
-
-
-def is_workbook(path: Path) -> bool:
-    """Whether a file is a workbook, by its name or its first bytes."""
-    try:
-        if not path.is_file():  # a pipe may never end
-            return False
-        if path.suffix.casefold() in (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods"):
-            return True
-        with path.open("rb") as file:
-            return file.read(4) in MAGICS
-    except (OSError, ValueError):
-        return False
 
 
 def document_of(path: Path) -> Document:
