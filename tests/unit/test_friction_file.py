@@ -122,7 +122,7 @@ def test_the_cage_asks_for_what_its_pocket_rubs():
     seen = friction_seen(table.friction["gaseous nitrogen, 440C"], POCKET, TURNING, 0.09)
     assert seen.mean == 0.07
     assert seen.standard_error == pytest.approx(0.0063)
-    assert seen.standard_deviation > seen.standard_error
+    assert seen.standard_deviation == seen.standard_error  # stated without its tests: no number is added
     assert seen.extrapolation == (
         "slip speed 21 m/s is beyond the tested 1 to 5 m/s (held at 5 m/s)",
         "pressure of the tests is not stated (asked for 150 MPa)",
