@@ -1,5 +1,6 @@
 """Ranks, ties, means, reasons and gaps of a ranking, on a cage whose ensemble takes no time."""
 
+import math
 from dataclasses import fields, replace
 from enum import Enum
 from threading import Event
@@ -11,7 +12,9 @@ from separatrix.cage import CageMotion, Judgement, Verdict, judge
 from separatrix.chain import cage_state
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
-from separatrix.ranking.friction import measured, overall
+from separatrix.ranking.friction import MeanFriction, measured, overall
+from separatrix.ranking.lowest import may_be_lower
+from separatrix.ranking.rank import _tied
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
 from separatrix.stability import RestitutionThreshold
@@ -61,6 +64,30 @@ def test_a_chain_of_small_steps_does_not_tie_the_first_with_the_last():
 def test_equal_thresholds_without_scatter_tie():
     """Intervals that touch are enough."""
     assert ranks([(0.5, 0.5, 0.5), (0.5, 0.5, 0.5), (0.4, 0.4, 0.4)]) == [1, 1, 3]
+
+
+def test_on_one_curve_frictions_tell_who_is_tied():
+    """Wide thresholds of one curve do not tie what friction tells apart; those of two curves do."""
+    known = {name: MeanFriction(f, 0.09 * f) for name, f in (("A", 0.08), ("B", 0.09), ("C", 0.11))}
+    a, b, c = (
+        RankedMaterial(
+            name=name, reason="", ball_cage_stiffness=3e6, restitution_threshold=t,
+            restitution_threshold_low=t - 0.1, restitution_threshold_high=t + 0.1,
+        )
+        for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6))
+    )  # fmt: skip
+    assert _tied(b, a, known)
+    assert not _tied(c, a, known)  # 2.5 standard deviations; the intervals meet
+    assert _tied(replace(c, ball_cage_stiffness=4e6), a, known)
+    assert _tied(replace(c, restitution_threshold=0.74), a, known)  # such as 1: stable at any factor
+
+
+def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
+    """The difference of logarithms over its standard deviation, at 1.64."""
+    leader = MeanFriction(0.1, 0.001)
+    at = 0.1 * math.exp(1.6449 * 0.01 * math.sqrt(2.0))
+    assert may_be_lower(MeanFriction(at * 0.9999, at * 0.01), leader)
+    assert not may_be_lower(MeanFriction(at * 1.0001, at * 0.01), leader)
 
 
 def test_the_mean_takes_the_measured_environments_only():

@@ -51,8 +51,7 @@ def probability_lowest(frictions: Mapping[str, Friction | None], scatter: Ratio 
 def lowest_among(known: Mapping[str, MeanFriction]) -> LowestFriction:
     """The same of mean frictions with their standard errors, 0 where there is none."""
     names = list(known)
-    logs = [log(max(one.mean, 1e-300)) for one in known.values()]
-    errors = [max((one.error or 0.0) / max(one.mean, 1e-300), _LEAST_ERROR) for one in known.values()]
+    logs, errors = [list(column) for column in zip(*map(_log, known.values()), strict=True)] or [[], []]
     found = lowest_of(logs, errors)
     if not names:
         return LowestFriction(probabilities={}, tied=())
@@ -93,6 +92,18 @@ def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio
         ]
         found.append(float(sum(parts)))
     return found
+
+
+def may_be_lower(one: MeanFriction, leader: MeanFriction) -> bool:
+    """Whether a mean friction lies below a leader's with a probability of `TIED_FROM` or more."""
+    means, errors = zip(_log(leader), _log(one), strict=True)
+    return _reaches(means, errors, 1, 0)
+
+
+def _log(friction: MeanFriction) -> tuple[float, float]:
+    """Logarithm of a mean, and its standard error; the least of either instead of 0."""
+    mean = max(friction.mean, 1e-300)
+    return log(mean), max((friction.error or 0.0) / mean, _LEAST_ERROR)
 
 
 def _reaches(means: Sequence[float], deviations: Sequence[float], j: int, leader: int) -> bool:

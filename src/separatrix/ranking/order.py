@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from separatrix.units import Ratio
 
@@ -10,10 +10,12 @@ Interval = tuple[Ratio, Ratio, Ratio]
 """A threshold with the low and the high end of its scatter."""
 
 
-def ranks(thresholds: Sequence[Interval | None]) -> list[int | None]:
+def ranks(
+    thresholds: Sequence[Interval | None], tied: Callable[[int, int], bool] | None = None
+) -> list[int | None]:
     """Rank of each threshold, the largest first; None stays None.
 
-    The best one leads the first group. Whoever's interval reaches the leader's is tied with it; the best of
+    The best one leads the first group. Whoever cannot be told from the leader is tied with it; the best of
     the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3). Groups are told by
     their leader, so being tied is transitive: a chain of small steps does not tie the first with the last.
 
@@ -21,14 +23,18 @@ def ranks(thresholds: Sequence[Interval | None]) -> list[int | None]:
     ----------
     thresholds : sequence
         (value, low, high) of each candidate, or None [-].
+    tied : callable, optional
+        Whether the first of two cannot be told from the second, its leader; by default if their intervals
+        meet.
     """
+    alike = tied or (lambda i, leader: meet(thresholds[i], thresholds[leader]))
     order = sorted(
         (i for i, t in enumerate(thresholds) if t is not None), key=lambda i: _best_first(thresholds, i)
     )
     found: list[int | None] = [None] * len(thresholds)
     leader, rank = None, 0
     for place, i in enumerate(order, start=1):
-        if leader is None or not _reaches(thresholds[i], thresholds[leader]):
+        if leader is None or not alike(i, leader):
             leader, rank = i, place
         found[i] = rank
     return found
@@ -39,5 +45,6 @@ def _best_first(thresholds: Sequence[Interval | None], i: int) -> tuple[float, f
     return (0.0, 0.0) if found is None else (-found[0], -found[2])
 
 
-def _reaches(other: Interval | None, leader: Interval | None) -> bool:
+def meet(other: Interval | None, leader: Interval | None) -> bool:
+    """Whether the interval of the smaller threshold reaches that of its leader."""
     return other is not None and leader is not None and other[2] >= leader[1]

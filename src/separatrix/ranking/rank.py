@@ -10,8 +10,8 @@ from separatrix.cage import Judgement, judge
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
-from separatrix.ranking.lowest import lowest_among
-from separatrix.ranking.order import Interval, ranks
+from separatrix.ranking.lowest import lowest_among, may_be_lower
+from separatrix.ranking.order import Interval, meet, ranks
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_measured, reason
 from separatrix.ranking.records import RankedEnvironment, RankedMaterial, Ranking
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
@@ -249,8 +249,9 @@ def _ranked(
 ) -> tuple[RankedMaterial, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
     rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
-    places = ranks([_scatter(row) for row in rows])
-    lowest = lowest_among({name: friction for name, friction in table.items() if friction is not None})
+    known = {name: friction for name, friction in table.items() if friction is not None}
+    places = ranks([_scatter(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
+    lowest = lowest_among(known)
     chances = [lowest.probabilities.get(row.name) for row in rows]
     ranked = [
         replace(row, rank=place, probability_lowest_friction=chance)
@@ -266,6 +267,19 @@ def _best_first(row: RankedMaterial) -> tuple[int, float, float]:
         0.0 if last else -(row.restitution_threshold or 0.0),
         row.friction or 0.0,
     )
+
+
+def _tied(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanFriction]) -> bool:
+    """Whether a row cannot be told from the leader of its group.
+
+    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
+    with another pocket stiffness there is another curve, and the intervals of the thresholds tell.
+    """
+    if row.restitution_threshold == leader.restitution_threshold:
+        return True
+    if row.ball_cage_stiffness == leader.ball_cage_stiffness:
+        return may_be_lower(known[row.name], known[leader.name])
+    return meet(_scatter(row), _scatter(leader))
 
 
 def _scatter(row: RankedMaterial) -> Interval | None:
