@@ -19,6 +19,9 @@ TIED_FROM: Ratio = 0.05
 
 _LEAST_ERROR = 1e-9
 _REACH = 9.0
+_STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
+"""Where a factor begins to fall, falls, and has fallen, in its own standard deviations."""
+
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +69,7 @@ def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio
     r"""Probability that each of several independent normal numbers is the smallest.
 
     :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
-    adaptive quadrature, broken where a factor falls.
+    adaptive quadrature, broken where a factor begins to fall, falls, and has fallen.
     """
     from scipy import integrate
     from scipy.special import ndtr
@@ -84,8 +87,8 @@ def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio
     found = []
     for i in range(len(mu)):
         others = np.array([np.delete(mu, i), np.delete(sigma, i)])
-        edges = np.clip((others[0] - mu[i]) / sigma[i], -_REACH, _REACH)
-        breaks = np.unique(np.concatenate([[-_REACH, 0.0, _REACH], edges]))
+        edges = (others[0] - mu[i] + np.outer(_STEPS, others[1])) / sigma[i]
+        breaks = np.unique(np.concatenate([[-_REACH, 0.0, _REACH], np.clip(edges, -_REACH, _REACH).ravel()]))
         parts = [
             quad(integrand, low, high, args=(i, others), epsabs=1e-12, epsrel=1e-10)[0]
             for low, high in pairwise(breaks)
