@@ -37,6 +37,7 @@ from separatrix.uncertainty.records import (
     UncertainMaterial,
     UncertainRanking,
 )
+from separatrix.uncertainty.regime import other_regime
 from separatrix.uncertainty.sampling import Draws, sample
 from separatrix.units import Array
 
@@ -180,7 +181,7 @@ def _answer(model: Model, draws: Draws, factors: Factors, found: Sampled) -> Unc
     return UncertainRanking(
         samples=total,
         failed=total - int(factors.solved.sum()),
-        notes=factors.notes,
+        notes=(*factors.notes, *other_regime(draws)),
         default_scatter=asked.friction_scatter,
         inputs=tuple(_input_rows(model)),
         environments=environments,
