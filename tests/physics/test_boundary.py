@@ -174,6 +174,7 @@ def test_widths_come_back():
     eta, none = np.array([0.5]), np.zeros((1, 2))
     few, clear = found.around(np.full((1, 1), 0.2), eta, none, None)
     middle = 0.2 * np.exp(found.shift(eta, none, None))
+    # over twelve seeds 0.079 +- 0.009 and 0.156 +- 0.023: about two of these standard deviations
     assert -np.log(few / middle)[0, 0] / np.log(9.0) == pytest.approx(0.08, rel=0.25)
     assert np.log(clear / middle)[0, 0] / np.log(0.625 / 0.375) == pytest.approx(0.15, rel=0.25)
 
