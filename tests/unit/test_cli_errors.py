@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -170,6 +171,20 @@ def test_a_default_folder_that_is_a_file_is_refused(capsys):
 def test_out_without_a_name_is_refused(capsys):
     """`--out ""`, as from a variable that is not set."""
     assert "--out" in refused(capsys, "bearing", "le7", "--out", "")
+
+
+def test_out_with_a_name_too_long_for_a_file_system_is_refused(capsys):
+    """`--out` of 300 characters, where a file system takes 255."""
+    assert "--out" in refused(capsys, "check", "le7", "--out", "a" * 300)
+
+
+def test_a_study_named_by_dots_alone_does_not_write_above(capsys):
+    """The file `...toml` has the stem `..`: its default folder must not be the one above."""
+    Path("below").mkdir()
+    os.chdir("below")
+    Path("...toml").write_text(VALID)
+    assert "--out" in refused(capsys, "bearing", "...toml")
+    assert [path.name for path in Path("..").iterdir()] == ["below"]
 
 
 def test_a_wrong_study_does_not_make_the_folder(capsys):

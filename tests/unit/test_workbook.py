@@ -119,6 +119,8 @@ def test_the_template_is_what_the_verb_new_writes(tmp_path, capsys):
         ["--excel", str(path)],
         ["--excel", str(tmp_path / "a.toml")],
         [str(tmp_path / "b.xlsx")],
+        [str(tmp_path / "b.xls")],
+        ["--excel", str(tmp_path / "b.xlsm")],
     ):
         assert main(["new", *options]) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]

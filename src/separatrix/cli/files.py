@@ -42,8 +42,9 @@ def writable_folder(path: Path) -> Iterator[Path]:
     InputError
         It is a file, or cannot be made or written.
     """
-    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    missing: list[Path] = []
     try:
+        missing += [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path, prefix=".separatrix-"):
             pass

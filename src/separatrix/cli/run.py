@@ -148,19 +148,29 @@ def make_study(path: Path, *, excel: bool, as_json: bool, quiet: bool) -> int:
     InputError
         There is something of that name already, it cannot be written, or its name says otherwise.
     """
-    if path.is_dir():
-        raise InputError(str(path), "is a folder", cure=f'Name a file: "{path / "my-bearing.toml"}".')
-    is_named_so = path.suffix.casefold() == ".xlsx"
-    if excel and not is_named_so:
-        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{path}.xlsx".')
-    if is_named_so and not excel:
-        raise InputError(str(path), "is the name of a workbook", cure="Add --excel, or name it .toml.")
+    _check_name(path, excel=excel)
     write_new(path, _new_study(excel=excel))
     if as_json:
         answer(json.dumps({"path": str(path)}) + "\n")
     elif not quiet:
         answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
     return ANSWERED
+
+
+def _check_name(path: Path, *, excel: bool) -> None:
+    """Refuse a folder, and a name that says another kind of file than is written."""
+    from separatrix.study_file.document import WORKBOOK_ENDINGS
+
+    if path.is_dir():
+        cure = f'Name a file: "{path / ("my-bearing.xlsx" if excel else "my-bearing.toml")}".'
+        raise InputError(str(path), "is a folder", cure=cure)
+    ending = path.suffix.casefold()
+    if excel and ending != ".xlsx":
+        named = path.with_suffix(".xlsx") if ending in WORKBOOK_ENDINGS else f"{path}.xlsx"
+        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{named}".')
+    if ending in WORKBOOK_ENDINGS and not excel:
+        cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
+        raise InputError(str(path), "is the name of a workbook", cure=cure)
 
 
 def _new_study(*, excel: bool) -> bytes:

@@ -31,10 +31,15 @@ def read_study(study: str | Path) -> Study:
         It asks for more than the model is good for; what, and what to do.
     """
     path = find(study)
-    built = _built(load(path), printable(path.stem, 100))
+    built = _built(load(path), _name_of(path))
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
     return built
+
+
+def _name_of(path: Path) -> str:
+    """Name of a study, and of the folder of its answers: the file's without its ending, never dots alone."""
+    return printable(path.stem if path.stem.strip(".") else path.name, 100)
 
 
 def _built(document: Document, name: str) -> Study:

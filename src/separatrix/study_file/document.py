@@ -16,6 +16,7 @@ from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
 MOST_BASES = 8
+WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
 WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 MOST_PROBLEMS = 20
 """After so many mistakes a file is read no further."""
@@ -132,7 +133,7 @@ def is_workbook(path: Path) -> bool:
     try:
         if not path.is_file():  # a pipe may never end
             return False
-        if path.suffix.casefold() in (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods"):
+        if path.suffix.casefold() in WORKBOOK_ENDINGS:
             return True
         with path.open("rb") as file:
             return file.read(4) in WORKBOOK_MAGICS
