@@ -42,6 +42,8 @@ def study_of(tmp_path):
 FORMS = {
     '"0.5 um +- 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +- 0.1 um"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"(0.5 +- 0.1) um"': Normal(mean=5e-7, standard_deviation=5e-8),
+    '"0.5 um +- 2e1 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5um+-100nm"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um ± 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +/- 20%"': Normal(mean=5e-7, standard_deviation=5e-8),
@@ -79,7 +81,7 @@ def test_the_page_on_uncertain_inputs_is_right():
         path.write_text(HEAD + block.group(1), encoding="utf-8")
         assert len(read_study(path).distributions) == 6
         forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
-        assert len(forms) == 6
+        assert len(forms) == 7
         for form in forms:
             path.write_text(HEAD + f"[film]\nthickness = {form}\n", encoding="utf-8")
             assert "film.thickness" in read_study(path).distributions, form
@@ -97,6 +99,7 @@ def test_a_width_in_another_unit_or_of_a_temperature_is_a_difference(study_of):
         ("20 degC +- 2 degC", 293.15, 1.0),
         ("77 K +- 2 degC", 77.0, 1.0),
         ("77 K +- 1.8 degF", 77.0, 0.5),
+        ("(20 ± 2) degC", 293.15, 1.0),
         ("77 K +- 2 %", 77.0, 0.77),
     ):
         film = '[film]\nelastic_modulus = "2 GPa"\npoisson_ratio = 0.4\n'  # good at any temperature

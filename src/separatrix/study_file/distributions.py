@@ -21,8 +21,10 @@ from separatrix.toml_values import Reader, nearest, ratio, whole
 from separatrix.units import parse, printable, shown
 
 _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
-_PERCENT = re.compile(r"([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)) ?%")
-_PLAIN = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+_PLAIN = re.compile(_NUMBER)
+_PERCENT = re.compile(rf"({_NUMBER}) ?%")
+_BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
 _FORMS = "between, or mean with standard_deviation, or samples"
 _CERTAIN = "This key takes one certain value."
 
@@ -48,9 +50,9 @@ def number(reader: Reader, unit: str) -> Reader:
 
 def count(value: Any, where: str) -> Any:
     """Read a whole number, or a list of those that it may be, as `Uncertain`."""
-    if isinstance(value, dict) and set(value) != {"samples"}:
+    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
         rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError(where, rule, "", "a table", "Write it like [12, 13].")
+        raise InputError(where, rule, "", shown(value), "Write it like [12, 13].")
     items = value["samples"] if isinstance(value, dict) else value
     if not isinstance(items, list):
         return whole(value, where)
@@ -120,13 +122,24 @@ def _is_spread(value: Any) -> bool:
 
 def _plus_minus(text: str, where: str, reader: Reader, unit: str) -> Distribution:
     """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations."""
-    parts = _SIGN.split(text.strip())
+    parts = _sides(text.strip())
     if len(text) > 120 or len(parts) != 2 or not all(parts):
         rule = "must be one value, +- and one expanded uncertainty"
         raise InputError(where, rule, "", shown(text), f'Write it like "{_example(unit)} +- 20 %".')
+    if unit != "-" and _PLAIN.fullmatch(parts[0]):
+        cure = f'Write it like "{_example(unit)} +- 20 %", with a unit on either side of +-.'
+        raise InputError(where, "needs a unit before +- too", "", shown(text), cure)
     mean = _written_number(parts[0], where, reader, unit)
     half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
     return Normal(mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
+
+
+def _sides(text: str) -> list[str]:
+    """What stands on either side of the sign; ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4)."""
+    shared = _BRACKETS.fullmatch(text)
+    if shared is None:
+        return _SIGN.split(text)
+    return [f"{part} {shared.group(2)}" for part in _SIGN.split(shared.group(1).strip())]
 
 
 def _table(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
@@ -199,6 +212,9 @@ def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples
 def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:
     """Read a width: percent of the mean, or a difference of two values of the quantity."""
     percent = _PERCENT.fullmatch(text.strip())
+    if percent is None and unit != "-" and _PLAIN.fullmatch(text.strip()):
+        cure = f'Write "{printable(text.strip())} %", or the width with its unit.'
+        raise InputError(where, "needs a unit, or %", "", shown(text), cure)
     if percent is None:
         return _not_zero(_difference(text, where, unit), text, where)
     if unit == "K" and not re.search(r"[0-9] ?K$", mean_text.strip()):
