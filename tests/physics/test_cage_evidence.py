@@ -1,0 +1,97 @@
+"""What an ensemble says of its runs, against sums over densely sampled histories of the same runs.
+
+Tolerances: a history of 20 000 rows has some 50 within a blow, so trapezia are good to 1e-3, and the largest
+of the rows to (pi/50)^2/8 = 5e-4; rates go with logarithms of such means, over a fifth of 4 ms. The ensemble
+reads the turning of the velocity at five places of a step: to 1 %. What counts events is exact.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from separatrix.cage import PlanarCage, run_ensemble, simulate
+from separatrix.study import Guidance, StabilitySettings
+
+M, R, K = 0.025, 0.0325, 3e6
+HELD = PlanarCage(
+    mass=M,
+    moment_of_inertia=1.3 * M * R**2,
+    ball_count=13,
+    pitch_radius=R,
+    cage_speed=670.0,
+    inner_speed=1570.0,
+    outer_speed=0.0,
+    pocket_clearance=6e-4,
+    ball_cage_stiffness=K,
+    race_damping=1500.0,
+    ball_cage_friction=0.12,
+    guidance=Guidance.OUTER,
+    land_clearance=5e-4,
+)
+CAGES = {
+    "land": HELD,
+    "backward": replace(HELD, cage_speed=-670.0, inner_speed=-1570.0),
+    "no land, at rest": replace(HELD, guidance=Guidance.BALL, land_clearance=None, cage_speed=0.0),
+    "Hertz": replace(HELD, hertz_coefficient=3e8),
+}
+SETTINGS = StabilitySettings(kicks=(0.5,), runs=3, duration=0.02, seed=4)
+
+
+@pytest.mark.parametrize("cage", CAGES.values(), ids=CAGES)
+def test_the_evidence_of_a_run_is_that_of_its_history(cage):
+    """Means, spreads, rates and largest values over the run and its last fifth; impacts one by one."""
+    found = run_ensemble(cage, SETTINGS)
+    for run in range(SETTINGS.runs):
+        ours = simulate(cage, kick=0.5, run=run, seed=4, duration=0.02, samples=20_000)
+        assert ours.time[-1] == pytest.approx(0.02, rel=1e-3)  # none of these is decided early
+        for name, value, tolerance in told(cage, ours):
+            assert getattr(found, name)[0, run] == pytest.approx(value, **tolerance), name
+        assert found.pocket_impacts[0, run].tolist() == begun(ours.contact_force != 0.0).tolist()
+        assert found.land_impacts[0, run] == begun(ours.land_force > 0.0)
+
+
+def told(cage, ours):
+    """Name, value and tolerance of what a history tells of its run."""
+    near, largest = {"rel": 1e-3}, {"rel": 5e-4}
+    last, before = (slice_of(ours.time, fifth) for fifth in (4, 3))
+    (x, y), (vx, vy) = ours.position.T, ours.velocity.T
+    energy, r, speed = ours.kinetic_energy, np.hypot(x, y), np.hypot(vx, vy)
+    heading = np.unwrap(np.arctan2(vy, vx))
+    growth = mean(ours, energy, last) / energy[0]
+    offset, square = mean(ours, r, last), mean(ours, r**2, last)
+    swept = mean(ours, x * vy - y * vx, last)
+    turned = np.sum(((0.5 * (speed[1:] + speed[:-1])) ** 2 * np.diff(heading))[last][:-1])
+    whirl = turned / mean(ours, speed**2, last) / np.ptp(ours.time[last])
+    sense = 1 if cage.cage_speed >= 0.0 else -1
+    ends = [math.hypot(mean(ours, x, fifth), mean(ours, y, fifth)) for fifth in (before, last)]
+    return [
+        ("energy_growth", growth, near),
+        ("growth_rate", 0.5 * math.log(growth) / (0.9 * 0.02), near),
+        ("largest_offset", r.max(), largest),
+        ("mean_offset", offset, near),
+        ("offset_spread", math.sqrt(square - offset**2), near),
+        ("orbit_speed", sense * swept / square + abs(cage.cage_speed), {"rel": 1e-3, "abs": 1e-3 * 670.0}),
+        ("drift_rate", math.log(ends[1] / ends[0]) / 0.004, {"abs": 1e-3 / 0.004}),
+        ("whirl_frequency", abs(whirl) / (2 * math.pi), {"rel": 0.01, "abs": 0.1}),
+        ("whirl_direction", sense * np.sign(whirl), {}),
+        ("largest_contact_force", np.abs(ours.contact_force).max(), largest),
+        ("largest_land_force", ours.land_force.max(), largest),
+    ]
+
+
+def slice_of(time, fifth):
+    """Rows of one fifth of the run."""
+    first, last = np.searchsorted(time, [0.004 * fifth, 0.004 * (fifth + 1)])
+    return slice(int(first), int(last))
+
+
+def mean(ours, values, rows):
+    """Mean over time of some rows."""
+    return np.trapezoid(values[rows], ours.time[rows]) / np.ptp(ours.time[rows])
+
+
+def begun(touching):
+    """How often each column begins to be true."""
+    return (touching[1:] & ~touching[:-1]).sum(axis=0) + touching[0]
