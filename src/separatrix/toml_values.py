@@ -54,6 +54,8 @@ def whole(value: Any, where: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
         near = isinstance(value, float) and -1e15 < value < 1e15 and value == int(value)
         cure = f"Write {int(value)}." if near else ""
+        if isinstance(value, str) and _is_plain_number(value):
+            cure = "Write it without quotes."
         raise InputError(where, "must be a whole number", "", shown(value), cure)
     return value
 

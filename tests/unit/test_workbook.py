@@ -175,7 +175,7 @@ def variant(path, *rows, **sheets):
 
 def test_the_width_beside_a_value_is_what_stands_behind_it_in_text(tmp_path):
     """A percentage as number or text, and a width in the value's unit: two deviations, as behind ``+-``."""
-    for width in (Shown(0.2, 2), "20 %", 0.1, "0.1", "100 nm"):
+    for width in (Shown(0.2, 2), "20 %", 0.1, "0.1", "100 nm", "+-20 %", "± 0.1"):
         found = variant(tmp_path / "a.xlsx", ["thickness", 0.5, width, "um"])
         assert found.distributions["film.thickness"].standard_deviation == pytest.approx(5e-8, rel=1e-12)
     found = variant(tmp_path / "a.xlsx", ["race_friction", 0.1, Shown(0.2, 2)])
@@ -206,10 +206,20 @@ def test_a_number_in_a_cell_loses_no_digit(tmp_path):
 
 def test_headings_may_stand_in_any_order(tmp_path):
     """Columns are found by their headings; units and widths may be absent when values bring them."""
-    film = [["meaning", "value", "key"], ["thin", "0.25 um", "thickness"]]
+    film = [["meaning", "value", "±", "key"], ["thin", "0.25 um", "20 %", "thickness"]]
     top = [["key", "value"], ["extends", "cryogenic-turbopump"]]
     (tmp_path / "a.xlsx").write_bytes(workbook({"study": top, "film": film}))
-    assert read_study(tmp_path / "a.xlsx").film.thickness == 2.5e-7
+    found = read_study(tmp_path / "a.xlsx")
+    assert found.film.thickness == 2.5e-7
+    assert set(found.distributions) == {"film.thickness"}
+
+
+def test_data_of_other_programs_are_left_alone(tmp_path):
+    """Power Query keeps its queries in UTF-16 inside the workbook; nothing of them is read."""
+    query = '<?xml version="1.0" encoding="utf-16"?><DataMashup/>'.encode("utf-16")
+    top, film = [HEAD, ["extends", "le7"]], [HEAD, ["race_friction", 0.07]]
+    (tmp_path / "a.xlsx").write_bytes(workbook({"study": top, "film": film}, customXml__item1_dot_xml=query))
+    assert read_study(tmp_path / "a.xlsx").film.race_friction == 0.07
 
 
 # Results
@@ -335,7 +345,7 @@ def test_what_we_write_we_read(tmp_path):
     """Numbers and texts put into cells come back through our own reader."""
     book = new_workbook()
     sheet = add_sheet(book, "a")
-    for column, value in enumerate((1.5, -3, "-", "=x", True, None, "ends"), 1):
+    for column, value in enumerate((1.5, -3, "-", "=x", True, None, "_x003D_1"), 1):
         put(sheet, 1, column, value)
     (tmp_path / "a.xlsx").write_bytes(workbook_bytes(book))
     ((_, found),) = open_workbook(tmp_path / "a.xlsx").rows("a")
@@ -346,8 +356,10 @@ def test_what_we_write_we_read(tmp_path):
         "'=x",
         "yes",
         None,
-        "ends",
+        "_x003D_1",
     ]
+    with zipfile.ZipFile(tmp_path / "a.xlsx") as archive:
+        assert b"_x005F_x003D_1<" in archive.read("xl/worksheets/sheet1.xml")  # else shown and exported as =1
 
 
 def test_a_study_in_a_workbook_is_ranked(folder, answer, capsys):

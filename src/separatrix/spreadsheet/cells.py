@@ -47,6 +47,16 @@ def column_number(letters: str) -> int:
     return number
 
 
+def decoded(text: str) -> str:
+    """Return a text of a workbook with its codes of characters resolved: ``_x000D_`` (ST_Xstring)."""
+    return re.sub(r"_x([0-9A-Fa-f]{4})_", lambda code: chr(int(code[1], 16)), text)
+
+
+def encoded(text: str) -> str:
+    """Return a text that `decoded` gives back as it is, also where it looks like such a code."""
+    return re.sub(r"_(?=x[0-9A-Fa-f]{4}_)", "_x005F_", text)
+
+
 def format_kind(code: str) -> str:
     """Return what a number format shows: ``"date"`` (or a time of day), ``"percent"``, or nothing special."""
     plain = re.sub(r'"[^"]*"|\\.|_.|\*.|\[(?![hms]+\])[^\]]*\]', "", code.casefold()).replace("general", "")

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError
-from separatrix.spreadsheet.cells import Cell, Row, column_number
+from separatrix.spreadsheet.cells import Cell, Row, column_number, decoded
 from separatrix.spreadsheet.parts import SAVE, Attributes, local
 from separatrix.units import printable
 
@@ -27,7 +27,7 @@ class TextReader:
     @property
     def joined(self) -> str:
         """The text so far."""
-        return "".join(self._pieces)
+        return decoded("".join(self._pieces))
 
     def clear(self) -> None:
         """Begin a new text."""
@@ -143,7 +143,7 @@ class SheetReader:
             return Cell(self._shared(text), formula)
         if kind == "b":
             return Cell(text == "1", formula)
-        return Cell(text, formula)
+        return Cell(decoded(text), formula)
 
     def _float(self, text: str) -> float:
         try:

@@ -19,7 +19,8 @@ FED = 32 * 1024
 """Bytes parsed at a time: who wants only the first rows waits for no more."""
 
 _OLE_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-_LOOKED_THROUGH = ("xl/worksheets/sheet", "xl/sharedStrings")
+_NOT_NOW = ("xl/worksheets/sheet", "xl/sharedStrings", "customXml/")
+"""Parts that are looked through when they are read, or, as the data of other programs, never are."""
 _BUILT_IN = dict.fromkeys((*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)), "date")
 _BUILT_IN |= {9: "percent", 10: "percent"}
 """Number formats that have a number instead of a code (ECMA-376, part 1, 18.8.30)."""
@@ -135,9 +136,9 @@ def _refuse_macros(archive: Archive) -> None:
 
 
 def _refuse_entities(archive: Archive) -> None:
-    """Look through the parts, read or not; sheets and their texts are looked through when they are read."""
+    """Look through the parts, read or not, but for those that are looked through when they are read."""
     for name in archive.members:
-        if name.endswith((".xml", ".rels", ".vml")) and not name.startswith(_LOOKED_THROUGH):
+        if name.endswith((".xml", ".rels", ".vml")) and not name.startswith(_NOT_NOW):
             for _ in Guard(archive.label, name)(archive.pieces(name)):
                 pass
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from separatrix.spreadsheet.cells import column_name
+from separatrix.spreadsheet.cells import column_name, encoded
 from separatrix.units import printable
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def is_evaluated(text: str) -> bool:
 
 def text_for_cell(text: str, *, exact: bool = False) -> str:
     """Return a text as a cell may hold it: control characters as codes, no beginning of a formula."""
-    plain = printable(text, LONGEST_TEXT)
+    plain = encoded(printable(text, LONGEST_TEXT))
     return f"'{plain}" if is_evaluated(text) and not exact else plain
 
 

@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.spreadsheet import Cell
 from separatrix.study_file.document import Document, Entry
 from separatrix.study_file.sheet_cells import SheetText
-from separatrix.study_file.sheet_values import is_list, list_of, number_text, plain_number
+from separatrix.study_file.sheet_values import begins_as_number, is_list, list_of, number_text, plain_number
 from separatrix.toml_values import nearest
 from separatrix.units import shown
 
@@ -54,6 +54,12 @@ def candidates(sheet: SheetText, document: Document) -> Entry | None:
             items.append(item)
             places.append(f"{sheet.place}, row {row}")
     return Entry(items, f"{sheet.place}", tuple(places), document.folder) if items else None
+
+
+def has_their_headings(sheet: SheetText) -> bool:
+    """Whether the second row has the headings of candidates and their frictions."""
+    headings = {str(cell.value).strip() for (row, _), cell in sheet.cells.items() if row == FIRST_ROW - 1}
+    return {"name", "mean"} <= headings
 
 
 def _columns(sheet: SheetText) -> Iterator[_Column]:
@@ -110,7 +116,7 @@ def _candidate(
             continue
         where = sheet.at(row, column.number)
         path = _path(column)
-        _set(item, path, _value(cell, column), where)
+        _set(item, path, _value(cell, column, where), where)
         document.cells[f"[ranking] candidates[{number}].{_dotted(path)}"] = where
         if column.what == "mean":
             document.cells[f"[ranking] candidates[{number}].{_dotted(path[:-1])}"] = where
@@ -146,7 +152,11 @@ def _set(item: dict[str, Any], path: tuple[str, ...], value: Any, where: str) ->
     item[path[-1]] = value
 
 
-def _value(cell: Cell, column: _Column) -> Any:
+def _value(cell: Cell, column: _Column, where: str) -> Any:
+    is_number = column.what in MEASURED and column.what != "source"
+    if is_number and isinstance(cell.value, str) and not begins_as_number(cell.value):
+        cure = "Leave the cell empty if it was not measured."
+        raise InputError(where, "must be a number", "", shown(cell.value), cure)
     if isinstance(cell.value, float):
         if column.what == "standard_deviation" and cell.format == "percent":
             return f"{number_text(float(f'{100.0 * cell.value:.12g}'))} %"

@@ -29,6 +29,8 @@ class SheetText:
     formulas: list[str] = field(default_factory=list)
     """Places of the formulas whose saved values are taken, as they are taken."""
     has_links: bool = False
+    beyond: str = ""
+    """Place of the first cell that was not read, for it stands too far from the first one."""
 
     @property
     def has_headings(self) -> bool:
@@ -102,19 +104,23 @@ def sheet_text(workbook: Workbook, name: str) -> SheetText:
     """Return what stands in a sheet, which is not larger than a study's can be."""
     cells: dict[tuple[int, int], Cell] = {}
     place = f"{workbook.label}, sheet {printable(name)}"
+    beyond = ""
     for row, columns in workbook.rows(name):
+        far = next((n for n in columns if n > MOST_COLUMNS or row > MOST_ROWS), None)
+        if far is not None and not beyond:
+            beyond = f"{place}, cell {cell_name(row, far)}"
         if row > MOST_ROWS:
             break
         cells |= {(row, column): cell for column, cell in columns.items() if column <= MOST_COLUMNS}
     found: dict[str, int] = {}
     for (row, column), cell in cells.items():
-        heading = str(cell.value).strip().casefold() if row == 1 else ""
+        heading = str(cell.value).strip().casefold().replace("±", "+-") if row == 1 else ""
         if heading in COLUMNS and heading in found and {"key", "value"} <= {*found, heading}:
             where = f"{place}, cell {cell_name(row, column)}"
             raise InputError(where, "is a second column of that heading", "", shown(heading))
         if heading in COLUMNS:
             found[heading] = column
-    return SheetText(workbook.label, name, cells, found, has_links=workbook.has_links)
+    return SheetText(workbook.label, name, cells, found, has_links=workbook.has_links, beyond=beyond)
 
 
 def fields_of(sheet: SheetText) -> Iterator[Field]:

@@ -7,7 +7,6 @@ import re
 from typing import Any
 
 from separatrix.errors import InputError
-from separatrix.spreadsheet import Cell
 from separatrix.study_file.sheet_cells import Field
 from separatrix.units import shown
 
@@ -35,14 +34,19 @@ def written_value(field: Field) -> Any:
         return list_of(text, field.unit)
     if field.spread is not None:
         return _spread(field)
-    value = _alone(field.value, field.unit, field.value_place)
+    value = _alone(field)
     return [value] if _takes_list(field.key) and not isinstance(value, bool) else value
+
+
+def begins_as_number(text: str) -> bool:
+    """Whether a text begins as a number does."""
+    return _BEGINS_AS_NUMBER.match(text.strip()) is not None
 
 
 def is_list(key: str, text: str) -> bool:
     """Whether a text is a list: its key takes one, or numbers stand on both sides of a separator."""
     parts = [part.strip() for part in text.split(SEPARATOR)]
-    numbers = len(parts) > 1 and all(_BEGINS_AS_NUMBER.match(part) for part in parts if part)
+    numbers = len(parts) > 1 and all(begins_as_number(part) for part in parts if part)
     return numbers or _takes_list(key)
 
 
@@ -72,18 +76,28 @@ def _item(text: str, unit: str) -> Any:
     return f"{text} {unit}" if unit else plain_number(float(text))
 
 
-def _alone(cell: Cell, unit: str, where: str) -> Any:
-    if isinstance(cell.value, float):
-        if unit and cell.format == "percent":
+def _alone(field: Field) -> Any:
+    value, unit = field.value.value, field.unit
+    if isinstance(value, float):
+        if unit and field.value.format == "percent":
             rule, cure = "is a percentage with a unit", "Format the cell as a number."
-            raise InputError(where, rule, "", f"{shown(cell.value)} {unit}", cure)
-        return f"{number_text(cell.value)} {unit}" if unit else plain_number(cell.value)
-    return f"{cell.value} {unit}" if unit and isinstance(cell.value, str) else cell.value
+            raise InputError(field.value_place, rule, "", f"{shown(value)} {unit}", cure)
+        return f"{number_text(value)} {unit}" if unit else plain_number(value)
+    if not unit or not isinstance(value, str):
+        return value
+    if (
+        begins_as_number(value)
+        and re.search(r"[^\W\d_]|°", value)
+        and _PLAIN.fullmatch(value.strip()) is None
+    ):
+        rule, cure = "is a unit beside a value that brings its own", "Clear this cell."
+        raise InputError(field.unit_place, rule, "", shown(value), cure)
+    return f"{value} {unit}"
 
 
 def _spread(field: Field) -> str:
     """Return a value and its width: ``"0.5 um +- 20 %"``."""
-    value = _alone(field.value, field.unit, field.value_place)
+    value = _alone(field)
     return f"{value} +- {_width(field)}"
 
 
@@ -93,5 +107,5 @@ def _width(field: Field) -> str:
         if field.spread is not None and field.spread.format == "percent":
             return f"{number_text(float(f'{100.0 * width:.12g}'))} %"
         return f"{number_text(width)} {field.unit}".strip()
-    text = str(width).strip()
+    text = str(width).strip().removeprefix("+-").removeprefix("±").lstrip()
     return f"{text} {field.unit}".strip() if _PLAIN.fullmatch(text) else text

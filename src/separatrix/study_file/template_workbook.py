@@ -56,7 +56,7 @@ INSTRUCTIONS = (
     "of the library on the sheet ranking; not both.",
     "Formulas may be used; the value saved with them is read. Workbooks with macros are refused, and "
     "so are formulas in one that takes values from other files.",
-    "Sheets of your own are not read, unless they have the headings key and value.",
+    "Sheets of your own are not read, unless they have the headings of a section or of candidates.",
     "Then: separatrix check THIS_FILE (is it right?)",
     "and: separatrix rank THIS_FILE (which cage material runs stably?)",
 )

@@ -14,10 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.spreadsheet import Workbook, open_workbook
-from separatrix.study_file.candidates_sheet import CANDIDATES, candidates
+from separatrix.spreadsheet import Workbook, column_name, open_workbook
+from separatrix.study_file.candidates_sheet import CANDIDATES, candidates, has_their_headings
 from separatrix.study_file.document import SECTIONS, TOP, Document, Entry, LibraryPlace
-from separatrix.study_file.sheet_cells import COLUMNS, Field, SheetText, fields_of, sheet_text
+from separatrix.study_file.sheet_cells import (
+    COLUMNS,
+    MOST_COLUMNS,
+    MOST_ROWS,
+    Field,
+    SheetText,
+    fields_of,
+    sheet_text,
+)
 from separatrix.study_file.sheet_values import written_value
 from separatrix.toml_text import label_of
 from separatrix.toml_values import nearest
@@ -45,9 +53,13 @@ def document_of(path: Path) -> Document:
     workbook = open_workbook(path)
     document = Document(label_of(path), folder=path.parent)
     formulas: list[str] = []
+    known: dict[str, str] = {}
     for name in workbook.sheets:
         text = _sheet(workbook, name)
         if text is not None:
+            if (twin := known.setdefault(name.strip().casefold(), name)) != name:
+                cure = "Delete one of them, or give it another name."
+                raise InputError(text.place, "is a second sheet of that name", "", shown(twin), cure)
             _add(document, text)
             formulas += text.formulas
     document.libraries.append(LibraryPlace(path, document.top.get("library")))
@@ -71,8 +83,11 @@ def _sheet(workbook: Workbook, name: str) -> SheetText | None:
     folded = name.strip().casefold()
     text = sheet_text(workbook, name)
     if folded in (*SECTIONS, STUDY_SHEET, CANDIDATES):
+        if text.beyond:
+            rule = f"lies beyond row {MOST_ROWS} or column {column_name(MOST_COLUMNS)}, and is not read"
+            raise InputError(text.beyond, rule, cure="Move it, or clear it.")
         return text
-    if text.has_headings:
+    if text.has_headings or has_their_headings(text):
         cure = nearest(name, (STUDY_SHEET, *SECTIONS, CANDIDATES))
         raise InputError(text.place, "is no section of a study", cure=cure)
     return None
