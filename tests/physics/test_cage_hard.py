@@ -12,6 +12,7 @@ from separatrix.cage import (
     blow_restitution,
     growth_probability,
     hard,
+    run_ensemble,
     run_hard_ensemble,
 )
 from separatrix.cage.hard import next_blow
@@ -59,6 +60,16 @@ def test_a_ring_that_may_turn_returns_more(nominal, free):
     assert blow_restitution(cage) == pytest.approx(free, abs=5e-4)  # three digits given
     assert blow_restitution(cage, may_turn=False) == pytest.approx(nominal, rel=1e-12)
     assert blow_restitution(replace(cage, race_damping=1.0)) == 0.0
+
+
+def test_the_force_of_a_hard_blow_is_that_of_an_undamped_spring():
+    """Between races that grip, in the first crossing: blow speed times sqrt(k M/2); chi is 2e-4."""
+    cage = replace(CAGE, race_damping=math.inf, ball_cage_friction=0.0)
+    weak = StabilitySettings(kicks=(5e-4,), runs=24, duration=1.2)
+    forces = [run(cage, weak).largest_contact_force for run in (run_ensemble, run_hard_ensemble)]
+    assert forces[1].min() > 0.0
+    # one blow in some is met by another pocket before it is over
+    assert np.quantile(np.abs(forces[0] / forces[1] - 1.0), 0.75) < 1e-3
 
 
 @pytest.mark.parametrize("speed", [0.0, 300.0])
