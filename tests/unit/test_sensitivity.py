@@ -368,8 +368,13 @@ def test_a_friction_without_end_is_not_given_one():
 
 
 STUDY = read_study("cryogenic-turbopump")
-STATE = restitution_state(STUDY)
 THICKNESSES = (0.0, 1e-8, 1e-7, 5e-7, 1e-6, 5e-6, 1e-5)
+
+
+@pytest.fixture(scope="module")
+def state():
+    """The chain of the study."""
+    return restitution_state(STUDY)
 
 
 def test_damping_ratios_are_those_of_the_chain():
@@ -382,18 +387,18 @@ def test_damping_ratios_are_those_of_the_chain():
     )
 
 
-def test_film_and_modulus_act_by_their_ratio_alone():
+def test_film_and_modulus_act_by_their_ratio_alone(state):
     """Twice the thickness and twice the modulus give the same restitution factor, to rounding."""
     e = STUDY.film.material.elastic_modulus
-    grid = modulus_grid(STUDY, STATE, thicknesses=(5e-7, 1e-6), moduli=(e, 2.0 * e)).restitution_factor
+    grid = modulus_grid(STUDY, state, thicknesses=(5e-7, 1e-6), moduli=(e, 2.0 * e)).restitution_factor
     assert grid[0, 0] == pytest.approx(grid[1, 1], rel=1e-9)
 
 
-def test_the_grid_holds_the_chain_at_the_study_itself():
+def test_the_grid_holds_the_chain_at_the_study_itself(state):
     """At the study's film and race friction it is the chain's restitution factor; 1e-6 is the slope's own."""
-    grid = friction_grid(STUDY, STATE, thicknesses=(1e-7, 5e-7), frictions=(0.05, 0.1))
+    grid = friction_grid(STUDY, state, thicknesses=(1e-7, 5e-7), frictions=(0.05, 0.1))
     assert (STUDY.film.thickness, STUDY.film.race_friction) == (5e-7, 0.1)
-    assert grid.restitution_factor[1, 1] == pytest.approx(STATE.restitution.restitution_factor, rel=1e-6)
+    assert grid.restitution_factor[1, 1] == pytest.approx(state.restitution.restitution_factor, rel=1e-6)
 
 
 MASS = 1.2
@@ -473,11 +478,11 @@ def test_the_film_region_has_its_stretches_and_words():
     )
 
 
-def test_bare_races_have_no_film_to_choose():
+def test_bare_races_have_no_film_to_choose(state):
     """Said so, in one line."""
     bare = replace(STUDY, film=replace(STUDY.film, material=None, thickness=None))
     with pytest.raises(ValueError, match="has bare races"):
-        friction_grid(bare, STATE)
+        friction_grid(bare, state)
 
 
 def test_a_fitted_restitution_factor_tells_its_error():
