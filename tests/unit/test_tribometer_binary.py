@@ -162,15 +162,16 @@ def test_a_waveform_brings_its_time(tmp_path):
     (table,) = measured(
         tmp_path, channel("COF", [0.1, 0.2, 0.3], **wave), channel("N", [5.0, 5.0, 5.0], **wave)
     )
-    assert (table.headers, table.units) == (("Time", "COF", "N"), ("s", "-", "-"))
+    assert (table.headers, table.units) == (("time of the waveform", "COF", "N"), ("s", "-", "-"))
     assert table.columns[0].tolist() == [1.5, 1.75, 2.0]
 
 
-def test_a_channel_of_time_is_preferred_to_the_waveform(tmp_path):
-    """A channel named time is the time, whatever the waveform says."""
+@pytest.mark.parametrize("name", ["time", "Elapsed Time (s)", "Zeit"])
+def test_a_channel_of_time_is_preferred_to_the_waveform(tmp_path, name):
+    """Whatever the waveform says: its increment is 1 where nobody has set it."""
     wave = {"wf_increment": 1.0}
-    (table,) = measured(tmp_path, channel("time", [0.0, 0.1], **wave), channel("COF", [0.1, 0.2], **wave))
-    assert table.headers == ("time", "COF")
+    (table,) = measured(tmp_path, channel(name, [0.0, 0.1], **wave), channel("COF", [0.1, 0.2], **wave))
+    assert table.headers == (name, "COF")
 
 
 def test_raw_values_are_scaled_as_the_file_says(tmp_path):
@@ -211,8 +212,8 @@ def test_channels_of_different_rate_are_different_tables(tmp_path):
         nptdms.ChannelObject("Test", "Remark", ["a", "b", "c"]),
     )
     assert [(t.name, t.headers) for t in tables] == [
-        ("Test, 3 rows", ("Time", "COF")),
-        ("Test, 2 rows", ("Time", "Temperature")),
+        ("Test, 3 rows", ("time of the waveform", "COF")),
+        ("Test, 2 rows", ("time of the waveform", "Temperature")),
     ]
 
 

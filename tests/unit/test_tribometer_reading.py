@@ -194,12 +194,23 @@ def test_missing_values_are_left_out_and_counted(tmp_path, mark, separator):
 
 
 def test_a_number_can_mean_missing(tmp_path):
-    """-999 is a number until the column map says that it is none."""
-    friction = np.where(np.arange(ROWS) == 5, -999.0, FRICTION)
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": friction}, digits=1)
-    columns = column_map({"format": {"missing": ["-999"]}})
-    assert read(tmp_path, content).friction.max() == 999.0
-    assert read(tmp_path, content, columns).missing == 1
+    """-9 of a temperature is a number until the column map says that it is none."""
+    temperature = np.where(np.arange(ROWS) == 5, -9.0, 20.0)
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature})
+    columns = column_map({"format": {"missing": ["-9"]}})
+    assert np.nanmin(read(tmp_path, content).temperature) == 264.15
+    assert np.isnan(read(tmp_path, content, columns).temperature).sum() == 1
+
+
+@pytest.mark.parametrize("code", [-999.0, 99.99, 9.9e37])
+def test_a_friction_that_none_can_be_is_left_out_and_counted(tmp_path, code):
+    """Codes for a missing value, or a coefficient without load: magnitudes above 5 are no friction."""
+    friction = np.where(np.arange(ROWS) % 20 == 5, code, FRICTION)
+    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": friction}))
+    assert log.missing == 3
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION[np.arange(ROWS) % 20 != 5]))
+    assert log.notes[0].startswith(f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})")
+    assert not any("negative" in note for note in log.notes)
 
 
 @pytest.mark.parametrize("abscissa", ["time [s]", "distance [m]", "cycles"])
@@ -326,6 +337,13 @@ def test_rtec_metadata_and_rotation_give_the_conditions(tmp_path):
     assert log.conditions.cycle_time == pytest.approx(0.5, rel=1e-12)
 
 
+@pytest.mark.parametrize("keys", ["Sample,Operator\ndisk 7,nobody", "Sample\ndisk 7"])
+def test_rtec_keys_stand_above_their_values_however_few(tmp_path, keys):
+    """Two keys over two values are not the pair of the two keys: the sample is disk 7, not "Operator"."""
+    content = keys.encode() + b"\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
+    assert read(tmp_path, content).conditions.sample == ("disk 7" if "," in keys else None)
+
+
 def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
     """Some exports split the keys from their values that way."""
     content = raw_logs.rtec(FRICTION, TIME).replace(b"Recipe\r\ndisk", b"Recipe\rdisk")
@@ -383,6 +401,30 @@ def test_empty_lines_between_rows_are_passed_over(tmp_path):
     content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
     lines = content.split(b"\n")
     assert read(tmp_path, b"\n".join([*lines[:9], b"", b"  ", *lines[9:]])).rows == ROWS
+
+
+NAMES_OF_FRICTION = [
+    "Reibwert \u00b5",
+    "Coefficient of friction, \u00b5",
+    "COF (\u03bc)",
+    "Kinetic COF",
+    "mu_k",
+    "Coeff. frott.",
+]
+
+
+@pytest.mark.parametrize("name", NAMES_OF_FRICTION)
+def test_a_name_of_friction_may_carry_its_sign(tmp_path, name):
+    """The Greek letter behind the name, or in the place of a unit, changes nothing."""
+    log = read(tmp_path, raw_logs.plain_csv({"Time [sec.]": TIME, name: FRICTION}, separator=";"))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+@pytest.mark.parametrize(("tangential", "normal"), [("Reibkraft FR", "Normalkraft FN"), ("F_t", "F_n")])
+def test_forces_may_be_named_by_their_signs(tmp_path, tangential, normal):
+    """Behind the word, or alone."""
+    columns = {"t [s]": TIME, f"{tangential} [N]": FRICTION, f"{normal} [N]": 1.0 + 0 * TIME}
+    np.testing.assert_array_equal(read(tmp_path, raw_logs.plain_csv(columns)).friction, as_written(FRICTION))
 
 
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):

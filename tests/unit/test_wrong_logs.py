@@ -156,7 +156,7 @@ WRONG = {
     ),
     "friction in percent without saying so": (
         csv(columns={"time [s]": TIME, "COF": FRICTION * 100}),
-        "its median must be at most 5; got 10.95. If it is in percent",
+        "above 5 in more than a tenth of its rows; got a median of 10.95. If it is in percent",
     ),
     "a tangential force alone": (
         csv(columns={"time [s]": TIME, "Ff [N]": FORCE}),

@@ -17,11 +17,14 @@ KEYS: dict[str, str] = {
     "normal_force": "normal load; normal force; load; set force; applied load; normalkraft; last; "
     "charge normale; force normale",
     "slip_speed": "lin speed; linear speed; sliding speed; max lin speed; max linear speed; speed; velocity; "
-    "gleitgeschwindigkeit; geschwindigkeit; vitesse; vitesse lineaire; vitesse de glissement",
+    "gleitgeschwindigkeit; geschwindigkeit; lin geschw; vitesse; vit lin; vitesse lineaire; "
+    "vitesse de glissement",
     "rotational_speed": "rotational speed; rotation speed; spindle speed; speed; velocity; drehzahl; "
     "vitesse de rotation",
     "track_radius": "radius; track radius; wear track radius; spurradius; radius der spur; rayon; "
     "rayon de piste; rayon de la piste",
+    "pressure": "mean contact pressure; nominal contact pressure; mittlere flachenpressung; flachenpressung; "
+    "pression moyenne de contact",
     "pin_diameter": "pin diameter; stiftdurchmesser; diametre du pion",
     "temperature": "temperature; temp; test temperature; temperatur; versuchstemperatur; temperature d essai",
     "material": "material; pin material; cage material; pin; werkstoff; stiftwerkstoff; materiau; "

@@ -12,8 +12,13 @@ MOST = 400
 """Pairs kept of one table."""
 
 
-def metadata_of(lines: Sequence[str], header: Sequence[str] = ()) -> dict[str, str]:
-    """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values."""
+def metadata_of(
+    lines: Sequence[str], header: Sequence[str] = (), *, keys_above: bool = False
+) -> dict[str, str]:
+    """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values.
+
+    Two lines of two fields each are taken as two pairs, unless the format is known for its row of keys.
+    """
     kept = [line for line in lines if line not in header]
     pairs: dict[str, str] = {}
     skip = False
@@ -21,7 +26,7 @@ def metadata_of(lines: Sequence[str], header: Sequence[str] = ()) -> dict[str, s
         if skip:
             skip = False
             continue
-        rows = _keys_over_values(line, below)
+        rows = _keys_over_values(line, below, 1 if keys_above else 2)
         if rows:
             pairs |= rows
             skip = True
@@ -39,11 +44,11 @@ def _pair(line: str) -> dict[str, str]:
     return {_clean(found[1]): _clean(found[2])}
 
 
-def _keys_over_values(line: str, below: str) -> dict[str, str]:
-    """Two rows of as many commas, semicolons or tabs (at least two), the upper of words alone."""
+def _keys_over_values(line: str, below: str, least: int) -> dict[str, str]:
+    """Two rows of as many commas, semicolons or tabs, the upper of words alone."""
     for separator in "\t;,":
         count = line.count(separator)
-        if count >= 2 and below.count(separator) == count:
+        if count >= least and below.count(separator) == count:
             keys, values = line.split(separator), below.split(separator)
             if not any(re.match(r"\s*[+-]?\d", key) for key in keys):
                 return {

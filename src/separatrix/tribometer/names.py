@@ -13,33 +13,38 @@ NAMES: dict[str, tuple[str, ...]] = {
     "friction": (
         "cof; mu; friction coefficient; coefficient of friction; friction coeff; coeff of friction; "
         "coeff friction; fric coeff; friction coef; coef of friction; dynamic friction coefficient; "
-        "kinetic friction coefficient; reibwert; reibungszahl; reibzahl; reibkoeffizient; "
-        "reibungskoeffizient; coefficient de frottement; coeff frottement; coef frottement; "
-        "coeff de frottement; coef de frottement; friction",
+        "kinetic friction coefficient; dynamic coefficient of friction; kinetic coefficient of friction; "
+        "dynamic cof; kinetic cof; mu k; reibwert; reibungszahl; reibzahl; reibkoeffizient; "
+        "reibungskoeffizient; coefficient de frottement; coeff frottement; coef frottement; coeff frott; "
+        "coef frott; coeff de frottement; coef de frottement; friction",
     ),
     "tangential_force": (
-        "ff; ft; friction force; tangential force; frictional force; friction; fric force; reibkraft; "
-        "reibungskraft; tangentialkraft; force de frottement; force tangentielle; ffriction; ftangential",
+        "ff; ft; friction force; tangential force; frictional force; friction; fric force; f f; f t; "
+        "reibkraft; reibungskraft; tangentialkraft; force de frottement; force tangentielle; ffriction; "
+        "ftangential",
         "fx",
     ),
     "normal_force": (
-        "fn; normal force; normal load; fnormal; normalkraft; force normale; charge normale",
+        "fn; f n; normal force; normal load; fnormal; normalkraft; force normale; charge normale",
         "load; down force; downforce; applied load; fz; last; anpresskraft; charge",
         "nominal load; nominal normal force; set load; load setpoint; sollkraft",
     ),
     "time": (
         "time; zeit; temps; t",
-        "elapsed time; test time; sliding time; total time; run time; messzeit; prufzeit; laufzeit; "
-        "versuchszeit; duree; temps ecoule; temps de test; timestamp; time stamp",
+        "elapsed time; elapsed; test time; sliding time; total time; run time; running time; messzeit; "
+        "prufzeit; laufzeit; versuchszeit; duree; temps ecoule; temps de test; timestamp; time stamp; "
+        "time of the waveform",
     ),
     "distance": (
         "distance; sliding distance; sliding dist; dist; track distance; gleitweg; weg; reibweg; "
         "distance de glissement; distance parcourue; total distance",
     ),
     "cycles": (
-        "cycles; cycle; laps; lap; cycle count; number of cycles; no of cycles; total cycles; revolutions; "
-        "number of revolutions; revs; turns; umdrehungen; zyklen; zyklus; zyklenzahl; lastwechsel; tours; "
-        "nombre de cycles; nombre de tours; strokes; hube",
+        "cycles; cycle; laps; lap; cycle count; cycle number; cycle no; number of cycles; no of cycles; "
+        "total cycles; lap number; number of laps; revolutions; revolution; number of revolutions; revs; "
+        "turns; number of turns; umdrehungen; anzahl umdrehungen; zyklen; zyklus; zyklenzahl; zyklusnummer; "
+        "anzahl zyklen; runden; rundenzahl; lastwechsel; tours; nombre de cycles; nombre de tours; strokes; "
+        "hube",
     ),
     "temperature": (
         "temperature; temp; temperatur; t; sample temperature; specimen temperature; probentemperatur; "
@@ -87,6 +92,16 @@ ALIASES: dict[str, dict[str, str]] = {
 }
 """Spellings in logs beyond those of study files, and the size of each."""
 
+SYMBOLS = {
+    "friction": ("mu",),
+    "tangential_force": ("ff", "f f", "ft", "f t", "fr", "f r"),
+    "normal_force": ("fn", "f n"),
+    "time": ("t",),
+    "distance": ("s", "l"),
+    "slip_speed": ("v",),
+}
+"""Signs that may stand behind a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
+
 _NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 _COUNTS = frozenset(
     {"cycle", "cycles", "lap", "laps", "rev", "revs", "revolution", "revolutions", "turn", "turns"}
@@ -125,6 +140,8 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
     if si == "-":
         if meaning == "friction" and spelling == "%":
             return Scale(divisor=100.0)
+        if meaning == "friction" and plain(spelling) in SYMBOLS["friction"]:
+            return Scale()
         fits = spelling.casefold() in _NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
         return Scale() if fits else None
     return scale_in(spelling, si)
@@ -161,13 +178,19 @@ def header_parts(header: str) -> list[tuple[str, str]]:
 
 def ranks(name: str) -> dict[str, int]:
     """Meanings that a name may have, each with how far down its list the name stands."""
+    words = plain(name)
     found = {}
     for meaning, groups in NAMES.items():
         for rank, group in enumerate(groups):
-            if plain(name) in group.split("; "):
+            if _without_symbol(words, meaning) in group.split("; "):
                 found[meaning] = rank
                 break
     return found
+
+
+def _without_symbol(words: str, meaning: str) -> str:
+    signs = (words.removesuffix(f" {sign}") for sign in SYMBOLS.get(meaning, ()))
+    return next((rest for rest in signs if rest != words and len(rest) > 1), words)
 
 
 def looks_like_friction(header: str) -> bool:
@@ -178,6 +201,7 @@ def looks_like_friction(header: str) -> bool:
 
 def _spelled(unit: str) -> str:
     text = unit.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00ba", "\u00b0")
+    text = text.strip().rstrip(".")
     return text.replace("\u00b2", "2").replace("\u207b\u00b9", "-1").replace("\u22c5", " ").strip()
 
 

@@ -18,9 +18,12 @@ from separatrix.tribometer.names import header_parts, plain
 from separatrix.units import Array, format_quantity, printable
 
 HIGHEST = 5.0
-"""Median friction above which a column is taken for percent, a force or a voltage, and refused."""
+"""Friction above which a value is no ratio of forces in sliding: a code for a missing value, or no load."""
 
 Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+FEW = 0.1
+"""Share of the rows up to which such values are left out; with more of them the column is refused."""
 
 ONE_SIGN = 0.9
 """Share of the rows in which the normal force must have one sign for it to be that of compression."""
@@ -54,13 +57,12 @@ def raw_log(
     arrays = {meaning: _in_si(table, chosen, absent) for meaning, chosen in understood.used.items()}
     arrays = _without_empty_abscissae(arrays, source, notes)
     _mend_sign(arrays, understood, source, notes)
-    arrays["friction"] = _friction(arrays, force, notes)
+    arrays["friction"] = _magnitude(_friction(arrays, force, notes), source, notes)
     kept, missing = _complete(arrays, source, notes)
     _check_order(arrays, kept, table, source)
     arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
     rotation = _speed_from_rotation(arrays, given, notes)
     metadata = _without_stroke_speed(table, arrays, notes)
-    _check_size(arrays["friction"], source)
     conditions, sentences = conditions_of(given, metadata, arrays | rotation, source)
     fields = {meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"}
     return RawLog(
@@ -120,16 +122,9 @@ def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, no
 
 
 def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
-    """Magnitude of the friction: as logged, or tangential over normal force."""
+    """Friction with its sign as logged, or tangential over normal force."""
     if "friction" in arrays:
-        logged = arrays["friction"]
-        negative = int((logged < 0.0).sum())
-        if negative:
-            notes.append(
-                f"friction is negative in {negative} of {len(logged)} rows (strokes there and back, or an "
-                "offset of zero): its magnitude is used"
-            )
-        return np.abs(logged)
+        return arrays["friction"]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
         normal = np.float64(force if force is not None else np.nan)
@@ -148,6 +143,26 @@ def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]
     return np.where(np.isfinite(friction), friction, np.nan)
 
 
+def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
+    """Magnitude of the friction, without the values that no ratio of forces in sliding has."""
+    size = np.abs(friction)
+    beyond = size > HIGHEST
+    if beyond.any():
+        _check_share(size, beyond, source)
+        notes.append(
+            f"friction is above {HIGHEST:g} in {int(beyond.sum())} of {len(size)} rows (up to "
+            f"{np.max(size[beyond]):.4g}), which is no ratio of forces in sliding: these rows are left out"
+        )
+        size[beyond] = np.nan
+    negative = int(((friction < 0.0) & ~beyond).sum())
+    if negative:
+        notes.append(
+            f"friction is negative in {negative} of {len(size)} rows (strokes there and back, or an "
+            "offset of zero): its magnitude is used"
+        )
+    return size
+
+
 def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tuple[Rows, int]:
     """Rows that have friction and every abscissa, and how many have not."""
     kept = np.isfinite(arrays["friction"])
@@ -163,12 +178,14 @@ def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tup
     return kept, missing
 
 
-def _check_size(friction: Array, source: str) -> None:
-    middle = float(np.median(friction))
-    if middle > HIGHEST:
+def _check_share(size: Array, beyond: Rows, source: str) -> None:
+    """Refuse a column of which more than a few rows are no ratio of forces."""
+    if beyond.sum() > FEW * np.isfinite(size).sum():
         cure = 'If it is in percent: friction = { name = "...", unit = "%" } below [columns] in a column map.'
-        rule = f"has a friction that is no ratio of forces: its median must be at most {HIGHEST:g}"
-        raise InputError(source, rule, "", f"{middle:.4g}", cure)
+        rule = (
+            f"has a friction that is no ratio of forces: above {HIGHEST:g} in more than a tenth of its rows"
+        )
+        raise InputError(source, rule, "", f"a median of {float(np.nanmedian(size)):.4g}", cure)
 
 
 def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 from scipy.signal import welch
 from scipy.special import gammaincc
@@ -26,6 +27,9 @@ BESIDE = 8
 LOWEST = 12
 """First place of a spectrum where a line is looked for: below there is no noise to its left."""
 
+ROUNDING = 1e-12
+"""Share of friction below which differences are those of rounding."""
+
 HARMONICS = 12
 """Multiples of the cycle that are its own."""
 
@@ -39,7 +43,7 @@ class Oscillation:
     amplitude: Ratio
     """Peak to peak of the sine with its power [-]; 0 if no line stands out."""
     signal_to_noise: float
-    """Its power over all other power."""
+    """Its power over all other power but the cycle's."""
     frequencies: Array
     density: Array
     """Spectral density of friction at the frequencies."""
@@ -67,12 +71,13 @@ def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillati
     even = np.interp(along[0] + step * np.arange(along.size), along, friction)
     length = int(np.clip(along.size // SEGMENTS, SHORTEST, LONGEST))
     frequencies, density = welch(even, 1.0 / step, nperseg=length, detrend="constant")
-    found = _line(frequencies, density, cycle, averages=2 * even.size / length - 1)
-    if found is None:
+    noise = np.maximum(beside(density), 1e-300)
+    other = np.where(_own(frequencies, density, cycle), np.minimum(density, noise), density)
+    line = _line(other, noise, averages=2 * even.size / length - 1)
+    if line is None or np.ptp(even) <= ROUNDING * np.abs(even).max():
         return _of(0.0, 0.0, 0.0, frequencies, density)
-    line, noise = found
-    power = _power(density, noise, line) * frequencies[1]
-    rest = max(float(density.sum() * frequencies[1]) - power, 1e-300)
+    power = _power(other, noise, line) * frequencies[1]
+    rest = max(float(other.sum() * frequencies[1]) - power, 1e-300)
     frequency = float(np.average(frequencies[line - 1 : line + 2], weights=density[line - 1 : line + 2]))
     return _of(frequency, float(np.sqrt(8.0 * power)), power / rest, frequencies, density)
 
@@ -99,24 +104,36 @@ def beside(density: Array) -> Array:
     return np.asarray(np.maximum(padded[: -2 * reach], padded[2 * reach :]), dtype=float)
 
 
-def _line(
-    frequencies: Array, density: Array, cycle: float | None, averages: float
-) -> tuple[int, Array] | None:
-    """Return the place of the strongest line and the noise, if noise alone would hardly make it."""
-    noise = np.maximum(beside(density), 1e-300)
-    ratio = np.where(_own(frequencies, cycle), 0.0, density / noise)
-    place = np.arange(ratio.size)
-    ratio[(place < LOWEST) | (place > ratio.size - 2)] = 0.0
-    strongest = int(np.argmax(ratio * density * (ratio > _limit(ratio.size, averages))))
-    return (strongest, noise) if ratio[strongest] > _limit(ratio.size, averages) else None
+def _line(density: Array, noise: Array, averages: float) -> int | None:
+    """Return the place of the strongest line, if noise alone would hardly make it."""
+    limit = _limit(density.size, averages)
+    ratio = density / noise
+    ratio[:LOWEST] = ratio[-1] = 0.0
+    strongest = int(np.argmax(density * (ratio > limit)))
+    return strongest if ratio[strongest] > limit else None
 
 
-def _own(frequencies: Array, cycle: float | None) -> Array:
-    """Return where the cycle and its multiples lie, to two places."""
+def _own(frequencies: Array, density: Array, cycle: float | None) -> NDArray[np.bool_]:
+    """Return where the lines of the cycle and its multiples stand, with their feet.
+
+    A strong line has feet wider than the window; they reach down to where the density stops falling. A
+    multiple above half the logging rate shows itself mirrored below.
+    """
+    own = np.zeros(frequencies.size, dtype=bool)
     if cycle is None:
-        return np.zeros(frequencies.size, dtype=bool)
-    order = np.clip(np.round(frequencies * cycle), 1, HARMONICS)
-    return np.asarray(np.abs(frequencies - order / cycle) <= 2.5 * frequencies[1])
+        return own
+    last, spacing = frequencies.size - 1, frequencies[1]
+    for order in range(1, HARMONICS + 1):
+        folded = abs((order / cycle / spacing + last) % (2 * last) - last)
+        left, right = max(0, int(folded) - 2), min(last, int(folded) + 3)
+        peak = left + int(np.argmax(density[left : right + 1]))
+        first, end = peak, peak
+        while first > 0 and density[first - 1] < density[first]:
+            first -= 1
+        while end < last and density[end + 1] < density[end]:
+            end += 1
+        own[min(first, left) : max(end, right) + 1] = True
+    return own
 
 
 def _limit(places: int, averages: float) -> float:

@@ -18,6 +18,7 @@ import numpy as np
 from separatrix.archive import MOST_BYTES
 from separatrix.errors import InputError
 from separatrix.tribometer.log import RawTable
+from separatrix.tribometer.names import header_parts, ranks
 from separatrix.units import Array, printable, shown
 
 MAGIC = b"TDSm"
@@ -145,11 +146,16 @@ def _table(name: str, channels: list[Any], metadata: dict[str, str], where: str)
     headers = [channel.name.strip() for channel in channels]
     units = ["s" if _is_moment(channel) else _unit(channel) for channel in channels]
     columns = [_numbers(channel) for channel in channels]
-    if not any(header.casefold().startswith("time") for header in headers):
+    if not any(_may_be_time(header) for header in headers):
         time = _waveform_time(channels, where)
         if time is not None:
-            headers, units, columns = ["Time", *headers], ["s", *units], [time, *columns]
+            headers, units, columns = ["time of the waveform", *headers], ["s", *units], [time, *columns]
     return RawTable(name=name, headers=tuple(headers), units=tuple(units), columns=columns, metadata=metadata)
+
+
+def _may_be_time(header: str) -> bool:
+    """True for the name of a channel of time; an increment of 1 that nobody set then says nothing."""
+    return any("time" in ranks(name) for name, _ in header_parts(header))
 
 
 def _numbers(channel: Any) -> Array:

@@ -291,7 +291,7 @@ def _read(
         headers=header.names,
         units=header.units,
         columns=columns,
-        metadata=metadata_of(table.before, header.lines),
+        metadata=metadata_of(table.before, header.lines, keys_above=layout.keys_above),
         lines=numbers,
     )
 

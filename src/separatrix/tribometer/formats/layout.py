@@ -30,6 +30,8 @@ class Layout:
     """Unit that a spelling stands for in a column of some meaning: ``{("normal_force", "g"): "gf"}``."""
     interruption: re.Pattern[str] | None = None
     """Lines that may stand between rows of the table and are no part of it."""
+    keys_above: bool = False
+    """A line of keys stands above one of values, even if there are only two of them."""
     table_name: Callable[[list[str]], str] = _no_name
     """Name of a table from the lines before it."""
     split_by: tuple[str, ...] = ()

@@ -28,5 +28,6 @@ LAYOUT = Layout(
     recognised=lambda head: _HEADER.search(head) is not None,
     header=_header,
     units={"Timestamp": "s"},
+    keys_above=True,
     split_by=("Step", "RecipeStep"),
 )
