@@ -37,7 +37,6 @@ from separatrix.uncertainty.records import (
     UncertainMaterial,
     UncertainRanking,
 )
-from separatrix.uncertainty.regime import other_regime
 from separatrix.uncertainty.sampling import Draws, sample
 from separatrix.units import Array
 
@@ -181,7 +180,7 @@ def _answer(model: Model, draws: Draws, factors: Factors, found: Sampled) -> Unc
     return UncertainRanking(
         samples=total,
         failed=total - int(factors.solved.sum()),
-        notes=(*factors.notes, *other_regime(draws)),
+        notes=factors.notes,
         default_scatter=asked.friction_scatter,
         inputs=tuple(_input_rows(model)),
         environments=environments,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.special import expit
 
 from separatrix.uncertainty.records import SurrogateError
-from separatrix.uncertainty.surrogate import WIDTHS, Points, Surrogate, logits, width_pieces
+from separatrix.uncertainty.surrogate import WIDTHS, Points, Surrogate, logits
 from separatrix.units import Array
 
 PARTS = 5
@@ -30,7 +30,7 @@ def foretold(surrogate: Surrogate, points: Points) -> tuple[Array, Array]:
     for kick, mode in enumerate(surrogate.mode):
         own = points.kick == kick
         terms = surrogate.terms(points.restitution_factor[own], points.parameters[own])
-        pieces = width_pieces(points.restitution_factor[own])
+        pieces = surrogate.scale.pieces(points.restitution_factor[own], points.parameters[own])
         z[own], width[own] = logits(mode, terms, pieces, points.offset[own])
     return z, width
 

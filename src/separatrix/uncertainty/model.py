@@ -17,6 +17,7 @@ from separatrix.study import Candidate, Study
 from separatrix.uncertainty.boundary import Boundary, Verdicts
 from separatrix.uncertainty.chain_samples import chain_samples
 from separatrix.uncertainty.records import SurrogateError
+from separatrix.uncertainty.regime import play_of
 from separatrix.uncertainty.sampling import UncertainInput, sample, uncertain_inputs
 from separatrix.uncertainty.traced import traced_boundary
 from separatrix.uncertainty.training import changed_cage, enters, moving_inputs, trained
@@ -287,11 +288,13 @@ def _kind(
 ) -> Kind:
     """Boundary of one kind of cage."""
     cage, seed = changed_cage(study, places[0]).cage, study.stability.seed
+    play = play_of(cage, names, {one.key: one.distribution for one in inputs})
+    cage = cage if play is None else play.opened(cage)
     counter = GrowthCounter(cage, study.stability, stop)
     traced = traced_boundary(cage, study.stability, jobs=jobs, progress=stage("boundary"), counter=counter)
     told = stage("surrogate")
     surrogate, error = trained(
-        study, inputs, places[0], names, traced, seed=seed, jobs=jobs, progress=told, stop=stop
+        study, inputs, places[0], names, traced, play=play, seed=seed, jobs=jobs, progress=told, stop=stop
     )
     keys = [one.key for one in inputs]
     return Kind(

@@ -3,10 +3,10 @@ r"""How the boundary moves with the cage: a logistic law of single runs, fitted 
 .. math:: \operatorname{logit} P(\text{grow}) = \frac{\ln f - \ln f_{1/2}(\eta) - \delta(x, \eta)}{w_\pm}
 
 for each kick, with the traced curve :math:`f_{1/2}` of the cage as it is, a shift :math:`\delta` of low
-order in the standardised parameters x of the cage and in :math:`\eta`, and a width on either side of one
-half. Coefficients and widths have normal priors; the mode is found by Fisher scoring, and their posterior is
-normal about it (Laplace's approximation: D. J. C. MacKay, Information Theory, Inference, and Learning
-Algorithms, 2003, ch. 27).
+order in the standardised parameters x of the cage and in :math:`\eta`, bends where the land takes the place
+of the pockets (`regime`), and a width on either side of one half. Coefficients and widths have normal priors;
+the mode is found by Fisher scoring, and their posterior is normal about it (Laplace's approximation: D. J. C.
+MacKay, Information Theory, Inference, and Learning Algorithms, 2003, ch. 27).
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.special import expit
 
 from separatrix.distribution import Distribution
+from separatrix.uncertainty.regime import HELD, Play
 from separatrix.uncertainty.traced import FEW, TracedBoundary
 from separatrix.units import Array, Ratio
 
@@ -35,12 +36,15 @@ PRIOR_KNOT, PRIOR_LINEAR, PRIOR_SLOPE, PRIOR_SQUARE, PRIOR_PRODUCT = 0.03, 0.5, 
 """Standard deviations of the coefficients of ln f thought possible before a run; that of a knot comes on top
 of the traced curve's own scatter there."""
 
+PRIOR_BEND, PRIOR_BEND_SLOPE, PRIOR_BEND_LINEAR = 6.0, 3.0, 0.5
+"""The same of the slope of ln f below a bend: by itself, along eta, and by a standardised parameter."""
+
 WIDTH, WIDTH_SPREAD = 0.12, 1.0
 """Width of logit P in ln f thought likely, and how far (a factor of e) it may be off."""
 
 STEPS, SETTLED = 60, 1e-9
 HALVED = tuple(0.5**k for k in range(20))
-WIDTHS = 2 * WIDTH_KNOTS.size
+WIDTHS = 2 * (WIDTH_KNOTS.size + 1)
 """Coefficients of the widths, the last ones of a kick's."""
 
 
@@ -48,19 +52,35 @@ WIDTHS = 2 * WIDTH_KNOTS.size
 class Scale:
     """Parameters of a cage and what makes them standard: (x - centre) / spread, of ln x where it is positive.
 
-    `centre`, `spread` and `logarithmic` have shape (parameter,).
+    `centre`, `spread` and `logarithmic` have shape (parameter,); `play` says where the boundary bends, if it
+    does.
     """
 
     names: tuple[str, ...]
     centre: Array
     spread: Array
     logarithmic: NDArray[np.bool_]
+    play: Play | None = None
 
     def standard(self, parameters: Array) -> Array:
         """Return standardised parameters, shape (sample, parameter) [-]."""
         known = np.asarray(parameters, dtype=np.float64)
         found = np.where(self.logarithmic, np.log(np.where(self.logarithmic, known, 1.0)), known)
         return np.asarray((found - self.centre) / self.spread)
+
+    def hinges(self, parameters: Array) -> Array:
+        """How far each sample lies below each bend, shape (sample, bend)."""
+        return np.zeros((len(parameters), 0)) if self.play is None else self.play.hinges(parameters)
+
+    def terms(self, knots: Array, eta: Array, parameters: Array) -> Array:
+        """Terms of the shift, shape (sample, term)."""
+        return features(knots, eta, self.standard(parameters), self.hinges(parameters))
+
+    def pieces(self, eta: Array, parameters: Array) -> Array:
+        """Terms of the logarithm of a width, shape (sample, piece): along eta, and how far the land holds."""
+        hinges = self.hinges(parameters)
+        held = np.minimum(hinges[:, :1].sum(axis=1) / HELD, 1.0)
+        return np.column_stack([_pieces(eta, WIDTH_KNOTS), held])
 
 
 def scale_of(names: Sequence[str], distributions: Sequence[Distribution]) -> Scale:
@@ -157,7 +177,7 @@ class Surrogate:
 
     def terms(self, eta: Array, parameters: Array) -> Array:
         """Terms of the shift, shape (sample, term)."""
-        return features(self.knots, eta, self.scale.standard(parameters))
+        return self.scale.terms(self.knots, eta, parameters)
 
     def shift(self, eta: Array, parameters: Array, draw: int | None) -> Array:
         """Shift of ln f of each kick, shape (kick, sample)."""
@@ -181,7 +201,7 @@ class Surrogate:
         `half` holds those of the traced curve at which half of them grow.
         """
         found, _ = self.coefficients(draw)
-        pieces = width_pieces(eta)
+        pieces = self.scale.pieces(eta, parameters)
         below = np.exp(found[:, -WIDTHS : -WIDTHS // 2] @ pieces.T)
         above = np.exp(found[:, -WIDTHS // 2 :] @ pieces.T)
         middle = half * np.exp(self.shift(eta, parameters, draw))
@@ -193,8 +213,8 @@ def logit(share: Ratio) -> float:
     return math.log(share / (1.0 - share))
 
 
-def features(knots: Array, eta: Array, standard: Array) -> Array:
-    """Terms of the shift, shape (sample, term): straight pieces in eta between knots, then the parameters."""
+def features(knots: Array, eta: Array, standard: Array, hinges: Array) -> Array:
+    """Terms of the shift, shape (sample, term): pieces in eta between knots, parameters, bends."""
     count = standard.shape[1]
     pieces = list(_pieces(eta, knots).T)
     linear = list(standard.T)
@@ -203,7 +223,10 @@ def features(knots: Array, eta: Array, standard: Array) -> Array:
     products = (
         [linear[i] * linear[j] for i in range(count) for j in range(i)] if count <= MOST_CROSSED else []
     )
-    return np.stack([*pieces, *linear, *slopes, *squares, *products], axis=1)
+    bends = list(hinges.T)
+    bent = [column * (2.0 * eta - 1.0) for column in bends]
+    mixed = [bends[0] * column for column in linear] if bends else []
+    return np.stack([*pieces, *linear, *slopes, *squares, *products, *bends, *bent, *mixed], axis=1)
 
 
 def _pieces(eta: Array, knots: Array) -> Array:
@@ -211,23 +234,26 @@ def _pieces(eta: Array, knots: Array) -> Array:
     return np.stack([np.interp(eta, knots, unit) for unit in np.eye(knots.size)], axis=1)
 
 
-def width_pieces(eta: Array) -> Array:
-    """Terms of the logarithm of a width, shape (sample, knot)."""
-    return _pieces(eta, WIDTH_KNOTS)
-
-
-def prior(count: int, scatter: Array) -> Array:
+def prior(count: int, bends: int, scatter: Array) -> Array:
     """Standard deviations of the coefficients before any run, those of the widths last.
 
     Parameters
     ----------
-    count : int
-        Parameters.
+    count, bends : int
+        Parameters, and bends.
     scatter : ndarray
         Of ln f of the traced curve at its knots, shape (knot,) [-].
     """
     products = count * (count - 1) // 2 if count <= MOST_CROSSED else 0
-    parts = ((PRIOR_LINEAR, count), (PRIOR_SLOPE, count), (PRIOR_SQUARE, count), (PRIOR_PRODUCT, products))
+    parts = (
+        (PRIOR_LINEAR, count),
+        (PRIOR_SLOPE, count),
+        (PRIOR_SQUARE, count),
+        (PRIOR_PRODUCT, products),
+        (PRIOR_BEND, bends),
+        (PRIOR_BEND_SLOPE, bends),
+        (PRIOR_BEND_LINEAR, count if bends else 0),
+    )
     shift = [np.full(n, deviation) for deviation, n in parts]
     return np.concatenate([np.hypot(scatter, PRIOR_KNOT), *shift, np.full(WIDTHS, WIDTH_SPREAD)])
 
@@ -237,9 +263,10 @@ def fitted(points: Points, scale: Scale, traced: TracedBoundary, *, seed: int) -
     modes, roots = [], []
     for kick in range(len(traced.kicks)):
         own = points.of(points.kick == kick)
-        terms = features(traced.restitution_factors, own.restitution_factor, scale.standard(own.parameters))
-        deviation = prior(len(scale.names), traced.error[kick, 1])
-        runs = _Runs(terms, width_pieces(own.restitution_factor), own.offset, own.grew)
+        eta, bends = own.restitution_factor, 0 if scale.play is None else scale.play.bends.size
+        terms = scale.terms(traced.restitution_factors, eta, own.parameters)
+        deviation = prior(len(scale.names), bends, traced.error[kick, 1])
+        runs = _Runs(terms, scale.pieces(eta, own.parameters), own.offset, own.grew)
         mode, root = _mode(runs, deviation)
         modes.append(mode)
         roots.append(root)

@@ -24,6 +24,7 @@ from separatrix.study import StabilitySettings, Study
 from separatrix.study_numbers import setter
 from separatrix.uncertainty.held_out import misfit, surrogate_error
 from separatrix.uncertainty.records import SurrogateError
+from separatrix.uncertainty.regime import Play
 from separatrix.uncertainty.sampling import UncertainInput
 from separatrix.uncertainty.surrogate import (
     WIDTHS,
@@ -31,7 +32,6 @@ from separatrix.uncertainty.surrogate import (
     Surrogate,
     fitted,
     scale_of,
-    width_pieces,
 )
 from separatrix.uncertainty.traced import TracedBoundary
 from separatrix.units import Array, Ratio
@@ -50,6 +50,9 @@ FIRST_REACH, REACH = 0.6, 3.0
 
 LEAST_WIDTH = 0.08
 """Width of logit P in ln f below which runs are not drawn together: the tails must be seen too."""
+
+SEARCHED = 32
+"""So many times the cages are drawn in search of those whose land takes over."""
 
 HELD_OUT = 5
 """One run in so many is held out of the fit that is tried."""
@@ -132,6 +135,7 @@ def trained(
     names: Sequence[str],
     traced: TracedBoundary,
     *,
+    play: Play | None,
     seed: int,
     jobs: int = 1,
     progress: Progress | None = None,
@@ -146,7 +150,9 @@ def trained(
     names : sequence of str
         Inputs that move the boundary: `moving_inputs`.
     traced : TracedBoundary
-        Of the cage as it is.
+        Of the cage as it is, or `Play.opened`.
+    play : Play or None
+        Where the boundary bends.
     seed : int
         Of the plan; the runs have the study's.
     jobs, progress, stop
@@ -159,8 +165,11 @@ def trained(
     """
     halt = stop or Event()
     known = [one for one in inputs if enters(study, one.key, place)]
-    scale = scale_of(names, [one.distribution for name in names for one in known if one.key == name])
-    cages = trainees(study, known, place, names, cage_count(len(names)), seed=seed, jobs=jobs, stop=halt)
+    laws = {one.key: one.distribution for one in known}
+    scale = replace(scale_of(names, [laws[name] for name in names]), play=play)
+    count = cage_count(len(names))
+    values = drawn(known, names, count, play, seed)
+    cages = trainees(study, [one.key for one in known], values, place, names, jobs=jobs, stop=halt)
     plan = _Plan(study.stability.kicks, traced, cages, seed)
     points, law = None, None
     rounds = max(ROUNDS, -(-RUNS // plan.size))
@@ -173,18 +182,19 @@ def trained(
         law = fitted(points, scale, traced, seed=seed)
     if points is None or law is None:
         raise KeyboardInterrupt
-    return _judged(points, law, traced, cages)
+    return _judged(points, law, traced, cages, count)
 
 
 def _judged(
-    points: Points, law: Surrogate, traced: TracedBoundary, cages: Sequence[Trainee]
+    points: Points, law: Surrogate, traced: TracedBoundary, cages: Sequence[Trainee], count: int
 ) -> tuple[Surrogate, SurrogateError]:
     """Return the law with the misfit that held-out runs show, and the record of its error."""
     out = np.arange(points.grew.size) % HELD_OUT == HELD_OUT - 1
     tried = fitted(points.of(~out), law.scale, traced, seed=law.seed)
     final = replace(law, misfit=misfit(tried, points.of(out)))
-    eta = np.array([one.restitution_factor for one in cages])
-    known = np.array([one.parameters for one in cages]).reshape(len(cages), -1)
+    as_drawn = [one for one in cages if one.place < count]
+    eta = np.array([one.restitution_factor for one in as_drawn])
+    known = np.array([one.parameters for one in as_drawn]).reshape(len(as_drawn), -1)
     error = surrogate_error(tried, points.of(out), final, eta, known, runs=points.grew.size, cages=len(cages))
     return final, error
 
@@ -194,24 +204,42 @@ def cage_count(parameters: int) -> int:
     return 64 if parameters <= 1 else 128 if parameters <= 3 else 256 if parameters <= 8 else 512
 
 
+def drawn(
+    inputs: Sequence[UncertainInput], names: Sequence[str], count: int, play: Play | None, seed: int
+) -> Array:
+    """Return values of so many quasi-random cages, and of more where few lie on a side of the first bend.
+
+    Shape (cage, input), the additional ones last.
+    """
+    points = count if play is None else SEARCHED * count
+    unit = qmc.Sobol(max(1, len(inputs)), rng=np.random.default_rng([seed, 1])).random(points)
+    unit = np.clip(unit, 1e-9, 1.0 - 1e-9)
+    values = np.empty((points, len(inputs)))
+    for j, one in enumerate(inputs):
+        values[:, j] = one.distribution.quantile(unit[:, j])
+    if play is None:
+        return values
+    keys = [one.key for one in inputs]
+    bent = play.hinges(values[:, [keys.index(name) for name in names]])[:, 0] > 0.0
+    chosen = np.arange(points) < count
+    for side in (bent, ~bent):
+        lacking = max(0, count // 2 - np.count_nonzero(chosen & side))
+        chosen[np.flatnonzero(side & ~chosen)[:lacking]] = True
+    return values[chosen]
+
+
 def trainees(
     study: Study,
-    inputs: Sequence[UncertainInput],
+    keys: Sequence[str],
+    values: Array,
     place: int,
     names: Sequence[str],
-    count: int,
     *,
-    seed: int,
     jobs: int,
     stop: Event,
 ) -> list[Trainee]:
-    """Cages of a quasi-random sequence; those that cannot be built are left out."""
-    unit = qmc.Sobol(max(1, len(inputs)), rng=np.random.default_rng([seed, 1])).random(count)
-    unit = np.clip(unit, 1e-9, 1.0 - 1e-9)
-    values = np.empty((count, len(inputs)))
-    for j, one in enumerate(inputs):
-        values[:, j] = one.distribution.quantile(unit[:, j])
-    keys = [one.key for one in inputs]
+    """Cages of rows of values of these inputs; those that cannot be built are left out."""
+    count = len(values)
     put, columns = setter(study, keys), [keys.index(name) for name in names]
 
     def build(row: int) -> Trainee | None:
@@ -274,7 +302,10 @@ def _near(law: Surrogate, blank: Points) -> Array:
     for kick, mode in enumerate(law.mode):
         own = blank.kick == kick
         terms = law.terms(blank.restitution_factor[own], blank.parameters[own])
-        z, pieces = REACH * blank.offset[own], width_pieces(blank.restitution_factor[own])
+        z, pieces = (
+            REACH * blank.offset[own],
+            law.scale.pieces(blank.restitution_factor[own], blank.parameters[own]),
+        )
         below, above = pieces @ mode[-WIDTHS : -WIDTHS // 2], pieces @ mode[-WIDTHS // 2 :]
         width = np.maximum(np.exp(np.where(z < 0.0, below, above)), LEAST_WIDTH)
         found[own] = terms @ mode[:-WIDTHS] + z * width
