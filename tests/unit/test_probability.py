@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import beta
 
+from separatrix.ranking.lowest import lowest_of
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, Limits, own_draws
 from separatrix.uncertainty.probability import (
     best_credit,
@@ -100,7 +101,7 @@ def test_nine_in_ten_lie_between_the_ends():
 
 def test_verdicts_follow_the_limits():
     """At the lower limit still STABLE, at the upper one still UNDECIDED, above it UNSTABLE."""
-    limits = Limits(stable_up_to=np.array([0.1]), unstable_above=np.array([0.2]))
+    limits = Limits(stable_from=np.array([0.0]), stable_up_to=np.array([0.1]), unstable_above=np.array([0.2]))
     friction = np.array([[0.05, 0.1, 0.15, 0.2, 0.21]])
     expected = [[STABLE, STABLE, UNDECIDED, UNDECIDED, UNSTABLE]]
     assert limits.verdicts(friction).tolist() == expected
@@ -110,10 +111,15 @@ def test_verdicts_follow_the_limits():
 
 def test_limits_that_cross_are_unstable_first():
     """Where all kicks change over at once, scatter may put the upper limit below the lower."""
-    limits = Limits(stable_up_to=np.array([0.2]), unstable_above=np.array([0.1]))
+    limits = Limits(stable_from=np.array([0.0]), stable_up_to=np.array([0.2]), unstable_above=np.array([0.1]))
     assert limits.verdicts(np.array([[0.05, 0.15]])).tolist() == [[STABLE, UNSTABLE]]
 
 
 def test_every_boundary_has_its_share_of_the_samples():
     """In turn, so that the first so many samples hold all of them."""
     assert own_draws(6, 4).tolist() == [0, 1, 2, 3, 0, 1]
+
+
+def test_the_probability_of_the_lowest_friction_never_exceeds_one():
+    """A leader far below the others: the quadrature's rounding is not passed on."""
+    assert lowest_of([-2.62, -1.97, -1.31], [0.0459, 0.0457, 0.0647])[0] == 1.0

@@ -253,6 +253,8 @@ def test_numbers_are_those_of_the_document(folder, answer):
             if record["verdict"] is not None:
                 assert shown["restitution threshold (-)"] == record["restitution_threshold"]
                 assert shown["margin (-)"] == record["margin"]
+                low = record["restitution_threshold_low"] - record["restitution_factor"]
+                assert shown["margin, low end of 95 % (-)"] == pytest.approx(low, abs=1e-12)  # rounding
             assert shown["verdict"] == (record["verdict"] or "not measured")
     assert book["overall"].freeze_panes == "C2"
     assert book["overall"]["D2"].number_format == "0.000"
@@ -264,12 +266,25 @@ def test_inputs_and_sources_are_there(folder, answer):
     lines = {(row[0], row[1]): row[2:] for row in book["inputs"].values}
     assert lines["film", "thickness"] == (5e-7, "m", 'small.toml, line 6: "0.5 um"')
     assert lines["cage", "gravity"] == (0, "m/s2", "default")
+    assert lines["ranking", "friction_scatter"] == (0.09, "-", "default")
     assert {row[1] for row in book["materials"].values} >= {"440C", "PTFE transfer film"}
     frictions = [row[:5] for row in book["frictions"].values]
     assert ("'=cmd|' /C calc'!A0", "liquid nitrogen, 440C", 0.12, 0.02, 8) in frictions
     about = dict(row for row in book["about"].values if row[0])
     assert about["program"] == f"separatrix {answer['separatrix_version']}, rank"
     assert (about["seed"], about["kicks (m/s)"]) == (1, "0.1; 0.5; 2.0")
+
+
+def test_what_was_not_tested_stands_beside_the_friction(answer, tmp_path):
+    """An extrapolated friction, an assumed scatter and the probability of the lowest are in each table."""
+    said = ["slip speed 25.1 m/s is beyond the tested 1 to 5 m/s", "tested in air"]
+    known = {"extrapolation": said, "friction_scatter_assumed": True, "probability_lowest_friction": 0.7}
+    results_workbook(answer | {"overall": [row | known for row in answer["overall"]]}, tmp_path / "a.xlsx")
+    headings, first, *_ = openpyxl.load_workbook(tmp_path / "a.xlsx")["overall"].values
+    row = dict(zip(headings, first, strict=True))
+    assert row["friction not tested as the pocket rubs"] == "; ".join(said)
+    assert row["scatter of the friction assumed"] == "yes"
+    assert row["probability of the lowest friction (-)"] == 0.7
 
 
 EVIL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+1", "-2+3", "\t=1+1", "\r=1", " =1+1", "＝1+1", "\x07bell"]

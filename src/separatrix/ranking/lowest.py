@@ -83,7 +83,8 @@ def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio
         half = 0.5 * np.diff(ends)[:, None]
         x = ends[:-1, None] + half * (1.0 + nodes)
         beyond = ndtr((others - mu[i] - sigma[i] * x[..., None]) / widths).prod(axis=-1)
-        found.append(float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi)))
+        share = float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi))
+        found.append(min(share, 1.0))  # rounding may leave 2e-15 more
     return found
 
 

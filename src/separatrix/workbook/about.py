@@ -34,6 +34,9 @@ def _facts(document: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
     yield "the same with the ball's spin free (-)", document["restitution_factor_free_spin"]
     yield "pocket stiffness (N/um)", document["ball_cage_stiffness"] * 1e-6
     yield "stiffness", document["chain"].get("stiffness_source")
+    pocket = document["pocket"]
+    yield "sliding speed of ball on pocket (m/s)", pocket["slip_speed"]
+    yield "mean pressure of ball on pocket (MPa)", pocket["pressure"] * 1e-6
     yield "paper", document["paper_statement"]
     yield from (("note", sentence) for sentence in document["warnings"])
     yield "units", "Units are in the headings; the sheet of inputs is in SI, angles in rad."

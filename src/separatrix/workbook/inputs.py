@@ -41,15 +41,19 @@ def lines(study: Mapping[str, Any]) -> Iterator[Line]:
     """Yield the inputs of a study, section by section; a material by its name."""
     for section in SECTIONS:
         for key, item in (study.get(section) or {}).items():
-            if isinstance(item, Mapping):
-                value = item.get("value", item.get("name"))
-                yield Line(section, key, _one(value), item.get("unit") or "", item.get("origin") or "")
-            else:
-                yield Line(section, key, _one(item), "", "from the values above")
+            yield _line(section, key, item)
     ranking = study.get("ranking")
     if ranking is not None:
         names = ", ".join(candidate["name"] for candidate in ranking["candidates"])
         yield Line("ranking", "candidates", names, "", ranking.get("origin") or "")
+        yield _line("ranking", "friction_scatter", ranking["friction_scatter"])
+
+
+def _line(section: str, key: str, item: object) -> Line:
+    if not isinstance(item, Mapping):
+        return Line(section, key, _one(item), "", "from the values above")
+    value = item.get("value", item.get("name"))
+    return Line(section, key, _one(value), item.get("unit") or "", item.get("origin") or "")
 
 
 def _one(value: object) -> object:

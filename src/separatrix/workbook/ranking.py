@@ -20,6 +20,9 @@ VERDICT_FILLS = {"STABLE": "CCE3F0", "UNSTABLE": "F7DFCC", "UNDECIDED": "FAECCC"
 """Light tints of the colours that the figures give the verdicts."""
 
 
+SIGNED = "+0.000;-0.000;0.000"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Column:
     """One quantity of a candidate: its key in the document, its heading, and how it is shown."""
@@ -30,6 +33,7 @@ class Column:
     factor: float = 1.0
     """From the SI unit of the document to that of the heading."""
     width: float = 11.0
+    wrap: bool = False
 
 
 COLUMNS = (
@@ -38,16 +42,20 @@ COLUMNS = (
     Column(key="verdict", heading="verdict", width=13),
     Column(key="friction", heading="friction (-)"),
     Column(key="friction_error", heading="standard error of the friction (-)", width=13),
+    Column(key="friction_scatter_assumed", heading="scatter of the friction assumed", width=13),
+    Column(key="probability_lowest_friction", heading="probability of the lowest friction (-)", width=13),
     Column(key="restitution_threshold", heading="restitution threshold (-)", width=13),
     Column(key="restitution_threshold_low", heading="threshold, low end of 95 % (-)", width=13),
     Column(key="restitution_threshold_high", heading="threshold, high end of 95 % (-)", width=13),
-    Column(key="margin", heading="margin (-)", number_format="+0.000;-0.000;0.000"),
+    Column(key="margin", heading="margin (-)", number_format=SIGNED),
+    Column(key="margin_low", heading="margin, low end of 95 % (-)", number_format=SIGNED, width=13),
+    Column(key="margin_high", heading="margin, high end of 95 % (-)", number_format=SIGNED, width=13),
     Column(key="probability_stable", heading="probability of stable (-)", width=13),
     Column(key="probability_low", heading="probability, low end of 95 % (-)", width=13),
     Column(key="probability_high", heading="probability, high end of 95 % (-)", width=13),
-    Column(key="probability_best", heading="probability of being best (-)", width=13),
     Column(key="restitution_factor", heading="restitution factor of the bearing (-)", width=13),
-    Column(key="reason", heading="reason", width=90),
+    Column(key="extrapolation", heading="friction not tested as the pocket rubs", width=50, wrap=True),
+    Column(key="reason", heading="reason", width=90, wrap=True),
 )
 EVIDENCE = (
     Column(key="cage_motion", heading="motion of the cage centre", width=13),
@@ -89,6 +97,7 @@ def add_evidence(book: Workbook, document: Mapping[str, Any]) -> None:
 
 def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]) -> None:
     """Write one line for each candidate, and the columns in which any has a value."""
+    rows = [{**row, **_margin_ends(row)} for row in rows]
     given = [column for column in columns if column.key in ALWAYS or _is_given(rows, column.key)]
     headings(sheet, [column.heading for column in given], keep_columns=2)
     for number, row in enumerate(rows, 2):
@@ -99,20 +108,31 @@ def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]
         sheet.auto_filter.ref = f"A1:{cell_name(len(rows) + 1, len(given))}"
 
 
+def _margin_ends(row: Row) -> Row:
+    """Return the ends of the margin: those of the threshold, less the restitution factor of the bearing."""
+    if row.get("margin") is None:
+        return {}
+    away = row["margin"] - row["restitution_threshold"]
+    ends = {end: row[f"restitution_threshold_{end}"] for end in ("low", "high")}
+    return {f"margin_{end}": value + away for end, value in ends.items() if value is not None}
+
+
 def _cell(sheet: Worksheet, row: int, column: int, record: Row, shown: Column) -> None:
     value = record.get(shown.key)
     if shown.key == "verdict" and value is None:
         value = "not measured" if record.get("friction") is None else "not finished"
-    if isinstance(value, float):
+    if isinstance(value, list):
+        value = "; ".join(map(str, value)) or None
+    elif isinstance(value, float):
         value *= shown.factor
     fill = VERDICT_FILLS.get(str(value), "") if shown.key == "verdict" else ""
     number_format = shown.number_format if isinstance(value, int | float) else "General"
-    look = Look(number_format=number_format, bold=shown.key == "name", fill=fill, wrap=shown.key == "reason")
+    look = Look(number_format=number_format, bold=shown.key == "name", fill=fill, wrap=shown.wrap)
     put(sheet, row, column, value, look)
 
 
 def _is_given(rows: Sequence[Row], key: str) -> bool:
-    return any(row.get(key) is not None for row in rows)
+    return any(row.get(key) not in (None, []) for row in rows)
 
 
 def _others(rows: Sequence[Row]) -> list[Column]:
