@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -44,9 +45,9 @@ class FrictionLaw(Protocol):
         slip_speed: MetrePerSecond | None,
         pressure: Pascal | None,
         temperature: Kelvin | None,
-        medium: str | None,
+        medium: str | Sequence[str] | None,
     ) -> PredictedFriction:
-        """Friction for these conditions; one that is None is not asked about."""
+        """Friction for these conditions; one that is None is not asked about. The medium by all its names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

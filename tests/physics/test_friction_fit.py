@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from separatrix.equilibrium import equilibrium
-from separatrix.friction_fit import FrictionTest, StatedFriction, fit_friction
+from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction, fit_friction
 from separatrix.friction_fit.components import LinearModel, conditional, variance_components
 from separatrix.hertz import contact_ellipse
 from separatrix.pocket_contact import contact_radius, impact_force, sliding_speed
@@ -168,6 +168,77 @@ def test_speed_and_pressure_that_rise_together_give_one_slope_on_their_product()
     assert one.at(slip_speed=2.0, pressure=2e6).mean == pytest.approx(0.1 * 4.0**0.15, rel=1e-9)
 
 
+@pytest.mark.parametrize("wobble", [1.0, 1.05])
+def test_tests_at_one_pv_have_a_slope_on_slip_speed_alone(wobble):
+    """Pressure falls as speed rises, exactly or nearly: the friction at a tested speed comes back."""
+    tests = [
+        measured(0.1 * v**0.2, slip_speed=(v, v), pressure=(1e7 / v * w, 1e7 / v * w))
+        for v, w in ((1.0, 1.0), (2.0, wobble), (5.0, 1.0), (10.0, 1.0))
+    ]
+    one = fit_friction(tests).of("A", ENVIRONMENT)
+    assert list(one.slopes) == ["slip_speed"]
+    assert one.slopes["slip_speed"].value == pytest.approx(0.2, abs=1e-9)  # least squares to rounding
+    assert one.covariates.notes == ("pressure fell as slip speed rose: slope on slip speed, for both",)
+
+
+def test_a_speed_and_a_pressure_never_tested_together_are_said():
+    """5 m/s and 5 MPa were tested, each beside the lowest of the other: at both, pV is held and widened."""
+    tests = [
+        measured(0.1 * pv**0.2, slip_speed=(v, v), pressure=(1e6 * p, 1e6 * p))
+        for v, p, pv in ((1.0, 1.0, 1.0), (5.0, 1.0, 5.0), (1.0, 5.0, 5.0))
+    ]
+    one = fit_friction(tests).of("A", ENVIRONMENT)
+    assert list(one.slopes) == ["pressure_velocity"]
+    corner, edge = one.at(slip_speed=5.0, pressure=5e6), one.at(slip_speed=5.0, pressure=1e6)
+    assert corner.mean == pytest.approx(0.1 * 5.0**0.2, rel=1e-9)  # of the tested 5 MPa m/s, not of 25
+    assert corner.extrapolation == (
+        "slip speed and pressure were not tested together: pV 25 MPa m/s is beyond 1 to 5 MPa m/s",
+    )
+    slope = one.slopes["pressure_velocity"]
+    steep = sqrt(slope.value**2 + slope.standard_error**2)
+    assert corner.widening == pytest.approx(corner.mean * steep * log(5.0), rel=1e-6)
+    assert not edge.extrapolation
+
+
+WARM_AND_COLD = [measured(f, temperature=(k, k)) for f, k in ((0.05, 77.0), (0.05, 90.0), (0.2, 295.0))]
+
+
+@pytest.mark.parametrize(
+    ("temperature", "friction", "words"),
+    [
+        (77.0, 0.05, ()),
+        (295.0, 0.2, ()),
+        (None, 0.05 ** (2 / 3) * 0.2 ** (1 / 3), ()),
+        (150.0, 0.05, ("temperature 150 K is beyond the tested 77 to 90 K (held at 90 K)",)),
+        (250.0, 0.2, ("temperature 250 K is below the tested 295 K (held at 295 K)",)),
+    ],
+)
+def test_tests_at_the_nearest_temperature_serve(temperature, friction, words):
+    """0.05 in the cold and 0.2 in the warm: never their mean, which is the friction of neither."""
+    for tests in (WARM_AND_COLD, WARM_AND_COLD[::-1]):
+        law = TestedFriction(material="A", environment=ENVIRONMENT, tests=tuple(tests), default_scatter=0.09)
+        found = law.at(temperature=temperature)
+        assert found.mean == pytest.approx(friction, rel=1e-9)  # rounding of exp and log
+        assert found.extrapolation == words
+
+
+def test_a_test_that_states_no_temperature_serves_at_any():
+    """What is not known leaves nobody out."""
+    law = TestedFriction(
+        material="A", environment=ENVIRONMENT, default_scatter=0.09,
+        tests=(WARM_AND_COLD[0], measured(0.05), WARM_AND_COLD[2]),
+    )  # fmt: skip
+    assert len(law.serving(80.0)) == 2
+    assert law.at(temperature=80.0).mean == pytest.approx(0.05, rel=1e-9)
+
+
+def test_a_medium_is_known_by_all_names_of_the_fluid():
+    """Tests in LN2, a study in liquid nitrogen: the same. Another fluid is named as the study names it."""
+    one = fit_friction([measured(0.1, medium="LN2")]).of("A", "LN2, 440C")
+    assert not one.at(medium=("liquid nitrogen", "LN2")).extrapolation
+    assert one.at(medium=("LOX", "liquid oxygen")).extrapolation == ("tested in LN2, not in LOX",)
+
+
 def test_intervals_of_the_parameters_hold_the_truth():
     """200 simulated plans: the 95 % intervals of intercept and slope hold it in 90.5 to 98 % of them.
 
@@ -203,6 +274,8 @@ def test_a_material_with_few_tests_borrows_scatter_from_the_others():
     pooled, own = beside.of("A", ENVIRONMENT), beside.of("B", ENVIRONMENT)
     assert alone.scatter < pooled.scatter < own.scatter
     assert pooled.scatter_source == "tests of other materials, and assumed"
+    assert beside.of("A", ENVIRONMENT).at().assumed_scatter
+    assert not beside.of("B", ENVIRONMENT).at().assumed_scatter
 
 
 PAPER = {"gaseous nitrogen, Chromex 40": 0.667, "gaseous nitrogen, 440C": 0.99999,

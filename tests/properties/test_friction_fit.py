@@ -11,7 +11,7 @@ from separatrix.ranking.lowest import lowest_of
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)
 TEXT = st.text(st.characters(codec="utf-8"), min_size=1, max_size=20).filter(
-    lambda t: t.isprintable() and t.strip() and "," not in t
+    lambda t: t.isprintable() and t == t.strip() and "," not in t
 )
 ENVIRONMENT = {"material": "A", "counterface": "440C", "medium": "air"}
 

@@ -116,6 +116,33 @@ def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
     assert seen.assumed_scatter
 
 
+def test_two_tests_of_one_log_are_two_tests(tmp_path):
+    """Sheets and steps of one file share its checksum."""
+    tests = (whole(source="a.csv, step 1"), whole(source="a.csv, step 2"))
+    write_friction(tests, tmp_path / "friction.toml")
+    assert read_friction(tmp_path / "friction.toml") == tests
+
+
+def test_a_study_takes_the_tests_at_its_temperature_and_says_how_many_it_leaves_out(tmp_path):
+    """A test at 77 K and one at 295 K: mean, count and source are those of the cold one."""
+    cold = SMALL.replace("friction = 0.08", 'friction = 0.08\ntemperature = "77 K"')
+    warm = SMALL.split("[[test]]")[1].replace("0.08", '0.3\ntemperature = "295 K"')
+    (candidate, _) = read_study(study(tmp_path, f"{cold}\n[[test]]{warm}")).ranking.candidates
+    friction = candidate.friction["liquid nitrogen, 440C"]
+    assert friction.mean == pytest.approx(0.08, rel=1e-12)  # rounding of exp and log
+    assert friction.count == 1
+    assert "1 of 2 tests, at other temperatures, left out" in friction.source
+
+
+def test_tests_in_the_fluid_of_the_study_by_another_name_are_no_extrapolation(tmp_path):
+    """LN2 is liquid nitrogen, and GN2 is not."""
+    text = SMALL.replace("liquid nitrogen", "LN2") + SMALL.replace("liquid nitrogen", "GN2")
+    (armalon, _) = frictions_seen(read_study(study(tmp_path, text))).ranking.candidates
+    said = {env: " ".join(one.extrapolation) for env, one in armalon.friction.items()}
+    assert "tested in" not in said["LN2, 440C"]
+    assert "tested in GN2, not in liquid nitrogen" in said["GN2, 440C"]
+
+
 def test_the_cage_asks_for_what_its_pocket_rubs():
     """A table of 1 to 5 m/s at 77 K, a pocket at 21 m/s in the other medium: the mean stays, words say so."""
     table = read_study("cryogenic-turbopump").ranking.candidates[2]

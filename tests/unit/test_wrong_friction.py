@@ -67,6 +67,19 @@ WRONG_FILES = {
         2 * text_of(checksum='"ab"', source='"a.csv"'),
         ("line 13", "checksum is that of test 1 once more", "remove one"),
     ),
+    "a copy of a log": (
+        text_of(checksum='"ab"', source='"a.csv"') + text_of(checksum='"ab"', source='"b.csv"'),
+        ("line 13", "checksum is that of test 1 once more", "remove one"),
+    ),
+    "material with a space behind": (text_of(material='"Armalon "'), ("must not begin or end with a space",)),
+    "material in other capitals": (
+        text_of() + text_of(material='"armalon"'),
+        ("line 7: [[test]].material differs from that of test 1", 'instance "Armalon"'),
+    ),
+    "medium with two spaces": (
+        text_of() + text_of(medium='"liquid  nitrogen"'),
+        ("line 9: [[test]].medium differs from that of test 1 only in capitals or spaces",),
+    ),
 }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from separatrix.errors import InputError, together
 from separatrix.friction_fit import FrictionTest
+from separatrix.friction_fit.records import NAMES
 from separatrix.toml_text import Kind, label_of, read_toml
 from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ratio, table, text
 from separatrix.units import parse, printable, shown
@@ -20,7 +21,7 @@ KIND = Kind(
     most_bytes=8 * 1024 * 1024,
     empty="`separatrix tribometer FILES --out friction.toml` makes one from logs.",
 )
-REQUIRED = ("material", "counterface", "medium", "friction")
+REQUIRED = (*NAMES, "friction")
 AXES = {"time": "s", "distance": "m", "cycles": "cycles"}
 """What running-in may be counted in, and the unit in which it is written."""
 
@@ -49,7 +50,8 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
             problems.extend(error.problems or (error,))
         if len(problems) > MOST_PROBLEMS:
             break
-    problems.extend(_twice(tests, lines, label) if not problems else ())
+    if not problems:
+        problems.extend([*_twice(tests, lines, label), *_alike(tests, lines, label)])
     if problems:
         raise together(problems)
     return tuple(tests)
@@ -118,18 +120,38 @@ def _place(lines: Mapping[str, int], label: str, *keys: str) -> str:
 
 
 def _twice(tests: list[FrictionTest], lines: Mapping[str, int], label: str) -> Iterator[InputError]:
-    """Refuse the same log twice: it would count as a repeated test."""
-    known: dict[tuple[str, str | None], int] = {}
+    """Refuse the same log twice, under whatever name: it would count as a repeated test."""
+    known: dict[str, int] = {}
     for number, test in enumerate(tests):
         if test.checksum is None:
             continue
-        first = known.setdefault((test.checksum, test.source), number)
-        if first != number:
+        first = known.setdefault(test.checksum, number)
+        if first != number and not _parts_of_one(tests[first].source, test.source):
             place = _place(lines, label, f"test.{number}.checksum", f"test.{number}")
             rule = f"is that of test {first + 1} once more"
             yield InputError(
                 f"{place}: [[test]].checksum", rule, cure="Each log counts once; remove one of the two."
             )
+
+
+def _parts_of_one(first: str | None, second: str | None) -> bool:
+    """Whether two sources are different tests of one log: ``"a.csv, step 1"`` and ``"a.csv, step 2"``."""
+    files = {(source or "").partition(",")[0] for source in (first, second)}
+    return first != second and len(files) == 1
+
+
+def _alike(tests: list[FrictionTest], lines: Mapping[str, int], label: str) -> Iterator[InputError]:
+    """Refuse one name in two spellings: its tests would be those of two materials, or two environments."""
+    known: dict[tuple[str, str], tuple[str, int]] = {}
+    for number, test in enumerate(tests):
+        for key in NAMES:
+            name = getattr(test, key)
+            spelled, first = known.setdefault((key, " ".join(name.casefold().split())), (name, number))
+            if spelled != name:
+                place = _place(lines, label, f"test.{number}.{key}", f"test.{number}")
+                rule = f"differs from that of test {first + 1} only in capitals or spaces"
+                cure = f"Write both alike, for instance {shown(spelled)}."
+                yield InputError(f"{place}: [[test]].{key}", rule, "", shown(name), cure)
 
 
 def _interval(unit: str) -> Reader:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from separatrix.errors import InputError
 from separatrix.friction_fit import FrictionTest
+from separatrix.friction_fit.records import NAMES
 from separatrix.tribometer.reduction import TestFriction
-
-NEEDED = ("material", "counterface", "medium")
 
 
 def friction_test(test: TestFriction, version: str) -> FrictionTest:
@@ -18,7 +17,7 @@ def friction_test(test: TestFriction, version: str) -> FrictionTest:
         The log and its column map do not say what slid on what, or the friction is not above zero.
     """
     known = test.conditions
-    if missing := [name for name in NEEDED if getattr(known, name) is None]:
+    if missing := [name for name in NAMES if getattr(known, name) is None]:
         cure = "Give it under [test] of a column map: --map map.toml."
         raise InputError(test.source, f"does not say: {', '.join(missing)}", cure=cure)
     return FrictionTest(

@@ -11,6 +11,7 @@ from separatrix.errors import InputError
 from separatrix.friction_file.reading import AXES
 from separatrix.friction_file.refusal import exists_already
 from separatrix.friction_fit import FrictionTest
+from separatrix.friction_fit.records import NAMES
 
 HEADER = """\
 # Friction of cage materials from tests, as `separatrix tribometer` writes it and a study reads it:
@@ -50,7 +51,7 @@ def write_friction(tests: Sequence[FrictionTest], path: Path) -> None:
 
 
 def _lines(test: FrictionTest) -> Iterator[str]:
-    for name in ("material", "counterface", "medium"):
+    for name in NAMES:
         yield f"{name} = {_text(getattr(test, name))}"
     for name in ("friction", "standard_error", "standard_deviation", "effective_count"):
         value = getattr(test, name)

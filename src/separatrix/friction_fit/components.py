@@ -55,13 +55,13 @@ def conditional(model: LinearModel, between_samples: Array, between_tests: Array
     A sample's tests share one deviation: its weighted mean has the variance 1/(sum of weights) + s2, and what
     is left within the sample that of the tests alone. Written so, nothing cancels for a small variance.
     """
-    X, y = model.design, model.y
-    Z = np.eye(model.sample.max() + 1)[model.sample]
-    w = 1.0 / (between_tests[:, None] + model.error**2)
-    total = w @ Z
-    full = np.column_stack([X, y])
-    mean_of = np.einsum("kn,ns,ni->ksi", w, Z, full) / total[:, :, None]
-    left = full - mean_of[:, model.sample]
+    order = np.argsort(model.sample, kind="stable")
+    full = np.column_stack([model.design, model.y])[order]
+    starts, sample = np.unique(model.sample[order], return_index=True, return_inverse=True)[1:]
+    w = 1.0 / (between_tests[:, None] + model.error[order] ** 2)
+    total = np.add.reduceat(w, starts, axis=1)
+    mean_of = np.add.reduceat(w[:, :, None] * full, starts, axis=1) / total[:, :, None]
+    left = full - mean_of[:, sample]
     weight = total / (1.0 + between_samples[:, None] * total)
     moments = np.einsum("kn,kni,knj->kij", w, left, left) + np.einsum(
         "ks,ksi,ksj->kij", weight, mean_of, mean_of

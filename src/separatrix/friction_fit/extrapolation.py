@@ -6,20 +6,20 @@ by what a power law of a plausible exponent could do on the way: exponent times 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, log
 
 from separatrix.friction_fit.covariates import Range, in_words
-from separatrix.friction_fit.records import CONDITIONS, WORDS
+from separatrix.friction_fit.records import CONDITIONS, PRODUCT, WORDS
 from separatrix.units import Ratio, format_quantity
 
-EXPONENTS = {"slip_speed": 0.1, "pressure": 0.1, "temperature": 0.3}
-"""Exponent with which friction may go on with a condition beyond the tests: guesses. For slip speed and
-pressure a slope that was measured to be steeper takes their place."""
+EXPONENTS = {"slip_speed": 0.1, "pressure": 0.1, PRODUCT: 0.1, "temperature": 0.3}
+"""Exponent with which friction may go on with a condition beyond the tests: guesses. For slip speed,
+pressure and pV a slope that was measured to be steeper takes their place."""
 
-SLACK = {"slip_speed": 1.05, "pressure": 1.05}
-"""Ratio to the tested range within which a condition still counts as tested."""
+SLACK = 1.05
+"""Ratio to the tested range within which a speed, a pressure or pV still counts as tested."""
 
 TEMPERATURE_SLACK = 5.0
 """The same for temperature, as a difference [K]."""
@@ -37,7 +37,7 @@ class Held:
 def held(
     asked: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
 ) -> Held:
-    """Conditions held within the tested ranges.
+    """Conditions held within the tested ranges; then also pV, where speed and pressure are both known.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def held(
     """
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
-    for name, value in asked.items():
-        limits = ranges.get(name)
-        if value is None:
+    for name in (*asked, PRODUCT):
+        value, limits = _product(values) if name == PRODUCT else asked[name], ranges.get(name)
+        if value is None or (limits is None and name == PRODUCT):
             continue
         if limits is None:
             sentences.append(f"{WORDS[name]} of the tests is not stated (asked for {_text(value, name)})")
@@ -66,22 +66,32 @@ def held(
     return Held(values=values, sentences=tuple(sentences), widening=widening)
 
 
-def other_medium(asked: str | None, tested: Sequence[str]) -> tuple[str, ...]:
-    """What is said of a medium in which no test was run; no number can be put on it."""
-    if asked is None or asked.strip().casefold() in {medium.strip().casefold() for medium in tested}:
+def other_medium(asked: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
+    """What is said of a medium in which no test was run, by all its names; no number can be put on it."""
+    names = (asked,) if isinstance(asked, str) else tuple(asked or ())
+    if not names or {name.strip().casefold() for name in names} & {one.strip().casefold() for one in tested}:
         return ()
-    return (f"tested in {', '.join(tested)}, not in {asked}",)
+    return (f"tested in {', '.join(tested)}, not in {names[0]}",)
+
+
+def _product(values: Mapping[str, float]) -> float | None:
+    """PV of the held speed and pressure: each may have been tested, and both together not."""
+    both = {"slip_speed", "pressure"} <= values.keys()
+    return values["slip_speed"] * values["pressure"] if both else None
 
 
 def _counts_as_tested(value: float, limits: Range, name: str) -> bool:
     low, high = limits
     if name == "temperature":
         return low - TEMPERATURE_SLACK <= value <= high + TEMPERATURE_SLACK
-    return low / SLACK[name] <= value <= high * SLACK[name]
+    return low / SLACK <= value <= high * SLACK
 
 
 def _sentence(value: float, limits: Range, name: str) -> str:
     side = "beyond" if value > limits[1] else "below"
+    if name == PRODUCT:
+        product, tested = _text(value, name), in_words(limits, "Pa")
+        return f"slip speed and pressure were not tested together: pV {product} is {side} {tested} m/s"
     nearest = limits[1] if value > limits[1] else limits[0]
     return (
         f"{WORDS[name]} {_text(value, name)} is {side} the tested {in_words(limits, CONDITIONS[name])} "
@@ -90,4 +100,8 @@ def _sentence(value: float, limits: Range, name: str) -> str:
 
 
 def _text(value: float, name: str) -> str:
-    return format_quantity(value, CONDITIONS[name], 3)
+    return (
+        f"{format_quantity(value, 'Pa', 3)} m/s"
+        if name == PRODUCT
+        else format_quantity(value, CONDITIONS[name], 3)
+    )

@@ -24,7 +24,7 @@ from separatrix.friction_fit.covariates import (
 )
 from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.posterior import Posterior, posteriors
-from separatrix.friction_fit.records import CONDITIONS, FrictionTest, Prediction
+from separatrix.friction_fit.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
 from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
@@ -70,9 +70,11 @@ class MaterialFit:
         slip_speed: MetrePerSecond | None = None,
         pressure: Pascal | None = None,
         temperature: Kelvin | None = None,
-        medium: str | None = None,
+        medium: str | Sequence[str] | None = None,
     ) -> Prediction:
         """Friction foretold for these conditions; a condition that is None is not asked about.
+
+        The medium may be given by several names: a test under any of them was run in it.
 
         Outside the tests the mean stays that of the nearest tested condition, the standard deviation
         grows by a stated rule (`separatrix.friction_fit.extrapolation`), and `extrapolation` says so.
@@ -88,22 +90,19 @@ class MaterialFit:
             standard_deviation=mean * hypot(self.scatter, within.widening),
             extrapolation=(*within.sentences, *other_medium(medium, media)),
             widening=mean * within.widening,
-            assumed_scatter=self.scatter_source == ASSUMED,
+            assumed_scatter=self.scatter_source != OWN,
         )
 
     def _contrast(self, values: Mapping[str, float]) -> Array:
         """Row of the design for held conditions; those not asked about stay at their centre."""
         middle = {n: exp(c) for n, c in zip(self.covariates.names, self.covariates.centres, strict=True)}
-        values = {**middle, **values}
-        if "pressure_velocity" in middle and {"slip_speed", "pressure"} <= values.keys():
-            values["pressure_velocity"] = values["slip_speed"] * values["pressure"]
-        return np.array(self.covariates.row(values))
+        return np.array(self.covariates.row({**middle, **values}))
 
     def _exponents(self) -> dict[str, float]:
         """How steep friction may be, from the measured slopes and their errors."""
         steep = {n: sqrt(s.value**2 + s.standard_error**2) for n, s in self.slopes.items()}
-        both = steep.pop("pressure_velocity", None)
-        return steep if both is None else {"slip_speed": both, "pressure": both}
+        both = steep.get(PRODUCT)
+        return steep if both is None else dict.fromkeys(("slip_speed", "pressure", PRODUCT), both)
 
 
 ASSUMED = "assumed"
@@ -204,7 +203,7 @@ def _material_fit(
         posterior=posterior,
         intercept=estimates[0],
         slopes=dict(zip(chosen.names, estimates[1:], strict=True)),
-        ranges={name: tested_range(tests, name) for name in CONDITIONS},
+        ranges={name: tested_range(tests, name) for name in (*CONDITIONS, PRODUCT)},
         scatter=posterior.scatter,
         scatter_source=source,
     )

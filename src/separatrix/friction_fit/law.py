@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import exp, log, sqrt
+from math import sqrt
 
+from separatrix.friction_fit.covariates import at_temperature
 from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.records import FrictionTest, Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
@@ -15,7 +16,8 @@ from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
 class TestedFriction:
     """What a candidate of a study carries: all tests of its file, which of them are its own, the scatter.
 
-    All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called.
+    All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called. Of
+    tests at different temperatures those nearest the one asked for serve.
     """
 
     __test__ = False
@@ -31,11 +33,9 @@ class TestedFriction:
         mine = (self.material, self.environment)
         return tuple(test for test in self.tests if (test.material, test.environment) == mine)
 
-    @property
-    def middle(self) -> Ratio:
-        """Geometric mean of its own tests [-]."""
-        own = self.own
-        return exp(sum(log(test.friction) for test in own) / len(own))
+    def serving(self, temperature: Kelvin | None) -> tuple[FrictionTest, ...]:
+        """Those of its own tests that serve at a temperature."""
+        return at_temperature(self.own, temperature)
 
     def at(
         self,
@@ -43,12 +43,13 @@ class TestedFriction:
         slip_speed: MetrePerSecond | None = None,
         pressure: Pascal | None = None,
         temperature: Kelvin | None = None,
-        medium: str | None = None,
+        medium: str | Sequence[str] | None = None,
     ) -> Prediction:
         """Friction foretold for these conditions, as `MaterialFit.at`."""
         from separatrix.friction_fit.fit import fit_friction
 
-        fitted = fit_friction(self.tests, self.default_scatter).of(self.material, self.environment)
+        tests = at_temperature(self.tests, temperature)
+        fitted = fit_friction(tests, self.default_scatter).of(self.material, self.environment)
         return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
 
 
@@ -73,7 +74,7 @@ class StatedFriction:
         slip_speed: MetrePerSecond | None = None,
         pressure: Pascal | None = None,
         temperature: Kelvin | None = None,
-        medium: str | None = None,
+        medium: str | Sequence[str] | None = None,
     ) -> Prediction:
         """Friction foretold for these conditions: the printed mean, and what of them was not tested."""
         asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}

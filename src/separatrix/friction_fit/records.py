@@ -14,10 +14,14 @@ LEAST_FRICTION = 1e-5
 CONDITIONS = {"temperature": "K", "slip_speed": "m/s", "pressure": "Pa"}
 """What friction may depend on, and the SI unit."""
 
-WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "pressure"}
+PRODUCT = "pressure_velocity"
+WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "pressure", PRODUCT: "pV"}
 
 _LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
-_TEXTS = ("material", "counterface", "medium", "sample", "test", "source", "checksum", "reduced_by")
+NAMES = ("material", "counterface", "medium")
+"""What a test must say: what slid on what, in what."""
+
+_TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +70,7 @@ class FrictionTest:
         logarithm = "The fit takes its logarithm."
         _check.settle(
             *(_check.printable_text(self, name) for name in _TEXTS),
-            _no_comma(self),
+            _plain_names(self),
             _check.positive(self, "friction", LEAST_FRICTION, FRICTION_LIMIT, hint=logarithm),
             _check.not_negative(self, "standard_error", FRICTION_LIMIT),
             _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
@@ -87,8 +91,12 @@ class FrictionTest:
         return self.pressure[0] * self.slip_speed[0], self.pressure[1] * self.slip_speed[1]
 
 
-def _no_comma(test: FrictionTest) -> Iterator[InputError]:
-    """The name of an environment is taken apart at its first comma."""
+def _plain_names(test: FrictionTest) -> Iterator[InputError]:
+    """With a space around it a name would be another that looks the same; the medium ends at a comma."""
+    for name in NAMES:
+        value = getattr(test, name)
+        if isinstance(value, str) and value != value.strip():
+            yield InputError(f"FrictionTest.{name}", "must not begin or end with a space", "", shown(value))
     if isinstance(test.medium, str) and "," in test.medium:
         cure = 'An environment is named "medium, counterface".'
         yield InputError("FrictionTest.medium", "must not hold a comma", "", shown(test.medium), cure)

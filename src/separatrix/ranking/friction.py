@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 
@@ -82,8 +82,9 @@ def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Cand
     """One candidate with its frictions as the cage of `state` sees them."""
     scatter = study.ranking.friction_scatter if study.ranking else 0.0
     pocket = conditions_of(study, state)
+    names = names_of_fluid(study)
     friction = {
-        environment: None if one is None else friction_seen(one, pocket, study.operation, scatter)
+        environment: None if one is None else friction_seen(one, pocket, study.operation, scatter, names)
         for environment, one in candidate.friction.items()
     }
     return replace(candidate, friction=friction)
@@ -101,17 +102,31 @@ def conditions_of(study: Study, state: CageState) -> PocketConditions:
     )
 
 
+def names_of_fluid(study: Study) -> tuple[str, ...]:
+    """The fluid as the study writes it, and its other names in the library: tests may have any of them."""
+    record = study.records.get("operation.fluid")
+    known = (record["name"], *(record["aliases"] or ())) if record is not None else ()
+    return tuple(filter(None, (study.operation.fluid, *known)))
+
+
 def friction_seen(
-    friction: Friction, pocket: PocketConditions, operation: Operation, scatter: Ratio
+    friction: Friction,
+    pocket: PocketConditions,
+    operation: Operation,
+    scatter: Ratio,
+    media: Sequence[str] = (),
 ) -> Friction:
-    """One friction as a pocket sees it; `scatter` is that of an unrepeated test."""
+    """One friction as a pocket sees it.
+
+    `scatter` is that of an unrepeated test; `media` are the names of the fluid, if there are several.
+    """
     if friction.law is None:
         return _with_scatter(friction, scatter)
     found = friction.law.at(
         slip_speed=pocket.slip_speed or None,
         pressure=pocket.pressure,
         temperature=operation.temperature,
-        medium=operation.fluid,
+        medium=media or operation.fluid,
     )
     return replace(
         friction,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
+from math import exp, log
 from pathlib import Path
 from typing import Any
 
@@ -91,11 +92,13 @@ def _candidate(
 
 
 def _friction(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until `rank` asks the law for what the pocket sees."""
-    own = law.own
+    """Mean over the tests, until the law is asked for what the pocket sees."""
+    own = law.serving(values.current_temperature())
+    if others := len(law.own) - len(own):
+        source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"
     sources = "; ".join(dict.fromkeys(test.source for test in own if test.source))
     return Friction(
-        mean=law.middle,
+        mean=exp(sum(log(test.friction) for test in own) / len(own)),
         count=len(own),
         law=law,
         source=f"{source}: {sources}"[:2000] if sources else source,
