@@ -21,11 +21,12 @@ from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions, with_values
 from separatrix.uncertainty import training
-from separatrix.uncertainty.boundary import Boundary, first_fall
+from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, Boundary, Limits, first_fall
 from separatrix.uncertainty.held_out import calibration, foretold, misfit
 from separatrix.uncertainty.model import uncertain_model
 from separatrix.uncertainty.sampling import uncertain_inputs
-from separatrix.uncertainty.surrogate import Points, fitted, scale_of
+from separatrix.uncertainty.surrogate import Points, fitted
+from separatrix.uncertainty.terms import scale_of
 from separatrix.uncertainty.traced import TracedBoundary, boundary_of_points, clear_share, traced_boundary
 from separatrix.uncertainty.training import changed_cage, moving_inputs
 
@@ -97,6 +98,13 @@ def test_the_worst_kick_sets_each_limit():
     assert found.unstable_above == pytest.approx([0.4, 0.35, 0.3])
 
 
+def test_a_cage_that_its_land_drives_is_not_stable():
+    """Between the friction that calms its land and the pockets' boundary only."""
+    limits = Limits(stable_from=np.array([0.1]), stable_up_to=np.array([0.2]), unstable_above=np.array([0.3]))
+    friction = np.array([[0.05, 0.1, 0.2, 0.25, 0.35]])
+    assert limits.verdicts(friction).tolist() == [[UNDECIDED, STABLE, STABLE, UNDECIDED, UNSTABLE]]
+
+
 def test_draws_scatter_as_the_runs_say():
     """Standard deviation of ln f over many draws is the stated error; the same draw is the same."""
     boundary = Boundary(traced=made(np.full((1, 3, 2), 0.2), error=0.1), seed=7)
@@ -143,10 +151,12 @@ def made_runs(count, seed, *, bent=0.0):
         restitution_factor=random.uniform(0.0, 0.97, count),
         parameters=random.standard_normal((count, 2)),
         offset=np.zeros(count),
+        friction=np.zeros(count),
         grew=np.zeros(count),
     )
     _, shift = law(blank, bent=bent)
-    points = replace(blank, offset=shift + 0.25 * random.standard_normal(count))
+    offset = shift + 0.25 * random.standard_normal(count)
+    points = replace(blank, offset=offset, friction=0.2 * np.exp(offset))
     return replace(points, grew=(random.random(count) < law(points, bent=bent)[0]).astype(float))
 
 
@@ -172,11 +182,33 @@ def test_widths_come_back():
     """Below one half 0.08, above 0.15: some 500 runs tell either at a knot, to 8 %; three times that."""
     found = fitted(made_runs(4000, 3), SCALE, FLAT, seed=0)
     eta, none = np.array([0.5]), np.zeros((1, 2))
-    few, clear = found.around(np.full((1, 1), 0.2), eta, none, None)
+    _, few, clear = found.around(np.full((1, 1), 0.2), eta, none, None)
     middle = 0.2 * np.exp(found.shift(eta, none, None))
     # over twelve seeds 0.079 +- 0.009 and 0.156 +- 0.023: about two of these standard deviations
     assert -np.log(few / middle)[0, 0] / np.log(9.0) == pytest.approx(0.08, rel=0.25)
     assert np.log(clear / middle)[0, 0] / np.log(0.625 / 0.375) == pytest.approx(0.15, rel=0.25)
+
+
+def test_growth_by_the_land_comes_back():
+    """It falls with the friction of the pockets: to one run in ten at 0.085, far below their boundary."""
+    random = np.random.default_rng(8)
+    near = made_runs(3000, 8)
+    low = 0.17 * random.random(3000)
+    points = near + replace(near, friction=low, offset=np.log(low / 0.2), grew=np.zeros(3000))
+    by_land = random.random(6000) < expit(-0.5 - 20.0 * points.friction)
+    found = fitted(replace(points, grew=np.maximum(points.grew, by_land)), SCALE, FLAT, seed=0)
+    least, few, _ = found.around(np.full((1, 1), 0.2), np.array([0.5]), np.zeros((1, 2)), None)
+    # 3000 runs tell a logit of -2.2 to some 0.07, friction by a twentieth of it: 0.004; three times that
+    assert least[0, 0] == pytest.approx(0.085, abs=0.012)
+    assert least[0, 0] < few[0, 0] < 0.2
+    held = [
+        found.around(np.full((1, 1), 0.2), np.array([0.5]), np.zeros((1, 2)), k)[0][0, 0] for k in range(40)
+    ]
+    assert abs(np.mean(held) - 0.085) < 4.0 * np.std(held)
+    quiet = fitted(near, SCALE, FLAT, seed=0).around(
+        np.full((1, 1), 0.2), np.array([0.5]), np.zeros((1, 2)), None
+    )
+    assert quiet[0][0, 0] == 0.0
 
 
 def test_misfit_is_seen_where_the_law_does_not_fit_and_not_where_it_does():

@@ -86,7 +86,7 @@ def uncertain_ranking(
     jobs: int = 1,
     stage: Stage | None = None,
     stop: Event | None = None,
-) -> tuple[UncertainRanking, Model, Array]:
+) -> tuple[UncertainRanking, Model, Sampled]:
     """Sample a study through the chain and its boundary.
 
     Parameters
@@ -105,8 +105,7 @@ def uncertain_ranking(
     Returns
     -------
     tuple
-        The answer; the model behind it, for questions of sensitivity; the samples that the chain solved,
-        shape (sample, input).
+        The answer; the model behind it, for questions of sensitivity; the samples that the chain solved.
 
     Raises
     ------
@@ -125,7 +124,8 @@ def uncertain_ranking(
     model = uncertain_model(asked, jobs=jobs, stage=told, stop=stop)
     factors = model.factors(draws.values, progress=told("chain"), stop=stop)
     solved = draws.values[factors.solved]
-    return _answer(model, draws, factors, _sampled(model, solved, factors, told)), model, solved
+    found = _sampled(model, solved, factors, told)
+    return _answer(model, draws, factors, found), model, found
 
 
 def _sampled(model: Model, values: Array, factors: Factors, stage: Stage) -> Sampled:

@@ -29,15 +29,20 @@ Verdicts = NDArray[np.int_]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Limits:
-    """Frictions between which a sample is UNDECIDED, shape (sample,) each [-]."""
+    """Frictions that part the verdicts of a sample, shape (sample,) each [-].
 
+    STABLE from the first, below which the land drives the cage, to the second; UNSTABLE above the last.
+    """
+
+    stable_from: Array
     stable_up_to: Array
     unstable_above: Array
 
     def verdicts(self, friction: Array, *, drifts: bool = False) -> Verdicts:
         """Verdicts of frictions of shape (sample, case); a cage that drifts is never STABLE."""
         unstable = friction > self.unstable_above[:, None]
-        stable = (friction <= self.stable_up_to[:, None]) & ~unstable & (not drifts)
+        held = (friction >= self.stable_from[:, None]) & (friction <= self.stable_up_to[:, None])
+        stable = held & ~unstable & (not drifts)
         found: Verdicts = np.where(unstable, UNSTABLE, np.where(stable, STABLE, UNDECIDED))
         return found
 
@@ -74,10 +79,13 @@ class Boundary:
         """
         if self.surrogate is None:
             few, clear = (self._lines_at(t, restitution_factor, draw) for t in (0, -1))
+            least = np.zeros_like(few)
         else:
             half = self._lines_at(1, restitution_factor, None)  # their scatter is inside the surrogate's
-            few, clear = self.surrogate.around(half, restitution_factor, parameters, draw)
-        return Limits(stable_up_to=few.min(axis=0), unstable_above=clear.max(axis=0))
+            least, few, clear = self.surrogate.around(half, restitution_factor, parameters, draw)
+        return Limits(
+            stable_from=least.max(axis=0), stable_up_to=few.min(axis=0), unstable_above=clear.max(axis=0)
+        )
 
     def critical_friction(
         self, restitution_factor: Array, parameters: Array, draw: int | None = None

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import expit
 
 from separatrix.uncertainty.records import SurrogateError
-from separatrix.uncertainty.surrogate import WIDTHS, Points, Surrogate, logits
+from separatrix.uncertainty.surrogate import LEAST_SHARE, Points, Surrogate, foretold_of, runs_of
 from separatrix.units import Array
 
 PARTS = 5
@@ -25,14 +24,13 @@ LARGEST_ERROR = 0.2
 
 
 def foretold(surrogate: Surrogate, points: Points) -> tuple[Array, Array]:
-    """Logit of P(grow) of each run, and the width of its kick there, shape (run,)."""
-    z, width = np.zeros(points.kick.size), np.ones(points.kick.size)
+    """P(grow) of each run, and how its logit falls with the shift of the boundary, shape (run,)."""
+    share, steepness = np.zeros(points.kick.size), np.zeros(points.kick.size)
     for kick, mode in enumerate(surrogate.mode):
         own = points.kick == kick
-        terms = surrogate.terms(points.restitution_factor[own], points.parameters[own])
-        pieces = surrogate.scale.pieces(points.restitution_factor[own], points.parameters[own])
-        z[own], width[own] = logits(mode, terms, pieces, points.offset[own])
-    return z, width
+        told = foretold_of(mode, runs_of(points.of(own), surrogate.scale, surrogate.knots))
+        share[own], steepness[own] = told.share, told.by_pockets / told.width
+    return share, steepness
 
 
 def misfit(surrogate: Surrogate, points: Points) -> float:
@@ -43,9 +41,8 @@ def misfit(surrogate: Surrogate, points: Points) -> float:
     ways of parting counts. Misfit inside a part is not seen: it makes the fitted widths larger, which is on
     the careful side.
     """
-    z, width = foretold(surrogate, points)
-    share = expit(z)
-    push, information = (share - points.grew) / width, share * (1.0 - share) / width**2
+    share, steepness = foretold(surrogate, points)
+    push, information = (share - points.grew) * steepness, share * (1.0 - share) * steepness**2
     return math.sqrt(max(0.0, *(_excess(push, information, part) for part in _partings(points))))
 
 
@@ -70,19 +67,19 @@ def _excess(push: Array, information: Array, part: NDArray[np.int_]) -> float:
 def error_of(surrogate: Surrogate, eta: Array, parameters: Array) -> float:
     """Standard deviation of ln f at samples, coefficients and misfit together, root mean square [-]."""
     terms = surrogate.terms(eta, parameters)
-    spread = [np.sum((terms @ root[:-WIDTHS]) ** 2, axis=1) for root in surrogate.root]
+    spread = [np.sum((terms @ root[: terms.shape[1]]) ** 2, axis=1) for root in surrogate.root]
     return math.sqrt(float(np.mean(spread)) + surrogate.misfit**2)
 
 
-def deviance(z: Array, grew: Array) -> float:
+def deviance(share: Array, grew: Array) -> float:
     """Mean of minus twice the logarithm of the probability of what each run did."""
-    return float(-2.0 * np.mean(grew * z - np.logaddexp(0.0, z)))
+    known = np.clip(np.where(grew > 0.5, share, 1.0 - share), LEAST_SHARE, 1.0)
+    return float(-2.0 * np.mean(np.log(known)))
 
 
-def calibration(z: Array, grew: Array) -> tuple[Array, Array, Array]:
+def calibration(share: Array, grew: Array) -> tuple[Array, Array, Array]:
     """Mean foretold probability, growing runs and runs in bins of equal numbers, shape (bin,) each."""
-    order = np.array_split(np.argsort(z, kind="stable"), BINS)
-    share = expit(z)
+    order = np.array_split(np.argsort(share, kind="stable"), BINS)
     return (
         np.array([share[part].mean() for part in order]),
         np.array([grew[part].sum() for part in order]),
@@ -101,16 +98,16 @@ def surrogate_error(
     cages: int,
 ) -> SurrogateError:
     """Record of the error of `final`, as `tried`, fitted without the held-out runs, shows it."""
-    z, _ = foretold(tried, held_out)
-    common = float(np.clip(held_out.grew.mean(), 1e-6, 1.0 - 1e-6))
-    predicted, grown, counted = calibration(z, held_out.grew)
+    share, _ = foretold(tried, held_out)
+    common = np.full(share.size, held_out.grew.mean())
+    predicted, grown, counted = calibration(share, held_out.grew)
     error = error_of(final, eta, parameters)
     return SurrogateError(
         runs=runs,
         held_out=held_out.grew.size,
         cages=cages,
-        deviance=deviance(z, held_out.grew),
-        deviance_constant=deviance(np.full(z.size, math.log(common / (1.0 - common))), held_out.grew),
+        deviance=deviance(share, held_out.grew),
+        deviance_constant=deviance(common, held_out.grew),
         predicted=predicted,
         grown=grown,
         counted=counted,

@@ -26,24 +26,22 @@ from separatrix.uncertainty.held_out import misfit, surrogate_error
 from separatrix.uncertainty.records import SurrogateError
 from separatrix.uncertainty.regime import Play
 from separatrix.uncertainty.sampling import UncertainInput
-from separatrix.uncertainty.surrogate import (
-    WIDTHS,
-    Points,
-    Surrogate,
-    fitted,
-    scale_of,
-)
+from separatrix.uncertainty.surrogate import Points, Surrogate, fitted
+from separatrix.uncertainty.terms import scale_of
 from separatrix.uncertainty.traced import TracedBoundary
 from separatrix.units import Array, Ratio
 
 MOVES: Ratio = 0.01
 """Share by which a size of the cage must change with an input, within its middle two thirds, to count."""
 
-ROUNDS, RUNS = 4, 6000
+ROUNDS, RUNS = 4, 9000
 """Rounds of runs, each placed by what those before it say: so many at least, and so many runs in all."""
 
 HIGHEST: Ratio = 0.97
 """Restitution factor up to which runs are placed: beyond, the boundary falls to nothing."""
+
+LEAST_FRICTION: Ratio = 1e-6
+"""Friction below which nothing is run."""
 
 FIRST_REACH, REACH = 0.6, 3.0
 """How far from the boundary runs are placed: in ln f at first, then in logits of P(grow)."""
@@ -166,7 +164,7 @@ def trained(
     halt = stop or Event()
     known = [one for one in inputs if enters(study, one.key, place)]
     laws = {one.key: one.distribution for one in known}
-    scale = replace(scale_of(names, [laws[name] for name in names]), play=play)
+    scale = scale_of(names, [laws[name] for name in names], play)
     count = cage_count(len(names))
     values = drawn(known, names, count, play, seed)
     cages = trainees(study, [one.key for one in known], values, place, names, jobs=jobs, stop=halt)
@@ -270,46 +268,45 @@ def trainees(
 class _Plan:
     """Where the runs of each round are placed.
 
-    In a round every cage is run once from every kick at its own restitution factor, and once at another.
+    In a round every cage is run once from every kick near its boundary at its own restitution factor, once at
+    another, and once at its own with less friction, down to none: what grows there grows by the land.
     """
 
     def __init__(
         self, kicks: Sequence[float], traced: TracedBoundary, cages: Sequence[Trainee], seed: int
     ) -> None:
         self.kicks, self.traced, self.cages, self.seed = len(kicks), traced, cages, seed
-        self.size = 2 * len(kicks) * len(cages)
+        self.size = 3 * len(kicks) * len(cages)
 
     def points(self, turn: int, law: Surrogate | None) -> Points:
         """Points of a round, with nothing run yet; `law` is what the rounds before say."""
         passes, cage = np.divmod(np.arange(self.size), len(self.cages))
-        kick, own = passes % self.kicks, passes < self.kicks
+        kick, own, low = passes % self.kicks, passes < 2 * self.kicks, passes < self.kicks
         unit = qmc.Sobol(2, rng=np.random.default_rng([self.seed, 2, turn])).random(_power(self.size))
         etas = np.array([one.restitution_factor for one in self.cages])[cage]
         eta = np.minimum(np.where(own, etas, HIGHEST * unit[: self.size, 0]), HIGHEST)
         parameters = np.array([one.parameters for one in self.cages]).reshape(len(self.cages), -1)[cage]
         way = 2.0 * unit[: self.size, 1] - 1.0
+        none = np.zeros(self.size)
         blank = Points(
-            kick=kick, restitution_factor=eta, parameters=parameters, offset=way, grew=np.zeros(self.size)
+            kick=kick, restitution_factor=eta, parameters=parameters, offset=none, friction=none, grew=none
         )
-        offset = FIRST_REACH * way if law is None else _near(law, blank)
-        highest = -np.log(np.maximum(_half(self.traced, blank), 1e-12))
-        return replace(blank, offset=np.minimum(offset, highest))
+        way = np.where(low, -1.0, 2.0 * unit[: self.size, 1] - 1.0)
+        half = np.maximum(_half(self.traced, blank), LEAST_FRICTION)
+        offset = FIRST_REACH * way if law is None else _near(law, blank, way)
+        friction = np.minimum(half * np.exp(offset), 1.0) * np.where(low, unit[: self.size, 1], 1.0)
+        friction = np.maximum(friction, LEAST_FRICTION)
+        return replace(blank, offset=np.log(friction / half), friction=friction)
 
 
-def _near(law: Surrogate, blank: Points) -> Array:
-    """Offsets at which the law leaves the outcome open."""
-    found = np.zeros(blank.offset.size)
-    for kick, mode in enumerate(law.mode):
-        own = blank.kick == kick
-        terms = law.terms(blank.restitution_factor[own], blank.parameters[own])
-        z, pieces = (
-            REACH * blank.offset[own],
-            law.scale.pieces(blank.restitution_factor[own], blank.parameters[own]),
-        )
-        below, above = pieces @ mode[-WIDTHS : -WIDTHS // 2], pieces @ mode[-WIDTHS // 2 :]
-        width = np.maximum(np.exp(np.where(z < 0.0, below, above)), LEAST_WIDTH)
-        found[own] = terms @ mode[:-WIDTHS] + z * width
-    return found
+def _near(law: Surrogate, blank: Points, way: Array) -> Array:
+    """Offsets at which the law leaves the outcome open, from `REACH` below (way -1) to as far above (1)."""
+    found = law.coefficients(None)
+    eta, known, kick = blank.restitution_factor, blank.parameters, blank.kick.astype(np.int_)
+    pieces = law.scale.width(eta, known)
+    side = np.where((way < 0.0)[:, None], found.below[kick], found.above[kick])
+    width = np.maximum(np.exp(np.sum(side * pieces, axis=1)), LEAST_WIDTH)
+    return np.asarray(np.sum(found.shift[kick] * law.terms(eta, known), axis=1) + REACH * way * width)
 
 
 def _half(traced: TracedBoundary, points: Points) -> Array:
@@ -347,7 +344,6 @@ def _run(
     stop: Event,
 ) -> Array:
     """Whether each run grew, shape (run,): run number `first` + k at point k."""
-    friction = np.minimum(_half(traced, points) * np.exp(points.offset), 1.0)
     grew = np.zeros(points.kick.size)
     parts = [range(k, min(k + SLICE, grew.size)) for k in range(0, grew.size, SLICE)]
 
@@ -358,7 +354,7 @@ def _run(
             one, eta = cages[k % len(cages)], float(points.restitution_factor[k])
             kick = traced.kicks[int(points.kick[k])]
             found = run_ensemble(
-                cage_at(one.cage, eta, float(friction[k])),
+                cage_at(one.cage, eta, float(points.friction[k])),
                 one.settings,
                 kicks=(kick,),
                 runs=1,
