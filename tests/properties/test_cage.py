@@ -230,11 +230,12 @@ def test_other_units_change_nothing_of_hertz_contacts(cage, coefficient, length,
 @few
 @given(drawn_cages(), st.permutations([0.2, 0.5, 1.0]), st.integers(1, 5))
 def test_workers_and_order_of_runs_change_no_bit(cage, kicks, split):
-    """1, 2 and 8 workers, kicks in any order, runs in two parts: every number of every run is the same."""
+    """Three workers, kicks in any order, runs in two parts: every number of every run is the same."""
     how = StabilitySettings(kicks=tuple(sorted(kicks)), runs=6, duration=5e-3)
     whole = run_ensemble(cage, how)
-    for jobs in (2, 8):
-        same(run_ensemble(cage, how, jobs=jobs), whole)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ensemble, "CHUNK_RADIANS", 500.0)  # a run or a few at a time
+        same(run_ensemble(cage, how, jobs=3), whole)
     parts = [
         run_ensemble(cage, how, runs=n, first_run=first) for first, n in ((0, split), (split, 6 - split))
     ]
@@ -282,9 +283,9 @@ def test_without_friction_a_landless_cage_at_rest_only_loses_energy(cage, seed):
 @few
 @given(drawn_cages(), st.integers(0, 9))
 def test_the_ledger_closes(cage, seed):
-    """Sources and sinks explain the energy to 3 % of the work done, at the step chosen."""
+    """Every source and sink is entered: what is left of the work done is rounding and quadrature."""
     runs = run_ensemble(cage, StabilitySettings(kicks=(1.0,), runs=2, duration=0.02, seed=seed))
-    assert runs.energy_imbalance.max() < 0.03
+    assert runs.energy_imbalance.max() < 1e-8  # seen: 2e-9
 
 
 @few
