@@ -25,14 +25,12 @@ from separatrix.errors import InputError, SeparatrixError
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
-Out = Annotated[
-    str | None,
-    typer.Option(metavar="DIR", help="Folder for figures and data [default: named after the study]."),
-]
+OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
+Out = Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
 Jobs = Annotated[int | None, typer.Option(metavar="N", help="Threads [default: one for each processor].")]
 StudyArgument = Annotated[
-    str, typer.Argument(metavar="STUDY", help="A study file, or the name of a shipped study.")
+    str, typer.Argument(metavar="STUDY", help="A study file or workbook, or the name of a shipped study.")
 ]
 MOST_JOBS = 1024
 

@@ -27,7 +27,7 @@ Libraries = Annotated[
     list[str] | None,
     typer.Option("--library", metavar="PATH", help="A library file or folder to read too; may be repeated."),
 ]
-HELP = "What the library of materials holds; check a library of your own, add to it."
+HELP = "The library of materials; check one of your own, add to it."
 EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
     "are read, as they are for a study there."

@@ -94,7 +94,7 @@ VERBS: tuple[Verb, ...] = (
     ),
     Verb(
         name="sensitivity",
-        help="Probability of stable and of best, what drives the doubt, what to test next.",
+        help="Probability of stable and best, and what to test next.",
         compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
     ),
