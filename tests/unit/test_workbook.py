@@ -28,6 +28,7 @@ from separatrix.study_file.template_rows import _REQUIRED, _WHOLE, meaning, temp
 from separatrix.study_file.template_workbook import study_workbook, template_workbook
 from separatrix.units import parse
 from separatrix.workbook import results_workbook
+from separatrix.workbook.ranking import OWN_SHEETS
 
 STUDY = """
 title = "= A title that begins like a formula"
@@ -268,6 +269,7 @@ def test_inputs_and_sources_are_there(folder, answer):
     assert lines["cage", "gravity"] == (0, "m/s2", "default")
     assert lines["ranking", "friction_scatter"] == (0.09, "-", "default")
     assert {row[1] for row in book["materials"].values} >= {"440C", "PTFE transfer film"}
+    assert "candidate @SUM(1)" in {row[0] for row in book["materials"].values}
     frictions = [row[:5] for row in book["frictions"].values]
     assert ("'=cmd|' /C calc'!A0", "liquid nitrogen, 440C", 0.12, 0.02, 8) in frictions
     about = dict(row for row in book["about"].values if row[0])
@@ -285,6 +287,19 @@ def test_what_was_not_tested_stands_beside_the_friction(answer, tmp_path):
     assert row["friction not tested as the pocket rubs"] == "; ".join(said)
     assert row["scatter of the friction assumed"] == "yes"
     assert row["probability of the lowest friction (-)"] == 0.7
+
+
+def test_environments_take_no_name_of_ours_and_keep_theirs(answer, tmp_path):
+    """A sheet's name may be cut or changed; the name itself stands in its rows."""
+    names = ["Inputs", "gaseous nitrogen at 77 K, 440C, run in", "a/b"]
+    renamed = [one | {"name": name} for one, name in zip(answer["environments"] * 2, names, strict=False)]
+    results_workbook(answer | {"environments": renamed}, tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert book.sheetnames[1:4] == ["Inputs (2)", "gaseous nitrogen at 77 K, 440C,", "a-b"]
+    assert set(OWN_SHEETS) == {book.sheetnames[0], *book.sheetnames[4:]}
+    for title, name in zip(book.sheetnames[1:4], names, strict=True):
+        headings, *rows = book[title].values
+        assert {row[headings.index("environment")] for row in rows} == {name}
 
 
 EVIL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+1", "-2+3", "\t=1+1", "\r=1", " =1+1", "＝1+1", "\x07bell"]

@@ -77,11 +77,11 @@ def sheet_title(name: str, taken: Sequence[str]) -> str:
     return title
 
 
-def add_sheet(book: Workbook, name: str) -> Worksheet:
-    """Add a sheet at the end; it prints across, as wide as the page."""
+def add_sheet(book: Workbook, name: str, taken: Sequence[str] = ()) -> Worksheet:
+    """Add a sheet at the end, its name none of those taken; it prints across, as wide as the page."""
     from openpyxl.worksheet.properties import PageSetupProperties
 
-    sheet: Worksheet = book.create_sheet(sheet_title(name, book.sheetnames))
+    sheet: Worksheet = book.create_sheet(sheet_title(name, [*book.sheetnames, *taken]))
     sheet.page_setup.orientation = "landscape"
     sheet.page_setup.fitToHeight = 0
     sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)

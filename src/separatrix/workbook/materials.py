@@ -52,7 +52,7 @@ def _materials(study: Mapping[str, Any]) -> Iterator[Row]:
             yield _material(role, material)
     for candidate in (study.get("ranking") or {}).get("candidates", ()):
         if candidate.get("material"):
-            yield _material("candidate", candidate["material"])
+            yield _material(f"candidate {candidate['name']}", candidate["material"])
 
 
 def _material(role: str, material: Mapping[str, Any]) -> Row:

@@ -56,6 +56,7 @@ COLUMNS = (
     Column(key="restitution_factor", heading="restitution factor of the bearing (-)", width=13),
     Column(key="extrapolation", heading="friction not tested as the pocket rubs", width=50, wrap=True),
     Column(key="reason", heading="reason", width=90, wrap=True),
+    Column(key="environment", heading="environment", width=28),
 )
 EVIDENCE = (
     Column(key="cage_motion", heading="motion of the cage centre", width=13),
@@ -75,6 +76,9 @@ WHICH = (
     Column(key="name", heading="material", width=24),
 )
 OVERALL = "overall"
+OWN_SHEETS = (OVERALL, "stability curve", "evidence", "inputs", "materials", "frictions", "about")
+"""Names of sheets that no environment takes."""
+
 ALWAYS = frozenset({"rank", "name", "verdict"})
 ELSEWHERE = frozenset({"within_reach"})
 
@@ -83,7 +87,8 @@ def add(book: Workbook, document: Mapping[str, Any]) -> None:
     """Add the sheets of a ranking."""
     _candidates(add_sheet(book, OVERALL), document[OVERALL], COLUMNS)
     for one in document["environments"]:
-        _candidates(add_sheet(book, one["name"]), one["materials"], COLUMNS)
+        rows = [{**row, "environment": one["name"]} for row in one["materials"]]
+        _candidates(add_sheet(book, one["name"], OWN_SHEETS), rows, COLUMNS)
 
 
 def add_evidence(book: Workbook, document: Mapping[str, Any]) -> None:
