@@ -6,13 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
 from separatrix.results import labelled
 from separatrix.results.friction_tests import page_data
+from separatrix.tribometer import steady
 from separatrix.tribometer.log import Conditions, RawLog
 from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
+from separatrix.tribometer.stick_slip import oscillation
 
 QUIET = Recipe(rows=4000, noise=0.004)
 
@@ -147,6 +150,31 @@ def test_the_modulation_of_a_known_cycle_is_no_stick_slip():
     assert "once per turn" in told(reduce_log(log(recipe, knows_cycle=False)), "Friction oscillates")
 
 
+def test_stick_slip_is_told_beside_a_stronger_modulation_by_a_known_cycle():
+    """Power of the turn is not what stick-slip is compared with: a tenth of it is enough."""
+    one = log(replace(QUIET, modulation=0.03, rows_of_a_cycle=20.0))
+    test = reduce_log(replace(one, friction=one.friction + 0.01 * np.sin(2 * np.pi * 1.7 * one.time)))
+    assert "stick-slip." in told(test, "Friction oscillates at 1.7 Hz by 0.0")
+    assert test.stick_slip_amplitude == pytest.approx(0.02, rel=0.1)  # the window's edges
+
+
+def test_the_foot_of_a_strong_turn_in_slow_noise_is_no_stick_slip():
+    """Slow noise leaves the foot of the turn's line far above it, whatever the length of a turn."""
+    time = np.arange(4000) * 0.1
+    slow = lfilter([0.13], [1.0, -0.9917], _noise(time.size))  # standard deviation 1, 12 s to 1/e
+    for cycle in np.linspace(1.0, 3.0, 40):
+        friction = 0.12 + 0.03 * np.sin(2 * np.pi * time / cycle) + 0.002 * slow
+        assert oscillation(time, friction, cycle).amplitude == 0.0
+
+
+def test_what_repeats_with_the_turn_is_no_stick_slip_above_half_the_logging_rate():
+    """A bump once in 10.3 rows has multiples that are seen mirrored: they are the turn's as well."""
+    cycle = 1.03
+    one = log(friction=lambda t: 0.12 + 0.1 * (np.abs(t / cycle % 1.0 - 0.5) < 0.06) + 0.003 * _noise(t.size))
+    one = replace(one, conditions=replace(one.conditions, cycle_time=cycle))
+    assert told(reduce_log(one), "Friction oscillates") == ""
+
+
 def test_a_seizure_ends_the_steady_part_before_it():
     """Friction that rises to 0.6 at 300 s and stays: the mean is that of what was before."""
     one = log(friction=lambda t: np.where(t > 300.0, 0.6, 0.12) + 0.004 * _noise(t.size))
@@ -220,6 +248,25 @@ def test_friction_without_noise_is_reduced():
     assert test.friction == 0.125
     assert test.standard_error == 0.0
     assert test.half_width == 0.0
+    assert test.stick_slip_frequency == 0.0
+    assert told(test, "Friction is 0.125 in every row")
+
+
+@pytest.mark.parametrize("noise", [1e-4, 0.4, 1.0])
+def test_the_last_digit_of_a_log_is_in_the_error(noise):
+    """Steps of 0.01: a step over root 12, times exp(-2 pi^2 (noise/step)^2), the noise in steps."""
+    friction = np.round(0.123 + 0.01 * noise * _noise(4000), 2)
+    step, error = steady.last_digit(np.append(friction, 0.13))  # one more, so that the step is seen
+    assert step == pytest.approx(0.01, rel=1e-9)
+    left = np.exp(-2 * np.pi**2 * noise**2)
+    assert error == pytest.approx(0.01 / 12**0.5 * left, abs=0.05 * 0.01 / 12**0.5)  # noise to 3 %, twice
+
+
+def test_friction_in_coarse_steps_is_told_and_held():
+    """Friction of 0.123 with noise of 0.002, written with two digits, has a mean of 0.1216."""
+    test = reduce_log(log(friction=lambda t: np.round(0.123 + 0.002 * _noise(t.size), 2), knows_cycle=False))
+    assert test.interval[0] < 0.123 < test.interval[1]
+    assert told(test, "Friction is written in steps of 0.01")
 
 
 def test_an_interval_is_students():
@@ -242,11 +289,24 @@ def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
         assert axes.get_title(loc="left")
 
 
+def test_a_page_is_drawn_of_friction_that_never_varies():
+    """There is no spectrum to draw, and nothing to warn of."""
+    page(page_data(reduction(log(friction=lambda t: np.full(t.size, 0.12)))))
+
+
 def test_the_heading_of_a_page_names_conditions_numbers_and_flags():
     """Who reads the page alone knows what it is of."""
     data = page_data(reduction(log(replace(QUIET, drift=0.05))))
     text = " ".join(heading(data))
-    for words in ("PTFE on 440C", "gaseous nitrogen", "77 K", "pV 0.5 MPa m/s", "(95 %)", "drifts by"):
+    for words in (
+        "from 0 s to 6.66",
+        "PTFE on 440C",
+        "gaseous nitrogen",
+        "77 K",
+        "pV 0.5 MPa m/s",
+        "(95 %)",
+        "drifts by",
+    ):
         assert words in text
 
 

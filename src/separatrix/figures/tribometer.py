@@ -13,6 +13,8 @@ from matplotlib.figure import Figure
 
 from separatrix.figures.heading import LINE
 from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
+from separatrix.tribometer.flags import at
+from separatrix.tribometer.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 
 ROWS = 2.1
@@ -114,15 +116,14 @@ def conditions(data: xr.Dataset) -> str:
 def numbers(data: xr.Dataset) -> str:
     """Return the friction of the test with its interval, and what it was made from."""
     mean, half, error = (float(data[name]) for name in ("friction", "half_width", "standard_error"))
-    what = (
-        f"{data.attrs['cycles']} whole cycles"
-        if data.attrs["cycles"]
-        else f"{data.attrs['steady_rows']} rows"
-    )
+    cycles, axis = data.attrs["cycles"], str(data.attrs["axis"])
+    start, end = (at(float(data[name]), axis) for name in ("run_in_end", "steady_end"))
+    start += " (given)" if data.attrs["run_in_method"] == GIVEN else ""
     return (
-        f"Friction {format_number(mean)} \N{PLUS-MINUS SIGN} {format_number(half, 2)} (95 %), standard error "
-        f"{format_number(error, 2)} with {data.attrs['degrees_of_freedom']} degrees of "
-        f"freedom; scatter {format_number(float(data['standard_deviation']), 2)} of {what}, "
+        f"Friction {format_number(mean)} \N{PLUS-MINUS SIGN} {format_number(half, 2)} (95 %) from {start} "
+        f"to {end}; standard error {format_number(error, 2)}, {data.attrs['degrees_of_freedom']} degrees of "
+        f"freedom; scatter {format_number(float(data['standard_deviation']), 2)} of "
+        f"{f'{cycles} whole cycles' if cycles else str(data.attrs['steady_rows']) + ' rows'}, "
         f"worth {format_number(float(data['effective_count']), 3)} independent ones"
     )
 
@@ -207,14 +208,18 @@ def _correlation(axes: Axes, data: xr.Dataset) -> None:
 def _cosines(axes: Axes, data: xr.Dataset) -> None:
     """Draw the squares of the projections on cosines, and those that give the standard error."""
     number, power = np.asarray(data["cosine"].values), np.asarray(data["cosine_power"].values)
+    axes.set(xlabel="half turns over the steady part [-]", ylabel="power of the spans [-]")
+    axes.set_title("d  Low end of the spectrum, for the error")
+    if not power.any():
+        axes.text(0.5, 0.5, "no noise", transform=axes.transAxes, ha="center", color=GREY)
+        return
     used = int(data["cosines_used"])
-    floor = 1e-4 * max(float(power.max()), 1e-300)
+    floor = 1e-4 * float(power.max())
     axes.plot(number, np.maximum(power, floor), ".", color=GREY, ms=2.5, mew=0, label="cosines")
     axes.plot(number[:used], np.maximum(power[:used], floor), "o", color=BLUE, ms=3, mew=0, label="used")
     axes.plot(number, np.maximum(data["cosine_fit"].values, floor), color=ORANGE, lw=1.0, label="fitted")
-    axes.set(xscale="log", yscale="log", xlabel="half turns over the steady part [-]")
-    axes.set(ylabel="power of the spans [-]", title="d  Low end of the spectrum, for the error")
-    axes.set_ylim(0.5 * floor, 30.0 * max(float(power.max()), 1e-300))
+    axes.set(xscale="log", yscale="log")
+    axes.set_ylim(0.5 * floor, 30.0 * float(power.max()))
     axes.legend(loc="upper right", ncols=3, fontsize=6.5, handlelength=1.2)
 
 
@@ -224,8 +229,9 @@ def _spectrum(axes: Axes, data: xr.Dataset) -> None:
     frequency = np.asarray(data["frequency"].values)
     axes.set(xlabel=f"frequency [{unit}]", title="e  Spectrum of the rows")
     axes.set_ylabel(f"density [{'1/Hz' if unit == 'Hz' else 'm' if unit == '1/m' else 'cycle'}]")
-    if frequency.size < 3:
-        axes.text(0.5, 0.5, "too few rows", transform=axes.transAxes, ha="center", color=GREY)
+    if frequency.size < 3 or not data["cosine_power"].any():
+        words = "too few rows" if frequency.size < 3 else "no noise"
+        axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", color=GREY)
         return
     axes.plot(frequency[1:], data["density"].values[1:], color=BLUE, lw=0.7)
     axes.set(yscale="log", xlim=(0.0, frequency[-1]))

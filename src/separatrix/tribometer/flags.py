@@ -148,6 +148,20 @@ def range_flag(mean: float, friction: Array) -> Iterator[str]:
         )
 
 
+def digit_flag(mean: SteadyMean, step: float, error: float) -> Iterator[str]:
+    """Tell of friction whose noise is lost in the last digit of the log."""
+    if step == 0.0:
+        yield (
+            f"Friction is {format_number(mean.mean)} in every row: the log does not show its noise, and the "
+            "interval holds none."
+        )
+    elif error > mean.standard_error:
+        yield (
+            f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
+            f"makes a standard error of {format_number(error, 2)}."
+        )
+
+
 def gap_flag(spans: Spans) -> Iterator[str]:
     """Tell of a stretch without rows in the steady part."""
     longest = current = 0

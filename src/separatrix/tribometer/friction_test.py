@@ -18,7 +18,7 @@ class TestFriction:
     friction: Ratio
     """Mean over the steady part."""
     standard_error: Ratio
-    """Of that mean, with the correlation of neighbouring values and what may be left of running-in."""
+    """Of that mean: neighbouring values are alike, some running-in may be left, digits are few."""
     degrees_of_freedom: int
     """Of Student's t for its interval."""
     standard_deviation: Ratio

@@ -245,6 +245,7 @@ class _Parts:
         yield from flags.step_flags(self.told(friction_step(self.spans)), self.told(self.wear()))
         yield from flags.length_flags(self.mean, self.effective, self.options)
         yield from flags.range_flag(self.mean.mean, self.friction)
+        yield from flags.digit_flag(self.mean, *self.last_digit)
         yield from flags.gap_flag(self.spans)
         yield from self.notes
 
@@ -271,8 +272,14 @@ class _Parts:
 
     @cached_property
     def error(self) -> float:
-        """Standard error with what may be left of running-in."""
-        return float(np.hypot(self.mean.standard_error, 0.0 if self.run_in is None else self.run_in.rest))
+        """Standard error with what may be left of running-in, and that of the last digit."""
+        rest = 0.0 if self.run_in is None else self.run_in.rest
+        return float(np.linalg.norm((self.mean.standard_error, rest, self.last_digit[1])))
+
+    @cached_property
+    def last_digit(self) -> tuple[float, float]:
+        """Step in which friction is written, and the error by it."""
+        return steady.last_digit(self.friction)
 
     @cached_property
     def friction(self) -> Array:

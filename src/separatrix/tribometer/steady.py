@@ -172,6 +172,27 @@ def spectrum(cosine: Array, corner: float, floor: float) -> Array:
     return np.asarray(floor + (1.0 - floor) / (1.0 + (cosine / corner) ** 2), dtype=float)
 
 
+def last_digit(rows: Array) -> tuple[Ratio, Ratio]:
+    """Return the step in which a log writes friction, and the error that it leaves in a mean.
+
+    A value stands for all within half a step of it: a standard error of the step over root 12 [1]_. Noise
+    that reaches several steps averages that away: what is left is the characteristic function of a normal
+    distribution at one turn in a step [2]_. Both are zero where all rows are the same.
+
+    References
+    ----------
+    .. [1] JCGM 100:2008, Guide to the expression of uncertainty in measurement, F.2.2.1.
+    .. [2] B. Widrow and I. Kollar, Quantization Noise, Cambridge University Press 2008: the variance of what
+       is rounded, less a twelfth of the step's square, is that of the noise.
+    """
+    values = np.unique(rows)
+    if values.size < 2:
+        return 0.0, 0.0
+    step = float(np.diff(values).min())
+    noise = max(0.0, float(rows.var()) / step**2 - 1.0 / 12.0)
+    return step, float(step / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise))
+
+
 def _places(count: int) -> Array:
     """Return the middles of equal spans of a stretch of length one around zero."""
     return np.asarray((np.arange(count) + 0.5) / count - 0.5, dtype=float)
