@@ -423,11 +423,22 @@ def test_a_state_by_coolprop_has_its_phase_and_its_source():
         fluid_state(nitrogen, 40.0)
 
 
-@pytest.mark.parametrize(("name", "density"), [("LN2", 806.08), ("GN2", 4.6121)])
-def test_on_the_saturation_line_the_table_says_which_phase(name, density):
-    """CoolProp refuses to tell liquid from vapour by temperature and pressure alone there."""
-    state = fluid_state(library.shipped().fluid(name), 77.355)
-    assert state.density == density
+@pytest.mark.parametrize("name", library.names("fluid"))
+def test_a_state_of_a_record_is_its_own_with_and_without_coolprop(name):
+    """At a boiling point CoolProp takes the rounded temperature for the other phase, or refuses."""
+    record = library.shipped().fluid(name)
+    for density in record.data["density"]:
+        state = fluid_state(record, density.temperature[0], density.pressure)
+        assert (state.density, state.phase) == (density.value, record.facts["phase"])
+
+
+def test_a_boiling_point_may_be_rounded_to_a_tenth_of_a_kelvin():
+    """LN2 at 77.4 K is that of 77.355 K; at 77 K, and under 1 bar, it is another state."""
+    pytest.importorskip("CoolProp")
+    nitrogen = library.shipped().fluid("LN2")
+    assert fluid_state(nitrogen, 77.4).density == 806.08
+    assert fluid_state(nitrogen, 77.0).density > 806.5
+    assert fluid_state(nitrogen, 77.355, 1e5).phase == "gas"
 
 
 def test_what_is_written_is_what_was_read(tmp_path):
@@ -456,6 +467,17 @@ def test_adding_keeps_what_the_library_holds_byte_for_byte(tmp_path):
         add_records(source, target)
     assert target.read_bytes() == after
     assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
+
+
+@pytest.mark.parametrize("held", ["", "# ours, none yet\n", 'title = "Ours"  # none yet\n'])
+def test_a_library_may_begin_with_words_alone(tmp_path, held):
+    """A comment or a title, and no record so far: what is added follows."""
+    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
+    target.write_text(held)
+    source.write_text(OURS)
+    add_records(source, target)
+    assert target.read_text().startswith(held)
+    assert len(library.read_library(target).records) == 4
 
 
 def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatch):

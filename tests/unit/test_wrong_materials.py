@@ -132,6 +132,23 @@ WRONG = {
     "replaces in quotes": (MATERIAL + 'replaces = "yes"\n', "must be true or false, without quotes"),
     "replaces nothing": (MATERIAL + "replaces = true\n", "replaces a cage material that is not shipped"),
     "a shipped name": (MATERIAL.replace("Ours", "Armalon"), "has the name of a shipped cage material"),
+    "a shipped name in small letters": (
+        MATERIAL.replace("Ours", "armalon"),
+        "has a name of Armalon (cage_materials.toml, line",
+    ),
+    "one name in two spellings": (
+        MATERIAL + MATERIAL.replace("Ours", "OURS"),
+        'line 4: [cage_material] OURS has a name of Ours (ours.toml, line 1); got "OURS"',
+    ),
+    "a name with a space behind": (MATERIAL.replace("Ours", "Ours "), "must not begin or end with a space"),
+    "another name that is taken": (
+        FLUID + 'aliases = ["ln2"]\n',
+        "[fluid] slush has a name of liquid nitrogen (fluids.toml, line",
+    ),
+    "another name that is a fluid's": (
+        FLUID + 'aliases = ["gaseous nitrogen"]\n',
+        "[fluid] slush has a name of gaseous nitrogen (fluids.toml, line",
+    ),
     "a viscosity of a solid": (MATERIAL + "viscosity = 5\n", "is no key of a cage material"),
     "a remark over two lines": (MATERIAL + 'remark = "a\\nb"\n', "must be one line"),
     "a density of a gas for a solid": (
@@ -188,11 +205,6 @@ def test_a_wrong_library_is_refused_in_one_line(what, tmp_path):
     assert message.isprintable()
     assert len(message) < 500
     assert [p.name for p in tmp_path.iterdir()] == ["ours.toml"]
-
-
-def test_there_are_at_least_thirty_wrong_libraries():
-    """And the files they are changed from are right."""
-    assert len(WRONG) >= 30
 
 
 @pytest.mark.parametrize("text", [MATERIAL, TABLE, FLUID])
@@ -282,6 +294,9 @@ CALLS = {
     "a folder that is missing": (["add", "new.toml", "--to", "no/ours.toml"], "a folder that does not exist"),
     "a library added to itself": (["add", "new.toml", "--to", "new.toml"], "is the file to add itself"),
     "a name that is there": (["add", "new.toml", "--to", "materials.toml"], "stands in materials.toml"),
+    "a name that stands beside": (["add", "new.toml", "--to", "other/materials.toml"], "stands in more.toml"),
+    "a name that stands above": (["add", "new.toml", "--to", "materials/x.toml"], "stands in materials.toml"),
+    "a library to add to that is wrong": (["add", "new.toml", "--to", "slip.toml"], "is no kind of record"),
     "a file to add that is wrong": (["add", "case.toml", "--to", "materials.toml"], "is no kind of record"),
     "a file to add that is missing": (["add", "no.toml", "--to", "materials.toml"], "cannot be read"),
     "a study to add to": (["add", "new.toml", "--to", "case.toml"], "is no kind of record"),
@@ -294,6 +309,10 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "materials.toml").write_text(MATERIAL)
     (tmp_path / "new.toml").write_text(MATERIAL + FLUID)
+    (tmp_path / "slip.toml").write_text('# ours\ntitel = "Ours"\n')
+    for beside in ("materials", "other/materials"):
+        (tmp_path / beside).mkdir(parents=True)
+    (tmp_path / "other" / "materials" / "more.toml").write_text(MATERIAL)
     (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n[cage]\nmass = "30 g"\n')
     return tmp_path
 

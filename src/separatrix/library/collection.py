@@ -25,6 +25,9 @@ SHIPPED_FILES = {
 }
 """Shipped file of each kind; each is read when it is first asked."""
 
+ALONE, FOLDER = "materials.toml", "materials"
+"""Library beside a study, and folder beside it whose files are all read."""
+
 MOST_FILES = 200
 Records = Mapping[str, Record | FrictionTable]
 
@@ -158,12 +161,14 @@ def joined(contents: Sequence[Content]) -> Library:
             kind = own.setdefault(record.kind, {})
             _refuse_hiding(kind.get(record.name) or shipped_records(record.kind).get(record.name), record)
             kind[record.name] = record
+    for name, records in own.items():
+        _refuse_alike([*(shipped_records(name) | records).values()])
     return Library(files=tuple(content.file for content in contents), own=own)
 
 
 def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
     """Refuse a record that would take the place of another in silence."""
-    where = f"{place(new)}: [{new.kind.replace(' ', '_')}] {printable(new.name)}"
+    where = _header(new)
     if old is None and new.replaces:
         cure = "Leave replaces out, or correct the name."
         raise InputError(where, f"says that it replaces a {new.kind} that is not shipped", cure=cure)
@@ -175,6 +180,22 @@ def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTab
     if not new.replaces:
         cure = "Give it another name, or say replaces = true."
         raise InputError(where, f"has the name of a shipped {new.kind}", "", shown(new.name), cure)
+
+
+def _refuse_alike(records: Sequence[Record | FrictionTable]) -> None:
+    """Refuse a name, or another name of a fluid, that one before it has but for capitals and spaces."""
+    known: dict[str, Record | FrictionTable] = {}
+    for record in records:
+        aliases = record.facts.get("aliases") or () if isinstance(record, Record) else ()
+        for name in (record.name, *aliases):
+            old = known.setdefault(" ".join(name.casefold().split()), record)
+            if old is not record:
+                rule = f"has a name of {printable(old.name)} ({place(old)})"
+                raise InputError(_header(record), rule, "", shown(name), "Give it another name.")
+
+
+def _header(record: Record | FrictionTable) -> str:
+    return f"{place(record)}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
 
 
 def place(record: Record | FrictionTable) -> str:
@@ -230,7 +251,7 @@ def library_files(path: Path) -> list[Path]:
 
 def beside(folder: Path, besides: Path | None = None) -> list[Path]:
     """Library files that stand in a folder: `materials.toml`, and those of a folder `materials`."""
-    alone, several = folder / "materials.toml", folder / "materials"
+    alone, several = folder / ALONE, folder / FOLDER
     found = [alone] if alone.is_file() else []
     found += library_files(several) if several.is_dir() else []
     return [path for path in found if besides is None or path.resolve() != besides.resolve()]

@@ -106,7 +106,8 @@ class _Reading:
         key = f"{section}.{name}"
         line = self.lines.get(key)
         at = f"{self.place(key, section)}: [{section}] {printable(name)}"
-        text(name, f"{at}, its name,")
+        if text(name, f"{at}, its name,") != name.strip():
+            raise InputError(f"{at}, its name,", "must not begin or end with a space", "", shown(name))
         if not isinstance(item, dict):
             raise InputError(at, "must be a record: keys with values", "", shown(item))
         common = {"name": name, "file": self.file, "line": line}

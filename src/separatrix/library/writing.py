@@ -12,12 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError
-from separatrix.library.collection import joined, library_files
-from separatrix.library.reading import LIBRARY, SECTIONS, Content, library_of_text, read_library
+from separatrix.library.collection import ALONE, FOLDER, beside, joined
+from separatrix.library.reading import LIBRARY, SECTIONS, TOP, Content, library_of_text, read_library
 from separatrix.toml_text import label_of, parsed, path_text, read_text
-
-FOLDER = "materials"
-"""Name of the folder beside a study whose files are all read."""
 
 
 def add_records(source: Path, library: Path) -> Content:
@@ -39,7 +36,7 @@ def add_records(source: Path, library: Path) -> Content:
     target = _target(library, source)
     added = read_library(source)
     before = read_text(target, LIBRARY) if target.exists() else ""
-    held = [library_of_text(before, label_of(target))] if before.strip() else []
+    held = [library_of_text(before, label_of(target))] if _holds_records(before, label_of(target)) else []
     joined([*_others(target), *held, added])
     data, _ = parsed(read_text(source, LIBRARY), label_of(source), LIBRARY)
     separator = "\n\n" if before.strip() else ""
@@ -67,10 +64,18 @@ def _target(library: Path, source: Path) -> Path:
 
 
 def _others(target: Path) -> list[Content]:
-    """Libraries that are read together with the target because they share a folder of libraries."""
-    if target.parent.name != FOLDER:
+    """Libraries that a study reads together with the target because they stand beside it."""
+    in_folder = target.parent.name == FOLDER
+    if not in_folder and target.name != ALONE:
         return []
-    return [read_library(path) for path in library_files(target.parent) if path.resolve() != target]
+    return [read_library(path) for path in beside(target.parents[in_folder], besides=target)]
+
+
+def _holds_records(text: str, label: str) -> bool:
+    """Whether a library holds more than comments and a title: then it must be right as it is."""
+    if not re.sub(r"#[^\n]*", "", text).strip():
+        return False
+    return not parsed(text, label, LIBRARY)[0].keys() <= set(TOP)
 
 
 def _refuse_unlike(after: Content, parts: Iterable[Content], target: Path) -> None:
