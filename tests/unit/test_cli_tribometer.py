@@ -123,9 +123,12 @@ def test_the_end_of_running_in_may_be_given(logs, capsys):
 
 WRONG = {
     "no such file": (["nofile.csv"], ("nofile.csv cannot be read",)),
-    "a folder": (["."], ("is a folder",)),
+    "a folder": (["."], (": . is a folder",)),
+    "a folder for a map": (["a.csv", "--map", "."], (": . cannot be read as a column map",)),
     "the same file twice": (["a.csv", "./a.csv"], ("a.csv is named twice",)),
     "a copy of a file": (["a.csv", "copy.csv"], ("copy.csv has the same content as a.csv",)),
+    "a copy of the same name": (["a.csv", "more/a.csv"], ("more/a.csv has the same content as a.csv",)),
+    "a copy with a comma": (["x,1.csv", "x,2.csv"], ("x,2.csv has the same content as x,1.csv",)),
     "no such map": (["a.csv", "--map", "no.toml"], ("no.toml cannot be read as a column map",)),
     "a wrong map": (["a.csv", "--map", "wrong.toml"], ("wrong.toml", "materal")),
     "two wrong of three": (["x.csv", "a.csv", "y.csv"], ("x.csv", "1 other file is refused too")),
@@ -148,7 +151,9 @@ WRONG = {
 def test_a_wrong_call_is_one_line_and_writes_nothing(logs, capsys, name):
     """Exit status 2, one line on standard error, nothing on standard output, no new file."""
     arguments, words = WRONG[name]
-    (logs / "copy.csv").write_bytes((logs / "a.csv").read_bytes())
+    (logs / "more").mkdir()
+    for copy in ("copy.csv", "more/a.csv", "x,1.csv", "x,2.csv"):
+        (logs / copy).write_bytes((logs / "a.csv").read_bytes())
     (logs / "wrong.toml").write_text('[test]\nmateral = "X"\n')
     for wrong in ("x.csv", "y.csv"):
         (logs / wrong).write_text("nothing,of,interest\n")

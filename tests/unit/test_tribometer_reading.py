@@ -116,7 +116,17 @@ def test_encoding_after_a_long_ascii_head_is_still_seen(tmp_path):
 
 @pytest.mark.parametrize(
     ("separator", "decimal"),
-    [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), ("   ", "."), ("  ", ","), (" \t ", ".")],
+    [
+        (",", "."),
+        ("|", "."),
+        (";", "."),
+        (";", ","),
+        ("\t", "."),
+        ("\t", ","),
+        ("   ", "."),
+        ("  ", ","),
+        (" \t ", "."),
+    ],
 )
 def test_separators_and_decimals_are_told_from_the_rows(tmp_path, separator, decimal):
     """Comma, semicolon, tab and runs of blanks, with decimal point or comma."""
@@ -176,7 +186,9 @@ def test_units_are_found_wherever_they_stand(tmp_path, style):
     np.testing.assert_allclose(log.normal_force, as_written(FRICTION) / 1e3, rtol=ULP)
 
 
-@pytest.mark.parametrize("mark", ["x", "X", "-", "NaN", "n/a", "", "#N/A", "1.#QNAN", "inf", " - "])
+@pytest.mark.parametrize(
+    "mark", ["x", "\u00d7", "-", "NaN", "n.a.", "", "#N/A", "#DIV/0!", "1.#QNAN", "inf", " - "]
+)
 @pytest.mark.parametrize("separator", [";", "\t", ",", "  "])
 def test_missing_values_are_left_out_and_counted(tmp_path, mark, separator):
     """Rows without friction are dropped, whatever the mark."""
@@ -238,6 +250,98 @@ def test_quotes_around_names_and_numbers_are_taken_off(tmp_path):
     lines = ['"time [s]";"COF"', *(f'"{i},5";"0,{100 + i}"' for i in range(ROWS))]
     log = read(tmp_path, "\n".join(lines).encode())
     np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
+
+
+def test_commas_in_quotes_divide_no_fields(tmp_path):
+    """Decimal commas in a file of commas, and names that hold one: the quotes say which is which."""
+    lines = ['"time, s","COF, -",note', *(f'"{i},5","0,{100 + i}","a, b"' for i in range(ROWS))]
+    log = read(tmp_path, "\n".join(lines).encode())
+    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
+    assert "comma between quotes, decimal comma" in log.format
+
+
+def test_a_remark_in_quotes_leaves_the_commas_of_numbers(tmp_path):
+    """One line in quotes above a table with semicolons is no reason to divide 0,5 in two."""
+    head = ['"Probe 3, zweiter Lauf"', 'Ort;"Halle 2, links"']
+    content = raw_logs.plain_csv({"t [s]": TIME, "COF": FRICTION}, separator=";", decimal=",", head=head)
+    np.testing.assert_array_equal(read(tmp_path, content).friction, as_written(FRICTION))
+
+
+@pytest.mark.parametrize("mark", ["# ", "#", "% "])
+@pytest.mark.parametrize("separator", [";", "  "])
+def test_a_mark_of_remarks_before_the_header_is_no_part_of_it(tmp_path, mark, separator):
+    """As numpy and MATLAB write it; lines above the table may have it, too."""
+    columns = {f"{mark}time [s]": TIME, "COF": FRICTION}
+    content = raw_logs.plain_csv(columns, separator=separator, head=[f"{mark}material: Armalon"])
+    log = read(tmp_path, content)
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    assert log.conditions.material == "Armalon"
+
+
+@pytest.mark.parametrize("exponent", ["E", "D", "d"])
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_exponents_are_read(tmp_path, exponent, decimal):
+    """Of ten, and those of double precision in Fortran; with either decimal sign."""
+    rows = [f"{t:.3e};{f:.6e}" for t, f in zip(TIME, FRICTION, strict=True)]
+    text = "\n".join(rows).replace("e", exponent).replace(".", decimal)
+    log = read(tmp_path, f"time [s];COF\n{text}\n".encode())
+    np.testing.assert_array_equal(log.friction, [float(f"{f:.6e}") for f in FRICTION])
+
+
+def test_the_typographic_minus_is_a_minus(tmp_path):
+    """Spreadsheets of some countries write it."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": 0 * TIME - 1.0})
+    log = read(tmp_path, content.replace(b"-", "\u2212".encode()))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+
+
+@pytest.mark.parametrize("units", [(), ("s", "-")])
+def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units):
+    """On every page, say: time goes on, and it is one test, to its last row."""
+    parts = [
+        raw_logs.plain_csv({"time [s]": TIME[a:b], "COF": FRICTION[a:b]}, units=units)
+        for a, b in ((0, 20), (20, 40), (40, ROWS - 1), (ROWS - 1, ROWS))
+    ]
+    for between in (b"", b"\n"):
+        log = read(tmp_path, between.join(parts))
+        np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+        np.testing.assert_array_equal(log.time, as_written(TIME))
+
+
+def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
+    """Without a line between, or with one that names the test."""
+    one = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    for between in (b"", b"\n", b"test B\n"):
+        first, second = read_all(tmp_path, one + between + one)
+        np.testing.assert_array_equal(first.friction, as_written(FRICTION))
+        np.testing.assert_array_equal(second.time, as_written(TIME))
+
+
+def test_metadata_may_have_as_many_fields_as_the_table(tmp_path):
+    """Key and value over a table of two columns; a row of numbers under its keys."""
+    head = [f"key {i};value {i}" for i in range(40)] + ["Load [N];Speed [m/s]", "50;2"]
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, separator=";", head=head)
+    log = read(tmp_path, content)
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    assert log.metadata["key 39"] == "value 39"
+
+
+def test_words_beside_the_numbers_may_be_more_than_those(tmp_path):
+    """Sample, phase and status in every row."""
+    lines = ["sample;phase;time [s];COF;status"]
+    lines += [f"A3;steady;{TIME[i]};{FRICTION[i]:.6f};ok" for i in range(ROWS)]
+    np.testing.assert_array_equal(read(tmp_path, "\n".join(lines).encode()).friction, as_written(FRICTION))
+
+
+def test_header_line_of_the_column_map_passes_over_what_stands_above(tmp_path):
+    """Lines of numbers in a long head are no table if the user says where the names are."""
+    head = ["Samples;200;200", "X0;0.0;0.0", "Delta;0.5;0.5", "Unit;N;N"]
+    columns = {"X": TIME, "Fx": FRICTION, "Fz": 0 * TIME + 1.0}
+    content = raw_logs.plain_csv(columns, separator=";", head=head)
+    given = {"time": {"name": "X", "unit": "s"}}
+    given |= {m: {"name": n, "unit": "N"} for m, n in (("tangential_force", "Fx"), ("normal_force", "Fz"))}
+    log = read(tmp_path, content, column_map({"columns": given, "format": {"header_line": 5}}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
 
 def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
@@ -506,6 +610,29 @@ def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
     assert conditions.environment == "liquid nitrogen, 440C"
     assert conditions.material == "Armalon"
     assert conditions.temperature == 77.0
+
+
+def test_a_pattern_may_name_the_folder(tmp_path):
+    """Logs of the same name in folders of their materials."""
+    columns = column_map({"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}})
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    found = []
+    for folder in ("armalon", "peek"):
+        (tmp_path / folder).mkdir()
+        conditions = read(tmp_path / folder, content, columns, "a.csv").conditions
+        found.append((conditions.material, conditions.sample))
+    assert found == [("Armalon", "A"), (None, "A")]
+
+
+def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
+    """The refusal holds the line that leaves it out, and with that line the others are read."""
+    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    content += b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
+    with pytest.raises(InputError, match="has no column that is known to be the friction") as refusal:
+        read_all(tmp_path, content)
+    assert str(refusal.value).endswith('Or leave it out, below [format]: tables = ["table 1"].')
+    log = read(tmp_path, content, column_map({"format": {"tables": ["table 1"]}}))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
 
 def test_pressure_is_the_force_over_the_pin_s_area(tmp_path):

@@ -114,21 +114,21 @@ def _reductions(
     paths: Sequence[Path], chosen: ColumnMap | None, how: ReductionOptions, options: TribometerOptions
 ) -> list[Reduction]:
     """Every test of every file, in their order; or the refusal of the first that is wrong."""
-    found: list[Reduction] = []
+    found: list[list[Reduction]] = []
     wrong: list[InputError] = []
     with progress_bar("tribometer", quiet=options.quiet) as progress, _threads(options.jobs) as pool:
         attempts = [pool.submit(_of_file, path, chosen, how) for path in paths]
         for done, attempt in enumerate(attempts, 1):
             try:
-                found.extend(attempt.result())
+                found.append(attempt.result())
             except InputError as error:
                 wrong.append(error)
             if progress is not None:
                 progress(done, len(paths))
     if wrong:
         raise _with_others(wrong)
-    _refuse_copies(found)
-    return found
+    _refuse_copies(paths, found)
+    return [one for of_file in found for one in of_file]
 
 
 @contextlib.contextmanager
@@ -163,17 +163,15 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     return InputError(first.where, first.rule, first.unit, first.value, f"{first.cure} {more}".strip())
 
 
-def _refuse_copies(reductions: Sequence[Reduction]) -> None:
-    """Refuse the same content under two names: it would count as a repeated test."""
-    names: dict[str, set[str]] = {}
-    for one in reductions:
-        names.setdefault(one.log.checksum, set()).add(one.log.source.partition(",")[0])
-    sources: dict[str, str] = {}
-    for one in reductions:
-        first = sources.setdefault(one.log.checksum, one.log.source)
-        if len(names[one.log.checksum]) > 1 and first != one.log.source:
+def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[Reduction]]) -> None:
+    """Refuse the same content in two files: it would count as a repeated test."""
+    first: dict[str, Path] = {}
+    for path, (one, *_) in zip(paths, found, strict=True):
+        if one.log.checksum in first:
+            same = printable(str(first[one.log.checksum]), 200)
             cure = "A test counts once; leave one of them out."
-            raise InputError(one.log.source, f"has the same content as {first}", cure=cure)
+            raise InputError(printable(str(path), 200), f"has the same content as {same}", cure=cure)
+        first[one.log.checksum] = path
 
 
 def _tests(reductions: Sequence[Reduction], *, required: bool) -> list[FrictionTest] | None:

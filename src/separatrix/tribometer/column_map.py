@@ -6,8 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
-from fnmatch import fnmatchcase
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from separatrix import units
@@ -64,6 +63,11 @@ class TextFormat:
     tables: tuple[str, ...] = ()
     """Names of the tables (sheets, steps) to read; all of them if empty."""
 
+    @property
+    def begin(self) -> int:
+        """Lines above the rows, where the header is said to be."""
+        return max(self.header_line or 0, self.units_line or 0)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColumnMap:
@@ -76,11 +80,15 @@ class ColumnMap:
     files: Mapping[str, Mapping[str, str | float]] = field(default_factory=dict)
     source: str = ""
 
-    def conditions(self, file_name: str) -> dict[str, str | float]:
-        """Conditions of one file: `[test]`, then every matching pattern in the order written."""
+    def conditions(self, path: Path) -> dict[str, str | float]:
+        """Conditions of one file: `[test]`, then every matching pattern in the order written.
+
+        A pattern is one of the file's name, or of the names of its last folders, too: ``"run 1/*.csv"``.
+        """
         found = dict(self.test)
+        place = PurePosixPath(path.absolute().as_posix())
         for pattern, given in self.files.items():
-            if fnmatchcase(file_name, pattern):
+            if place.match(pattern):
                 found |= given
         return found
 
@@ -94,7 +102,7 @@ def read_column_map(path: str | Path) -> ColumnMap:
         The file, section and key that is wrong, and how to write it.
     """
     path = Path(path)
-    name = printable(path.name, 100)
+    name = printable(path.name or str(path), 100)
     return column_map(_document(path, name), name)
 
 
@@ -108,12 +116,18 @@ def column_map(document: Mapping[str, Any], source: str = "column map") -> Colum
         format=_format(parts["format"], f"{source}: [format]"),
         test=_conditions(parts["test"], f"{source}: [test]"),
         files={
-            pattern: _conditions(_table(given, where), where)
+            _pattern(pattern, where): _conditions(_table(given, where), where)
             for pattern, given in parts["files"].items()
             for where in [f'{source}: [files."{printable(pattern)}"]']
         },
         source=source,
     )
+
+
+def _pattern(text: str, where: str) -> str:
+    if not PurePosixPath(text).name:
+        raise InputError(where, "must be a pattern of names of files", cure='Write "peek_*.csv".')
+    return text
 
 
 def _document(path: Path, name: str) -> dict[str, Any]:
@@ -168,6 +182,8 @@ def _format(given: Mapping[str, Any], where: str) -> TextFormat:
     decimal = _one_of(given, "decimal", {".": ".", ",": ",", "point": ".", "comma": ","}, where)
     if separator == "," and decimal == ",":
         raise InputError(where, "cannot have a comma both as separator and as decimal sign")
+    if "units_line" in given and "header_line" not in given:
+        raise InputError(f"{where} units_line", "needs a header_line, too")
     return TextFormat(
         separator=separator,
         decimal=decimal,

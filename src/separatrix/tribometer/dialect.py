@@ -10,16 +10,44 @@ from separatrix.errors import InputError
 from separatrix.units import printable
 
 MISSING = frozenset(
-    {"", "x", "-", "--", "---", "nan", "+nan", "-nan", "n/a", "na", "#n/a", "null", "none"}
-    | {"inf", "+inf", "-inf", "infinity", "-infinity", "1.#qnan", "-1.#ind", "1.#inf", "-1.#inf"}
+    {
+        "",
+        "x",
+        "\u00d7",
+        "-",
+        "--",
+        "---",
+        "\u2013",
+        "\u2014",
+        "nan",
+        "+nan",
+        "-nan",
+        "null",
+        "none",
+        "n/a",
+        "na",
+    }
+    | {"n.a.", "k.a.", "#n/a", "#nv", "#value!", "#div/0!", "#num!", "#ref!", "#name?", "#wert!"}
+    | {"inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf"}
+    | {"1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "nan(ind)", "-nan(ind)"}
 )
 """How files write that there is no value, in small letters."""
 
-SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "blanks": " ", " ": " "}
+SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
 
-_NAMES = {"\t": "tab", ";": "semicolon", ",": "comma", " ": "blanks"}
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+QUOTED = "\x1f"
+"""Stands for the comma between fields, where fields in quotes hold commas."""
+
+_NAMES = {
+    "\t": "tab",
+    ";": "semicolon",
+    QUOTED: "comma between quotes",
+    ",": "comma",
+    "|": "bar",
+    " ": "blanks",
+}
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eEdD][+-]?[0-9]{1,3})?")
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[.,][0-9]{3})+")
 _WORD = re.compile(r"[^\W\d_].*|[0-9]{1,4}[-/.:][0-9]{1,2}[-/.:][0-9]{1,4}.*|[0-9]{1,2}:[0-9]{2}.*")
 
@@ -43,8 +71,8 @@ class Dialect:
         return fields(line, self.separator)
 
     def is_data(self, line: str) -> bool:
-        """True for a row of the table: numbers or their absence, and no more words or dates than numbers."""
-        return _is_data(self.fields(line), self.missing)
+        """True for a row of the table: numbers or their absence, with few words or dates beside them."""
+        return _is_data(self.fields(line), self.missing, self.separator)
 
 
 def fields(line: str, separator: str) -> list[str]:
@@ -68,7 +96,7 @@ def dialect_of(
     might as well be groups of thousands, it is asked for.
     """
     chosen = separator or _separator(lines, missing, source)
-    rows = [row for row in (fields(line, chosen) for line in lines) if _is_data(row, missing)]
+    rows = [row for row in (fields(line, chosen) for line in lines) if _is_data(row, missing, chosen)]
     if decimal is None:
         decimal = "." if chosen == "," else _decimal(rows, source)
     return Dialect(separator=chosen, decimal=decimal, missing=missing)
@@ -81,7 +109,8 @@ def is_number(field: str) -> bool:
 
 def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> str:
     scores = {
-        candidate: sum(_is_data(fields(line, candidate), missing) for line in lines) for candidate in _NAMES
+        candidate: sum(_is_data(fields(line, candidate), missing, candidate) for line in lines)
+        for candidate in _NAMES
     }
     best = max(scores, key=lambda candidate: scores[candidate])
     if scores[best] == 0:
@@ -90,7 +119,8 @@ def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> st
     return best
 
 
-def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
+def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> bool:
+    """Two numbers or more, and at most twice as many words; between blanks, where prose is, as many."""
     numbers = words = absent = 0
     for field in row:
         if field.casefold() in missing:
@@ -103,7 +133,7 @@ def _is_data(row: Sequence[str], missing: frozenset[str]) -> bool:
             return False
     if numbers < 2:
         return numbers == 1 and absent > 0 and words == 0
-    return words <= numbers
+    return words <= (1 if separator == " " else 2) * numbers
 
 
 def _several_signs(field: str) -> bool:

@@ -24,6 +24,10 @@ _OTHERS = {
     b"MATLAB 5": ("a MATLAB file", "Export the log as text."),
 }
 _ASCII_BELOW = ("utf-8", "cp1252", "latin-1", "cp1250")
+_END_OF_FILE = b"\x1a"
+"""What DOS programs write behind the last line."""
+
+_MINUS = "\u2212".encode()
 _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 
 
@@ -42,7 +46,9 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
         _refuse_binary(raw, source)
     body, known = _without_mark(raw)
     chosen = encoding or known or _by_rule(body, source)
-    text = _in_utf8(body, chosen, source)
+    text = _in_utf8(body, chosen, source).rstrip(_END_OF_FILE)
+    if not text.isascii():
+        text = text.replace(_MINUS, b"-")
     if text[:65536].translate(None, _CONTROLS) != text[:65536]:
         raise _binary(source)
     return _line_feeds(text), chosen

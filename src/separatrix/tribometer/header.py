@@ -66,20 +66,24 @@ def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header |
 
 
 def header_at(
-    line: Callable[[int], str], length: int, form: TextFormat, count: int, source: str, dialect: Dialect
+    line: Callable[[int], str], form: TextFormat, count: int, source: str, dialect: Dialect
 ) -> Header:
     """Header where the column map says it is."""
     rows = []
     for key, number in (("header_line", form.header_line), ("units_line", form.units_line)):
-        if number is None:
-            rows.append([""] * count)
-            continue
-        row = _row(line(number - 1), count, dialect) if number <= length else None
+        row = [""] * count if number is None else _row(line(number - 1), count, dialect)
         if row is None:
-            shown = f'"{printable(line(number - 1))}"' if number <= length else f"a file of {length} lines"
-            raise InputError(f"{source}: {key} = {number}", f"must be a line of {count} fields", "", shown)
+            where, shown = f"{source}: {key} = {number}", f'"{printable(line((number or 1) - 1))}"'
+            raise InputError(where, f"must be a line of {count} fields", "", shown)
         rows.append(row)
     return Header(tuple(rows[0]), tuple(_bare(unit) for unit in rows[1]))
+
+
+def is_names(line: str, dialect: Dialect) -> bool:
+    """True for a line of names or units; a row of the table is none."""
+    row = dialect.fields(line)
+    filled = [field for field in row if field.casefold() not in dialect.missing]
+    return bool(filled) and not dialect.is_data(line) and _is_words(row, dialect)
 
 
 def _is_words(row: Sequence[str], dialect: Dialect) -> bool:
@@ -118,8 +122,14 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
 
 
 def _splits(line: str, dialect: Dialect) -> list[list[str]]:
+    """Ways to divide a line of names, the likelier first; a mark of a remark before them is no part of it."""
+    bare = re.sub(r"^\s*[#%]+\s*", "", line)
     if dialect.separator != " ":
-        return [dialect.fields(line)]
+        return [dialect.fields(bare)]
+    return [row for text in dict.fromkeys((bare, line)) for row in _by_blanks(text)]
+
+
+def _by_blanks(line: str) -> list[list[str]]:
     wide = [part.strip() for part in re.split(r"\t| {2,}", line.strip())]
     bound = re.sub(r"\s+(?=[\[(])", "\x00", line)
     return [wide, [part.replace("\x00", " ") for part in bound.split()], line.split()]

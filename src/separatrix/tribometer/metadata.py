@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-_PAIR = re.compile(r"\s*([^:=\t;,]{1,60}?)\s*(?:[:=\t;,]\s*)+(\S.*?)[\s;,]*$")
+_PAIR = re.compile(r"[\s#%]*([^:=\t;,]{1,60}?)\s*(?:[:=\t;,]\s*)+(\S.*?)[\s;,]*$")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)\s*(\d+)\s*$", re.IGNORECASE)
 
 MOST = 400

@@ -31,13 +31,14 @@ ONE_SIGN = 0.9
 
 def raw_log(
     table: RawTable,
-    file_name: str,
+    source: str,
     checksum: str,
     format_name: str,
     columns: ColumnMap,
+    given: Mapping[str, str | float],
     layout: Layout = PLAIN,
 ) -> RawLog:
-    """Log of one table.
+    """Log of one table, with the conditions that the column map gives its file.
 
     Raises
     ------
@@ -45,8 +46,6 @@ def raw_log(
         A column that is needed cannot be told or has no unit, time runs backwards, fewer than two complete
         rows: file, line and cure.
     """
-    source = f"{file_name}, {table.name}" if table.name else file_name
-    given = columns.conditions(file_name)
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
     understood = understand(

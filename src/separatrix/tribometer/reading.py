@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import ColumnMap
-from separatrix.tribometer.log import ColumnRead, RawLog, RawTable
-from separatrix.units import printable
+from separatrix.tribometer.formats import PLAIN
+from separatrix.tribometer.formats.layout import Layout
+from separatrix.tribometer.log import ABSCISSAE, ColumnRead, RawLog, RawTable, Wanted
+from separatrix.units import printable, shown
 
 LARGEST = 2_000_000_000
 """Bytes that a log may have."""
@@ -33,15 +36,27 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
         What cannot be read or decided: file, line, and what to write in a column map. Nothing is guessed.
     """
     path = Path(path)
-    name = printable(path.name, 150)
     chosen = column_map or _NOTHING
+    name = printable(path.name or str(path), 150)
     raw = _content(path, name)
-    checksum = hashlib.sha256(raw).hexdigest()
+    file = _File(path, name, hashlib.sha256(raw).hexdigest(), chosen, chosen.conditions(path))
     if raw.startswith(b"PK\x03\x04"):
-        return _from_workbook(path, name, checksum, chosen)
+        return _from_workbook(file)
     if raw.startswith(b"TDSm"):
-        return _from_tdms(path, name, checksum, chosen)
-    return _from_text(raw, name, checksum, chosen)
+        return _from_tdms(file)
+    return _from_text(raw, file)
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A file that is read, and what the user says of it."""
+
+    path: Path
+    name: str
+    checksum: str
+    chosen: ColumnMap
+    given: Mapping[str, str | float]
+    """Its conditions by the column map."""
 
 
 def described(log: RawLog) -> list[str]:
@@ -91,57 +106,92 @@ def _content(path: Path, name: str) -> bytes:
         raw = path.read_bytes()
     except OSError as problem:
         raise InputError(name, "cannot be read", "", problem.strerror or type(problem).__name__) from None
-    if not raw[:65536].strip():
-        raise InputError(name, "is empty")
     return raw
 
 
-def _from_workbook(path: Path, name: str, checksum: str, chosen: ColumnMap) -> tuple[RawLog, ...]:
+def _from_workbook(file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer import xlsx
 
-    return _logs(xlsx.read_tables(path), name, checksum, "Excel workbook", chosen)
+    return _logs(xlsx.read_tables(file.path), file, "Excel workbook", PLAIN)
 
 
-def _from_tdms(path: Path, name: str, checksum: str, chosen: ColumnMap) -> tuple[RawLog, ...]:
+def _from_tdms(file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer import tdms
 
-    return _logs(tdms.read_tables(path), name, checksum, "LabVIEW TDMS", chosen)
+    return _logs(tdms.read_tables(file.path), file, "LabVIEW TDMS", PLAIN)
 
 
-def _logs(
-    tables: Sequence[RawTable], name: str, checksum: str, format_name: str, chosen: ColumnMap
-) -> tuple[RawLog, ...]:
-    from separatrix.tribometer.raw import raw_log
-
-    wanted = _wanted_tables(tables, name, chosen)
-    return tuple(raw_log(table, name, checksum, format_name, chosen) for table in wanted)
-
-
-def _from_text(raw: bytes, name: str, checksum: str, chosen: ColumnMap) -> tuple[RawLog, ...]:
-    from separatrix.tribometer.columns import understand
+def _from_text(raw: bytes, file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer.encoding import text_of
     from separatrix.tribometer.formats import layout_of
-    from separatrix.tribometer.raw import raw_log
-    from separatrix.tribometer.steps import split_by_step, step_column
+    from separatrix.tribometer.steps import joined, named, split_by_step
     from separatrix.tribometer.text import read_tables
 
-    text, encoding = text_of(raw, name, chosen.format.encoding)
+    form = file.chosen.format
+    text, encoding = text_of(raw, file.name, form.encoding)
+    if not text[:65536].strip():
+        raise InputError(file.name, "is empty")
     layout = layout_of(text[:20_000].decode(errors="ignore"))
-    constant = "normal_force" in chosen.conditions(name)
-
-    def wanted(headers: tuple[str, ...], units: tuple[str, ...]) -> list[int]:
-        found = understand(headers, units, name, chosen, layout, constant_force=constant)
-        used = {column.index for column in found.used.values()}
-        return sorted(used | step_column(headers, layout))
-
-    headless = any(choice.number is not None for choice in chosen.columns.values())
-    tables, dialect = read_tables(text, name, chosen.format, layout, wanted, headless=headless)
+    headless = any(choice.number is not None for choice in file.chosen.columns.values())
+    tables, dialect = read_tables(text, file.name, form, layout, _wanted(file, layout), headless=headless)
+    tables = named(joined(tables, _abscissae(file, layout)))
     tables = [part for table in tables for part in split_by_step(table, layout)]
-    format_name = f"{layout.name} ({encoding}, {dialect.words})"
-    return tuple(
-        raw_log(table, name, checksum, format_name, chosen, layout)
-        for table in _wanted_tables(tables, name, chosen)
-    )
+    return _logs(tables, file, f"{layout.name} ({encoding}, {dialect.words})", layout)
+
+
+def _understood(headers: Sequence[str], units: Sequence[str], file: _File, layout: Layout) -> dict[str, int]:
+    """Columns that are used, by their meaning; none where the table is no log: `raw_log` says why."""
+    from separatrix.tribometer.columns import understand
+
+    constant = "normal_force" in file.given
+    try:
+        found = understand(headers, units, file.name, file.chosen, layout, constant_force=constant)
+    except InputError:
+        return {}
+    return {meaning: column.index for meaning, column in found.used.items()}
+
+
+def _wanted(file: _File, layout: Layout) -> Wanted:
+    """Which columns of a table are to be read."""
+    from separatrix.tribometer.steps import step_column
+
+    def wanted(headers: Sequence[str], units: Sequence[str]) -> list[int]:
+        used = set(_understood(headers, units, file, layout).values())
+        return sorted(used | step_column(headers, layout)) if used else []
+
+    return wanted
+
+
+def _abscissae(file: _File, layout: Layout) -> Wanted:
+    """Which columns of a table are its time, distance and cycles."""
+
+    def abscissae(headers: Sequence[str], units: Sequence[str]) -> list[int]:
+        used = _understood(headers, units, file, layout)
+        return [used[meaning] for meaning in ABSCISSAE if meaning in used]
+
+    return abscissae
+
+
+def _logs(tables: Sequence[RawTable], file: _File, format_name: str, layout: Layout) -> tuple[RawLog, ...]:
+    """The log of each table; where only some are logs, the refusal says how to leave out the others."""
+    from separatrix.tribometer.raw import raw_log
+
+    found: list[tuple[str, RawLog]] = []
+    wrong: InputError | None = None
+    for table in _wanted_tables(tables, file.name, file.chosen):
+        source = f"{file.name}, {table.name}" if table.name else file.name
+        try:
+            log = raw_log(table, source, file.checksum, format_name, file.chosen, file.given, layout)
+            found.append((table.name, log))
+        except InputError as error:
+            wrong = wrong or error
+    if wrong is None:
+        return tuple(log for _, log in found)
+    if not found:
+        raise wrong
+    names = ", ".join(shown(name) for name, _ in found)
+    cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
+    raise InputError(wrong.where, wrong.rule, wrong.unit, wrong.value, cure)
 
 
 def _wanted_tables(tables: Sequence[RawTable], name: str, chosen: ColumnMap) -> list[RawTable]:

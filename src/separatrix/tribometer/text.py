@@ -3,50 +3,33 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from io import BytesIO
-from itertools import pairwise
 
 import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import TextFormat
-from separatrix.tribometer.dialect import Dialect, dialect_of, fields, is_number
+from separatrix.tribometer.dialect import QUOTED, Dialect, dialect_of, fields, is_number
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.header import Header, find_header, header_at
-from separatrix.tribometer.log import RawTable
+from separatrix.tribometer.lines import HEAD, Lines, indexed, stretches, unquoted
+from separatrix.tribometer.log import RawTable, Wanted
 from separatrix.tribometer.metadata import metadata_of
 from separatrix.units import Array, printable
-
-HEAD = 300
-"""Lines in which the table's separator and decimal sign are looked for first."""
 
 _FLOAT = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
 )
 """What numpy's reader takes for a number."""
 
+_FORTRAN = re.compile(rb"(?<=[0-9.])[dD](?=[+-]?[0-9])")
+"""The exponent of a double in Fortran."""
+
 _COMMA = bytes.maketrans(b",.", b".'")
 _BACK = str.maketrans(".'", ",.")
 """With decimal commas a point is no part of a number: it becomes a mark that none can have, and back."""
-
-Wanted = Callable[[tuple[str, ...], tuple[str, ...]], Sequence[int]]
-
-
-@dataclass(slots=True)
-class _Lines:
-    """A text and where its lines are."""
-
-    text: bytes
-    starts: np.ndarray[tuple[int], np.dtype[np.int64]]
-    ends: np.ndarray[tuple[int], np.dtype[np.int64]]
-
-    def __len__(self) -> int:
-        return len(self.starts)
-
-    def __getitem__(self, i: int) -> str:
-        return self.text[self.starts[i] : self.ends[i]].decode()
 
 
 @dataclass(slots=True)
@@ -88,81 +71,37 @@ def read_tables(
     InputError
         No table, a row of another length, text in a column of numbers: file, line and cure.
     """
-    lines = _indexed(text)
-    dialect = _dialect(lines, source, form)
+    divided = unquoted(text) if form.separator in (None, ",") else None
+    lines = indexed(text if divided is None else divided)
+    dialect = _dialect(lines, source, form if divided is None else replace(form, separator=QUOTED))
     found = _tables(lines, source, dialect, form, layout, headless)
     tables = [_read(table, lines, source, dialect, layout, wanted) for table in found]
-    names = [table.name for table in tables]
-    if len(tables) > 1 and len(set(names)) < len(names):
-        tables = [_named(table, f"table {i}") for i, table in enumerate(tables, 1)]
     return tables, dialect
 
 
-def _named(table: RawTable, name: str) -> RawTable:
-    return RawTable(
-        name=name,
-        headers=table.headers,
-        units=table.units,
-        columns=table.columns,
-        metadata=table.metadata,
-        lines=table.lines,
-    )
-
-
-def _indexed(text: bytes) -> _Lines:
-    text = text if text.endswith(b"\n") else text + b"\n"
-    ends = np.flatnonzero(np.frombuffer(text, np.uint8) == 10)
-    starts = np.concatenate([[0], ends[:-1] + 1])
-    return _Lines(text, starts, ends)
-
-
-def _dialect(lines: _Lines, source: str, form: TextFormat) -> Dialect:
+def _dialect(lines: Lines, source: str, form: TextFormat) -> Dialect:
     """Dialect of the head; where that holds no rows yet, of ten times as many lines."""
+    if form.begin >= len(lines):
+        where, shown = f"{source}: header_line = {form.header_line}", f"a file of {len(lines)} lines"
+        raise InputError(where, "must be a line above the rows", "", shown)
     for most in (HEAD, 10 * HEAD):
-        head = [lines[i] for i in range(min(len(lines), most))]
+        head = [lines[i] for i in range(form.begin, min(len(lines), form.begin + most))]
         try:
             return dialect_of(
                 head, source, separator=form.separator, decimal=form.decimal, missing=form.missing
             )
         except InputError:
-            if len(lines) <= most or most > HEAD:
+            if len(lines) <= form.begin + most or most > HEAD:
                 raise
     raise InputError(source, "has no table")
 
 
-def _separators(lines: _Lines, separator: str) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    """How many separators each line has; with blanks, words less one."""
-    u = np.frombuffer(lines.text, np.uint8)
-    if separator == " ":
-        blank = (u == 32) | (u == 9) | (u == 10)
-        begins = ~blank
-        begins[1:] &= blank[:-1]
-        return np.diff(np.searchsorted(np.flatnonzero(begins), lines.ends), prepend=0) - 1
-    return np.diff(np.searchsorted(np.flatnonzero(u == ord(separator)), lines.ends), prepend=0)
-
-
-def _segments(lines: _Lines, dialect: Dialect) -> Iterator[tuple[int, int, int]]:
-    """Stretches of lines: (first, last + 1, separators) of rows, and separators -2 for other lines."""
-    counts = _separators(lines, dialect.separator)
-    bounds = [0, *(np.flatnonzero(np.diff(counts)) + 1).tolist(), len(lines)]
-    for start, stop in pairwise(bounds):
-        n = int(counts[start])
-        first = stop
-        if n >= 1:
-            near = range(start, min(stop, start + 6))
-            first = next((i for i in near if dialect.is_data(lines[i])), stop)
-        if first > start:
-            yield start, first, -2
-        if first < stop:
-            yield first, stop, n
-
-
 def _tables(
-    lines: _Lines, source: str, dialect: Dialect, form: TextFormat, layout: Layout, headless: bool
+    lines: Lines, source: str, dialect: Dialect, form: TextFormat, layout: Layout, headless: bool
 ) -> list[_Found]:
     found: list[_Found] = []
     before: list[int] = []
-    for start, stop, n in _segments(lines, dialect):
+    for start, stop, n in stretches(lines, dialect, form.begin):
         if n == -2:
             before += _other_lines(lines, start, stop, layout, bool(found))
         elif found and not before:
@@ -182,7 +121,7 @@ def _tables(
     return _worthwhile(found, source, lines)
 
 
-def _other_lines(lines: _Lines, start: int, stop: int, layout: Layout, inside: bool) -> list[int]:
+def _other_lines(lines: Lines, start: int, stop: int, layout: Layout, inside: bool) -> list[int]:
     """Lines that are neither empty nor known to stand between rows."""
     kept = []
     for i in range(start, stop):
@@ -194,7 +133,7 @@ def _other_lines(lines: _Lines, start: int, stop: int, layout: Layout, inside: b
 
 
 def _header(
-    lines: _Lines,
+    lines: Lines,
     before: list[int],
     n: int,
     source: str,
@@ -203,14 +142,14 @@ def _header(
     headless: bool,
 ) -> Header | None:
     if form.header_line is not None:
-        return header_at(lines.__getitem__, len(lines), form, n + 1, source, dialect)
+        return header_at(lines.__getitem__, form, n + 1, source, dialect)
     found = find_header([lines[i] for i in before], n + 1, dialect)
     if found is None and headless:
         return Header(tuple(f"column {i + 1}" for i in range(n + 1)), ("",) * (n + 1))
     return found
 
 
-def _wrong_row(lines: _Lines, i: int, table: _Found, source: str, dialect: Dialect) -> InputError:
+def _wrong_row(lines: Lines, i: int, table: _Found, source: str, dialect: Dialect) -> InputError:
     got, due = len(dialect.fields(lines[i])), table.separators + 1
     return InputError(
         f"{source}: line {i + 1}",
@@ -222,7 +161,7 @@ def _wrong_row(lines: _Lines, i: int, table: _Found, source: str, dialect: Diale
 
 
 def _no_header(
-    lines: _Lines,
+    lines: Lines,
     before: list[int],
     start: int,
     n: int,
@@ -246,7 +185,7 @@ def _no_header(
     return InputError(where, rule, cure=cure)
 
 
-def _check_end(lines: _Lines, after: list[int], found: list[_Found], source: str, dialect: Dialect) -> None:
+def _check_end(lines: Lines, after: list[int], found: list[_Found], source: str, dialect: Dialect) -> None:
     """A last row that was cut off is not taken for a closing remark."""
     for i in after if found else []:
         row = [part for part in dialect.fields(lines[i]) if part]
@@ -254,7 +193,7 @@ def _check_end(lines: _Lines, after: list[int], found: list[_Found], source: str
             raise _wrong_row(lines, i, found[-1], source, dialect)
 
 
-def _worthwhile(found: list[_Found], source: str, lines: _Lines) -> list[_Found]:
+def _worthwhile(found: list[_Found], source: str, lines: Lines) -> list[_Found]:
     """Tables of two rows or more; one row under names is metadata of the next table."""
     if not found:
         raise InputError(source, "has a header but no rows", cure="Give it at least two rows of numbers.")
@@ -265,7 +204,8 @@ def _worthwhile(found: list[_Found], source: str, lines: _Lines) -> list[_Found]
     before: list[str] = []
     for table in found:
         before += table.before
-        if table.count() < 2:
+        again = bool(kept) and table.header == kept[-1].header and set(before) <= set(table.header.lines)
+        if table.count() < 2 and not again:
             before.append(lines[table.rows[0][0]])
         else:
             table.before, before = before, list(before)
@@ -274,7 +214,7 @@ def _worthwhile(found: list[_Found], source: str, lines: _Lines) -> list[_Found]
 
 
 def _read(
-    table: _Found, lines: _Lines, source: str, dialect: Dialect, layout: Layout, wanted: Wanted
+    table: _Found, lines: Lines, source: str, dialect: Dialect, layout: Layout, wanted: Wanted
 ) -> RawTable:
     header = table.header
     needed = list(wanted(header.names, header.units))
@@ -300,6 +240,8 @@ def _numbers(
     body: bytes, dialect: Dialect, needed: list[int], where: Callable[[int], str], names: tuple[str, ...]
 ) -> Array:
     """Columns of the body as numbers, shape (column, row): at once, or with the missing marked as such."""
+    if not needed:
+        return np.empty((0, 0))
     if b'"' in body:
         body = body.replace(b'"', b"")
     if dialect.decimal == ",":
@@ -307,7 +249,7 @@ def _numbers(
     try:
         return _loaded(body, dialect.separator, needed)
     except ValueError:
-        marked = _with_missing(body, dialect)
+        marked = _with_missing(_FORTRAN.sub(b"e", body), dialect)
     try:
         return _loaded(marked, dialect.separator, needed)
     except ValueError:

@@ -12,7 +12,7 @@ import re
 
 from separatrix.tribometer.formats.layout import Layout
 
-_HEADER = re.compile(r"^\s*Step\s*,\s*Timestamp\s*,", re.IGNORECASE | re.MULTILINE)
+_HEADER = re.compile(r'^[\s"]*Step[\s"]*[,;\t][\s"]*Timestamp[\s"]*[,;\t]', re.IGNORECASE | re.MULTILINE)
 
 
 def _header(header: str) -> str:
