@@ -44,10 +44,13 @@ def question(
 ) -> Question:
     """One case for each margin, a function of values of shape (sample, input)."""
     named = cases or [Case(candidate=f"c{k}", environment="gas") for k in range(len(margins))]
+
+    def judge(values: np.ndarray, eta: np.ndarray) -> Answer:
+        limit = np.column_stack([margin(values) for margin in margins])
+        return answer(limit - eta, limit)
+
     return Question(
-        inputs=inputs(*known),
-        cases=tuple(named),
-        evaluate=lambda values: answer(np.column_stack([margin(values) for margin in margins])),
+        inputs=inputs(*known), cases=tuple(named), evaluate=lambda values: judge(values, 0.0), judge=judge
     )
 
 

@@ -88,6 +88,34 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
         assert one["restitution_threshold_low"] <= one["restitution_threshold"]
 
 
+def test_a_verdict_stands_with_its_evidence(capsys):
+    """Largest offset, drift, forces, number and length of runs, as `rank` has them of the same cage."""
+    found = asked(capsys)
+    assert main(["rank", "small.toml", "--json"]) == 0
+    ranked = json.loads(capsys.readouterr().out)
+    for name in "AB":
+        known, same = row(found, "air", name), row(ranked, "air", name)
+        for key in ("verdict", "largest_offset", "drift_rate", "largest_contact_force", "largest_land_force"):
+            assert known[key] == same[key]
+        assert (known["runs"], known["duration"]) == (8, 0.01)
+    assert row(found, "vacuum", "B")["verdict"] is None
+
+
+def test_the_runs_are_one_of_the_drivers(capsys):
+    """What their finite number leaves open has indices as every input has; it is not a test to make."""
+    found = asked(capsys)
+    for case in found["sobol"]["cases"]:
+        assert "boundary" in {one["factor"] for one in case["margin"]}
+    assert "boundary" not in {one["name"] for one in found["next_test"]["tests"]}
+
+
+def test_fewer_samples_than_a_fit_needs_are_answered(capsys, monkeypatch):
+    """Here 80 for a line in one input, as 64 are too few for 16: more are drawn, after all the work."""
+    for module in ("fit", "of_model"):
+        monkeypatch.setattr(f"separatrix.sensitivity.{module}.LEAST_FOR_A_TERM", 40)
+    assert asked(capsys)["sobol"]["fit_error"] < 1e-3  # a line in the thickness between 0.4 and 0.6 um
+
+
 def test_what_was_not_measured_is_missing(capsys):
     """Everything is null but name and reason; it has no part in being best."""
     found = asked(capsys)
@@ -155,12 +183,19 @@ def test_text_and_files(capsys):
     assert MARK not in text.split("Uncertain inputs")[0]
     assert max(len(line) for line in text.splitlines()) <= 100
     pictures = {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-drivers",
-                "sensitivity-1-air", "sensitivity-2-vacuum"}  # fmt: skip
+                "sensitivity-1-air", "sensitivity-2-vacuum", "sensitivity-film"}  # fmt: skip
     assert {path.stem for path in Path("here").glob("*.png")} == pictures
     data = results.load(Path("here") / "sensitivity.nc")
     assert {name for name, _ in figures("sensitivity", data)} == pictures
     assert data["material_probability_stable"].attrs["units"] == "-"
     assert data["cloud_friction"].dims == ("environment", "material", "sample")
+    assert data["film_probability_stable"].dims == (
+        "environment",
+        "material",
+        "race_friction",
+        "film_thickness",
+    )
+    assert data["film_thickness"].attrs["units"] == "m"
 
 
 def test_an_interrupt_of_the_last_stage_keeps_the_probabilities(capsys, monkeypatch):

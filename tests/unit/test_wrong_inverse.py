@@ -130,12 +130,6 @@ WRONG = [
         "Input.words must be printable",
     ),
     (
-        "an input asked for by a wrong name",
-        lambda: ASKED.place("film"),
-        "film is no uncertain input",
-        "There are: x0, x1.",
-    ),
-    (
         "margins of a wrong shape",
         lambda: sampled_design(answering(margin=lambda n: np.ones((n, 3))), 128),
         "The model's margin must have the shape (128, 1)",
@@ -230,8 +224,6 @@ WRONG = [
         "searched must lie",
         "got 10.0",
     ),
-    ("two frictions only", lambda: allowed_friction(ASKED, VALUES, points=2), "points must be", "got 2"),
-    ("half a friction", lambda: allowed_friction(ASKED, VALUES, points=9.5), "points must be", "got 9.5"),
     (
         "a model without an uncertain friction",
         lambda: allowed_friction(WITHOUT_FRICTION, VALUES),
@@ -280,8 +272,18 @@ WRONG = [
     ),
     (
         "a fit without a judge",
-        lambda: fitted_question(ASKED, VALUES, evaluated(ASKED, VALUES)),
-        "The model cannot be fitted",
+        lambda: fitted_question(replace(ASKED, judge=None), VALUES, evaluated(ASKED, VALUES)),
+        "The model cannot be asked for another friction or film",
+        "Give it a judge",
+    ),
+    (
+        "frictions without a judge",
+        lambda: allowed_friction(replace(ASKED, judge=None), VALUES),
+        "Give it a judge",
+    ),
+    (
+        "films without a judge",
+        lambda: stable_regions(replace(ASKED, judge=None), VALUES, GRID),
         "Give it a judge",
     ),
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
@@ -12,9 +13,17 @@ from separatrix.errors import InputError
 if TYPE_CHECKING:
     from separatrix.chain import CageState
     from separatrix.cli.answers import Work
-    from separatrix.sensitivity import AllowedFriction, NextTest, Question, SobolAnswer, StableRegion
+    from separatrix.sensitivity import (
+        AllowedFriction,
+        Evidence,
+        NextTest,
+        Question,
+        SobolAnswer,
+        StableRegion,
+    )
     from separatrix.stability.pool import Progress
     from separatrix.study import Study
+    from separatrix.uncertainty.answer import Sampled
     from separatrix.uncertainty.model import Model
     from separatrix.uncertainty.records import UncertainRanking
     from separatrix.units import Array
@@ -31,7 +40,14 @@ FITTED = 1024
 INVERSE = 512
 """Samples behind the inverse answers; a film's are asked at every point of its plane."""
 
-STAGES = {"boundary": 0.35, "surrogate": 0.25, "chain": 0.25, "verdicts": 0.05, "drivers": 0.1}
+STAGES = {
+    "boundary": 0.25,
+    "surrogate": 0.25,
+    "chain": 0.2,
+    "verdicts": 0.05,
+    "evidence": 0.15,
+    "drivers": 0.1,
+}
 """Parts of the work, and what share of the time each takes, roughly."""
 
 STEPS = 1000
@@ -50,10 +66,14 @@ class Doubt:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensitivityAnswer:
-    """The uncertain ranking, the doubt behind it (None if an interrupt left it out), and the first cage."""
+    """The uncertain ranking, single runs and the doubt behind it, and the first cage.
+
+    Evidence and doubt are None if an interrupt left them out.
+    """
 
     cage: CageState
     ranking: UncertainRanking
+    evidence: Evidence | None
     doubt: Doubt | None
 
 
@@ -90,18 +110,19 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     """
     from separatrix.chain import cage_state
     from separatrix.ranking import ranking_question
+    from separatrix.sensitivity import evidence_of
     from separatrix.uncertainty.answer import uncertain_ranking
 
     first = ranking_question(study).candidates[0]
     state = cage_state(study, material=first.material, friction=0.0)
     stop = Event()
     stage = stages(work.progress)
-    ranking, model, values = uncertain_ranking(study, samples, jobs=work.jobs, stage=stage, stop=stop)
-    try:
-        doubt = doubt_of(model, values, stage("drivers"))
-    except KeyboardInterrupt:
-        doubt = None
-    return SensitivityAnswer(cage=state, ranking=ranking, doubt=doubt)
+    ranking, model, found = uncertain_ranking(study, samples, jobs=work.jobs, stage=stage, stop=stop)
+    evidence, doubt = None, None
+    with contextlib.suppress(KeyboardInterrupt):
+        evidence = evidence_of(model, jobs=work.jobs, progress=stage("evidence"))
+        doubt = doubt_of(model, found, stage("drivers"))
+    return SensitivityAnswer(cage=state, ranking=ranking, evidence=evidence, doubt=doubt)
 
 
 def stages(progress: Progress | None) -> Callable[[str], Progress | None]:
@@ -125,15 +146,15 @@ def stages(progress: Progress | None) -> Callable[[str], Progress | None]:
     return stage
 
 
-def doubt_of(model: Model, values: Array, progress: Progress | None) -> Doubt:
+def doubt_of(model: Model, found: Sampled, progress: Progress | None) -> Doubt:
     """Sobol indices, next test and inverse answers of the model behind a ranking."""
     from separatrix import sensitivity as doubts
 
     told = progress or (lambda _done, _of: None)
-    question, wider = _question(model, values)
+    question, error = doubts.fitted_to(model, found.values[:FITTED], found.factor[:FITTED])
     design = doubts.sampled_design(question, DESIGN, seed=model.study.stability.seed)
     told(1, 4)
-    sobol = wider(doubts.indices_of(question, design))
+    sobol = doubts.indices_of(question, design)
     tests = doubts.default_measurements(question, reducible=doubts.reducible_shares(model))
     following = doubts.next_test(question, design, tests)
     told(2, 4)
@@ -144,19 +165,13 @@ def doubt_of(model: Model, values: Array, progress: Progress | None) -> Doubt:
     told(3, 4)
     films, reason = _films(model, question, some)
     told(4, 4)
-    return Doubt(sobol=sobol, next_test=following, allowed_friction=allowed, films=films, films_reason=reason)
-
-
-def _question(model: Model, values: Array) -> tuple[Question, Callable[[SobolAnswer], SobolAnswer]]:
-    """Return the model as a question, with its chain fitted to the samples if that varies."""
-    from separatrix import sensitivity as doubts
-
-    question = doubts.question_of(model)
-    if not model.chain_varies:
-        return question, lambda answer: answer
-    some = values[:FITTED]
-    fitted, error = doubts.fitted_question(question, some, question.evaluate(some))
-    return fitted, lambda answer: doubts.with_fit_error(answer, error)
+    return Doubt(
+        sobol=sobol if error is None else doubts.with_fit_error(sobol, error),
+        next_test=following,
+        allowed_friction=allowed,
+        films=films,
+        films_reason=reason,
+    )
 
 
 def _films(model: Model, question: Question, values: Array) -> tuple[tuple[StableRegion, ...], str]:

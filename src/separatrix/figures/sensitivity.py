@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withTickedStroke
 
 from separatrix.figures.ranking import file_name
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
@@ -40,10 +41,12 @@ def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures of the environments, and of what drives the doubt if that is not frictions alone."""
+    """Yield the figures of the environments, of what drives the doubt, and of the film if there is one."""
     yield from environments(data)
-    if "sobol_margin_total" in data and not all(is_friction(str(name)) for name in data["input"].values):
+    if "sobol_margin_total" in data:
         yield "sensitivity-drivers", drivers(data)
+    if "film_probability_stable" in data:
+        yield "sensitivity-film", film(data)
 
 
 def is_friction(name: str) -> bool:
@@ -221,11 +224,12 @@ def _converging(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 def drivers(data: xr.Dataset) -> Figure:
     """Total Sobol indices of the margin, for the inputs that matter, in every environment."""
-    total = data["sobol_margin_total"].transpose("environment", "material", "input").values.astype(float)
+    total = data["sobol_margin_total"].transpose("environment", "material", "factor").values.astype(float)
     own = _own_friction(data, total)
     chosen = [i for i in np.argsort(-np.nan_to_num(own).max(axis=(0, 1)), kind="stable")
               if np.nan_to_num(own[:, :, i]).max() >= LEAST][:MOST]  # fmt: skip
-    names = [FRICTIONS if i == own.shape[2] - 1 else str(data["input"].values[i]) for i in chosen]
+    factors = [*data["factor"].values, FRICTIONS]
+    names = ["the boundary itself (runs)" if factors[i] == "boundary" else str(factors[i]) for i in chosen]
     rows = [(e, m) for e in range(own.shape[0]) for m in range(own.shape[1]) if np.isfinite(own[e, m]).any()]
     figure, axes = canvas(PAGE, 1.8 + 0.16 * len(rows))
     left = np.zeros(len(rows))
@@ -248,9 +252,70 @@ FRICTIONS = "its own pocket friction"
 
 def _own_friction(data: xr.Dataset, total: Array) -> Array:
     """Indices with one more input at the end: the frictions, of which each case has but its own."""
-    frictions = np.array([is_friction(str(name)) for name in data["input"].values])
+    frictions = np.array([is_friction(str(name)) for name in data["factor"].values])
     sums = np.nansum(np.where(frictions, total, np.nan), axis=2, keepdims=True)
     kept = np.where(frictions, np.nan, total)
     return np.concatenate(
         [kept, np.where(np.isfinite(total).any(axis=2, keepdims=True), sums, np.nan)], axis=2
     )
+
+
+THICKNESS_LABEL = "film thickness [um]; bare races: as at the left end"
+RACE_FRICTION_LABEL = "friction of ball on race [-]"
+
+
+def film(data: xr.Dataset) -> Figure:
+    """Which film keeps each candidate stable: lines of P(STABLE) in the plane of thickness and friction."""
+    places = [str(name) for name in data["environment"].values]
+    rows, columns = -(-len(places) // 2), min(len(places), 2)
+    shape: Any = {"nrows": rows, "ncols": columns, "sharex": True, "sharey": True, "squeeze": False}
+    figure, panels = canvas(PAGE, 1.0 + 2.5 * rows, **shape)
+    for i, axes in enumerate(panels.flat):
+        axes.set_visible(i < len(places))
+        if i < len(places):
+            _film_panel(axes, data.isel(environment=i))
+            axes.set_title(places[i][:1].upper() + places[i][1:])
+    for axes in panels[-1]:
+        axes.set_xlabel(THICKNESS_LABEL)
+    for axes in panels[:, 0]:
+        axes.set_ylabel(RACE_FRICTION_LABEL)
+    legend_below(figure)
+    return figure
+
+
+def _film_panel(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the line of each candidate, and say of which there is none; mark the film of the study."""
+    thickness, friction = 1e6 * data["film_thickness"].values[1:], data["race_friction"].values
+    level, limit = float(data["film_probability"]), 1e6 * float(data["film_holds_up_to"])
+    axes.set(xscale="log", yscale="log", xlim=thickness[[0, -1]], ylim=friction[[0, -1]])
+    axes.set_xticks(decades := 10.0 ** np.arange(-3, 2), [f"{x:g}" for x in decades])
+    axes.set_yticks(friction, [f"{f:g}" for f in friction])
+    axes.minorticks_off()
+    without: dict[str, list[str]] = {"any film": [], "no film": []}
+    for i in _rising(data):
+        share = data["film_probability_stable"].isel(material=i).values[:, 1:].astype(float)
+        name, colour = str(data["material"].values[i]), CYCLE[i % len(CYCLE)]
+        if share.min() >= level or share.max() < level:
+            without["any film" if share.min() >= level else "no film"].append(name)
+            continue
+        lines = axes.contour(thickness, friction, share, levels=[level], colors=[colour], linewidths=1.2)
+        lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
+        axes.plot([], [], color=colour, label=f"{name}: stable with {level:.2f} or more on the ticked side")
+    if limit < thickness[-1]:
+        label = "thicker than the model of a film holds for"
+        axes.axvspan(limit, thickness[-1], color=GREY, alpha=0.12, lw=0, label=label)
+    _own_film(axes, data)
+    said = [f"{what}: {', '.join(names)}" for what, names in without.items() if names]
+    axes.text(0.02, 0.02, "\n".join(said), transform=axes.transAxes, fontsize=6.0, color=GREY)
+
+
+def _own_film(axes: Axes, data: xr.Dataset) -> None:
+    """Mark the film of the study, with two standard deviations where it is uncertain."""
+    names = [str(name) for name in data["input"].values]
+    bars = [
+        2.0 * scale * float(data["input_standard_deviation"][names.index(key)]) if key in names else 0.0
+        for key, scale in (("film.thickness", 1e6), ("film.race_friction", 1.0))
+    ]
+    x, y = 1e6 * float(data["film_thickness_here"]), float(data["film_race_friction_here"])
+    axes.errorbar(x, y, xerr=bars[0], yerr=bars[1], fmt="o", ms=3.5, color=BLACK, elinewidth=1.0,
+                  label="film of the study, with two standard deviations")  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from separatrix.report.cage import chain_facts, study_facts
-from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, significant, table
 
 Document = Mapping[str, Any]
 
@@ -33,12 +33,30 @@ LEGEND = paragraph(
 )
 
 
+EVIDENCE_HEADERS = (
+    "material",
+    "verdict",
+    "motion",
+    "offset\nmm",
+    "drift\n1/s",
+    "pocket\nN",
+    "land\nN",
+    "whirl\nHz",
+    "runs",
+)
+EVIDENCE_LEGEND = paragraph(
+    "Single runs, every input at its mean (as rank): verdict; motion: what the cage centre does at the end, "
+    "from the worst kick; offset of the cage centre, force at a pocket and at the land: largest in any run; "
+    "drift: median growth of the mean offset in the runs that do not grow; runs: from each kick."
+)
+
+
 def sensitivity(document: Document) -> list[str]:
     """Probabilities in every environment and overall, then everything behind them."""
     return [
         *(_environment(one["name"], one["materials"]) for one in document["environments"]),
         _environment("over all environments, mean friction", document["overall"]),
-        "\n".join([LEGEND, *_marks(document)]),
+        "\n".join([LEGEND, EVIDENCE_LEGEND, *_marks(document)]),
         section("Uncertain inputs", *_inputs(document)),
         section("Boundary", *(_boundary(one) for one in document["boundaries"])),
         section("Convergence of P(stable), where it is least decided", _convergence(document)),
@@ -51,7 +69,24 @@ def sensitivity(document: Document) -> list[str]:
 def _environment(name: str, rows: Sequence[Document]) -> str:
     shared = Counter(row["tie_group"] for row in rows)
     cells = [_row(row, tied=shared[row["tie_group"]] > 1) for row in rows]
-    return section(name[:1].upper() + name[1:], table(HEADERS, cells, left=2))
+    judged = [_evidence(row) for row in rows if row["verdict"] is not None]
+    evidence = ["", table(EVIDENCE_HEADERS, judged, left=3)] if judged else []
+    return section(name[:1].upper() + name[1:], table(HEADERS, cells, left=2), *evidence)
+
+
+def _evidence(row: Document) -> list[str]:
+    """Return what single runs show of a candidate."""
+    whirl = row["whirl_frequency"]
+    return [
+        row["name"],
+        row["verdict"],
+        row["cage_motion"],
+        number(1e3 * row["largest_offset"]),
+        significant(row["drift_rate"], 2),
+        *(number(row[f"largest_{name}_force"], 0) for name in ("contact", "land")),
+        number(whirl, 1 if whirl < 10.0 else 0),
+        f"{row['runs']} of {quantity(row['duration'], 's')}",
+    ]
 
 
 def _row(row: Document, *, tied: bool) -> list[str]:
@@ -160,21 +195,31 @@ def _doubt(document: Document) -> Iterator[str]:
     if document["sobol"] is None:
         yield section("What drives the doubt", paragraph(document["doubt_reason"]))
         return
-    yield section("What drives the doubt", *_drivers(document))
-    told = document["next_test"]["sentences"]
-    yield section("Which test to run next", *(paragraph(text) for text in told[:MOST_SENTENCES]))
-    allowed = list(dict.fromkeys(one["sentence"] for one in document["allowed_friction"]))
-    error = max(one["surrogate"]["error"] for one in document["boundaries"])
-    known = f"The boundary behind it is known to {100.0 * error:.1f} % of its friction."
-    yield section("Which friction a new material may have", *map(paragraph, [*allowed, known]))
+    yield section("What drives the doubt", DRIVERS_LEGEND, *_drivers(document))
+    yield section("Which test to run next", *map(paragraph, _next_test(document["next_test"])))
+    allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"])
+    yield section("Which friction a new material may have", *map(paragraph, allowed))
     yield section("Which film keeps the cage stable", *_films(document))
 
 
+DRIVERS_LEGEND = paragraph(
+    "Shares of the variance, with 95 % intervals: first what would be left if all else were known, then "
+    "(alone) what would go if this one were. Shares of a verdict may add up to more than 100 %, for inputs "
+    "decide it together."
+)
+
+
+def _next_test(answer: Document) -> Iterator[str]:
+    """Yield what is undecided, and the tests that would settle it."""
+    names = [f"{name} in {place}" for name, place in answer["undecided"]]
+    if names:
+        rule = "between 5 and 95 % stable, the boundary's doubt included"
+        yield f"Undecided ({rule}): {'; '.join(names)}."
+    yield from answer["sentences"]
+
+
 def _drivers(document: Document) -> list[str]:
-    """Return the sentences of the cases that are not decided; one if only frictions are uncertain."""
-    if all(_is_friction(row) for row in document["inputs"]):
-        text = "Only frictions are uncertain: each case's doubt is that of its own friction, and of the runs."
-        return [paragraph(text)]
+    """Return the sentences of the cases that are not decided; of all if there is none."""
     cases = zip(document["sobol"]["cases"], document["sobol"]["sentences"], strict=True)
     open_cases = [text for case, text in cases if 0.05 < case["probability_stable"]["value"] < 0.95]
     shown = open_cases or document["sobol"]["sentences"]
@@ -188,21 +233,28 @@ def _films(document: Document) -> list[str]:
     films = document["films"]
     if not films:
         return [paragraph(document["films_reason"])]
-    head = paragraph(
+    head = (
         f"Film thickness with a probability of STABLE of {films[0]['probability']:.2f} or more, by the "
-        "friction of ball on race; all else as it is, with its doubt."
+        "friction f of ball on race; all else as it is, with its doubt."
     )
-    blocks = [head]
+    blocks = [paragraph(f"{head} {_thick(films[0])}")]
     for place in dict.fromkeys(one["environment"] for one in films):
         own = [one for one in films if one["environment"] == place]
-        headers = [place, *(_value(own[0]["other"], row["y"]) for row in own[0]["rows"])]
-        cells = [[one["candidate"], *(_spans(row["probable"]) for row in one["rows"])] for one in own]
+        rows = [i for i, f in enumerate(own[0]["race_friction"]) if f in RACE_FRICTIONS]
+        headers = [place, *(f"f {own[0]['race_friction'][i]:.3g}" for i in rows)]
+        cells = [[one["candidate"], *(_spans(one["rows"][i]["probable"]) for i in rows)] for one in own]
         blocks += ["", table(headers, cells)]
     return blocks
 
 
-def _value(name: str, value: float) -> str:
-    return f"f {value:.3g}" if name == "film.race_friction" else quantity(value, "Pa")
+RACE_FRICTIONS = (0.02, 0.05, 0.1, 0.2, 0.4)
+"""Of those that were asked, the ones that a table has room for."""
+
+
+def _thick(film: Document) -> str:
+    """Return up to which thickness the model of the film holds."""
+    limit = f"{1e6 * film['holds_up_to']:.2g} um"
+    return f"Beyond {limit} the film is thicker than the model of a film in series holds for."
 
 
 def _spans(spans: Sequence[Document]) -> str:
@@ -210,7 +262,7 @@ def _spans(spans: Sequence[Document]) -> str:
 
 
 def _span(span: Document) -> str:
-    low, high = (quantity(span[end], "m") for end in ("low", "high"))
+    low, high = (quantity(float(f"{span[end]:.2g}"), "m") for end in ("low", "high"))
     if span["from_edge"] and span["to_edge"]:
         return "any"
     if span["to_edge"]:

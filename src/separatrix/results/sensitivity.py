@@ -18,12 +18,30 @@ ITS_OWN = (
 )
 """Keys of the document that `grid` turns into arrays, or that stay in the document alone."""
 
+BOUNDARY = "boundary"
+"""The factor that is no input of the study: what the finite number of runs leaves open."""
+
 INTERRUPTED = "interrupted before this was computed"
+
+
+EVIDENCE = (
+    *("verdict", "cage_motion", "growth_rate", "growth_rate_low", "growth_rate_high", "growth_kick"),
+    *("largest_offset", "mean_offset", "orbit_evenness", "drift_rate", "drift_rate_law"),
+    *("largest_contact_force", "largest_land_force", "land_impact_share"),
+    *("whirl_frequency", "whirl_direction", "whirl_ratio"),
+    *("drive_energy", "energy_growth", "energy_imbalance", "runs", "duration"),
+)
+"""What a row takes from the single runs with every input at its central value."""
 
 
 def sensitivity(record: Any, cage: Document) -> Document:
     """Return the uncertain ranking, what drives the doubt, and the chain and cage of the first candidate."""
     answer = plain_record(record.ranking, "sensitivity")
+    found = record.evidence or {}
+    for one in (*answer["environments"], {"name": "", "materials": answer["overall"]}):
+        for row in one["materials"]:
+            judged = found.get((one["name"], row["name"]))
+            row |= {key: plain(getattr(judged, key, None), key) for key in EVIDENCE}
     return answer | _doubt(record.doubt) | cage | {"complete": record.doubt is not None}
 
 
@@ -50,15 +68,17 @@ def _doubt(doubt: Any) -> Document:
 
 
 def _film(region: Any) -> Document:
-    """Return which film thickness keeps a case stable at each value of the other quantity of the film."""
+    """Return where in the plane of film thickness and race friction a case is stable."""
     from separatrix.sensitivity import region_sentences
 
     return {
         "candidate": region.candidate,
         "environment": region.environment,
         "probability": region.probability,
-        "thickness": plain(region.grid.x.values),
-        "other": region.grid.y.name,
+        "film_thickness": plain(region.grid.x.values),
+        "holds_up_to": plain(region.grid.holds_up_to),
+        "race_friction": plain(region.grid.y.values),
+        "probability_stable": plain(region.probability_stable),
         "rows": plain(region.rows),
         "sentences": list(region_sentences(region)),
     }
@@ -75,6 +95,7 @@ def grid(document: Mapping[str, Any]) -> Arrays:
         | _clouds(document["clouds"], environments, materials)
         | _lines(document["boundaries"])
         | _indices(document, environments, materials)
+        | _films(document, environments, materials)
     )
 
 
@@ -139,8 +160,8 @@ def _indices(document: Mapping[str, Any], environments: Sequence[str], materials
     if document["sobol"] is None:
         return {}
     cases = {(case["environment"], case["candidate"]): case for case in document["sobol"]["cases"]}
-    names = [row["name"] for row in document["inputs"]]
-    found: Arrays = {}
+    names = [row["name"] for row in document["inputs"]] + [BOUNDARY]
+    found: Arrays = {"factor": (("factor",), names, {})}
     for what in ("margin", "verdict"):
         for kind in ("first", "total"):
             for end in ("value", "low", "high"):
@@ -149,7 +170,7 @@ def _indices(document: Mapping[str, Any], environments: Sequence[str], materials
                     for place in environments
                 ]
                 suffix = "" if end == "value" else f"_{end}"
-                dims = ("environment", "material", "input")
+                dims = ("environment", "material", "factor")
                 found[f"sobol_{what}_{kind}{suffix}"] = (dims, table, {"units": "-"})
     return found
 
@@ -157,3 +178,23 @@ def _indices(document: Mapping[str, Any], environments: Sequence[str], materials
 def _of_factor(case: Document | None, what: str, kind: str, end: str, names: Sequence[str]) -> list[Any]:
     known = {} if case is None else {index["factor"]: index[kind][end] for index in case[what]}
     return [known.get(name) for name in names]
+
+
+def _films(document: Mapping[str, Any], environments: Sequence[str], materials: Sequence[str]) -> Arrays:
+    """Return P(STABLE) over film thickness and race friction, and the film of the study."""
+    films, own = document["films"], document["study"]["film"]
+    if not films:
+        return {}
+    axes = {name: films[0][name] for name in ("race_friction", "film_thickness")}
+    known = {(one["environment"], one["candidate"]): one["probability_stable"] for one in films}
+    none = [[None] * len(axes["film_thickness"])] * len(axes["race_friction"])
+    values = [[known.get((place, name), none) for name in materials] for place in environments]
+    return {
+        "race_friction": (("race_friction",), axes["race_friction"], {"units": "-"}),
+        "film_thickness": (("film_thickness",), axes["film_thickness"], {"units": "m"}),
+        "film_probability_stable": (("environment", "material", *axes), values, {"units": "-"}),
+        "film_holds_up_to": ((), films[0]["holds_up_to"], {"units": "m"}),
+        "film_probability": ((), films[0]["probability"], {"units": "-"}),
+        "film_thickness_here": ((), own["thickness"]["value"], {"units": "m"}),
+        "film_race_friction_here": ((), own["race_friction"]["value"], {"units": "-"}),
+    }

@@ -4,10 +4,11 @@ Every question is asked of a model, `records.Question`; it does not matter what 
 """
 
 from separatrix.sensitivity.design import Design, sampled_design, sampled_values
+from separatrix.sensitivity.evidence import Evidence, evidence_of
 from separatrix.sensitivity.fit import FitError, fitted_question, with_fit_error
 from separatrix.sensitivity.inverse import allowed_friction
 from separatrix.sensitivity.next_test import default_measurements, next_test
-from separatrix.sensitivity.of_model import question_of, reducible_shares
+from separatrix.sensitivity.of_model import fitted_to, question_of, reducible_shares
 from separatrix.sensitivity.question import Case, Input, Question
 from separatrix.sensitivity.records import (
     AllowedFriction,
@@ -23,7 +24,7 @@ from separatrix.sensitivity.records import (
     StableRegion,
     TestGain,
 )
-from separatrix.sensitivity.region import friction_grid, modulus_grid, stable_regions
+from separatrix.sensitivity.region import friction_grid, stable_regions
 from separatrix.sensitivity.sobol import indices_of, sobol_indices
 from separatrix.sensitivity.words import (
     allowed_sentence,
@@ -39,6 +40,7 @@ __all__ = [
     "CaseSobol",
     "Design",
     "Estimate",
+    "Evidence",
     "Factor",
     "FilmAxis",
     "FitError",
@@ -54,11 +56,12 @@ __all__ = [
     "allowed_friction",
     "allowed_sentence",
     "default_measurements",
+    "evidence_of",
     "fitted_question",
+    "fitted_to",
     "friction_grid",
     "indices_of",
     "input_words",
-    "modulus_grid",
     "next_test",
     "next_test_sentences",
     "question_of",

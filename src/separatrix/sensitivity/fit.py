@@ -107,9 +107,7 @@ def fitted_question(question: Question, values: Array, answers: Evaluated) -> tu
     InputError
         No `judge`, or too few samples for a straight line.
     """
-    if question.judge is None:
-        raise InputError("The model", "cannot be fitted", cure="Give it a judge of restitution factors.")
-    judge, factor = question.judge, answers.threshold - answers.margin
+    judge, factor = question.judged(), answers.threshold - answers.margin
     target = np.log(damping_ratios(factor))
     basis, unseen = _best(question, values, target)
     weights = np.linalg.lstsq(basis.of(values), target, rcond=None)[0]
@@ -118,7 +116,7 @@ def fitted_question(question: Question, values: Array, answers: Evaluated) -> tu
         return judge(asked, restitution_factors(np.exp(basis.of(asked) @ weights)))
 
     told = judge(values, restitution_factors(np.exp(unseen)))
-    return replace(question, evaluate=evaluate, nominal=question.nominal), _error(basis, answers, told)
+    return replace(question, evaluate=evaluate), _error(basis, answers, told)
 
 
 def _error(basis: _Basis, true: Evaluated, told: Evaluated) -> FitError:
@@ -158,9 +156,9 @@ def _bases(question: Question, values: Array) -> Iterator[_Basis]:
 
 
 def _shared(question: Question, values: Array) -> tuple[int, ...]:
-    """Inputs that vary and are no pocket friction, on which the restitution factor does not depend."""
-    frictions = {case.friction for case in question.cases}
-    return tuple(i for i in range(values.shape[1]) if i not in frictions and np.ptp(values[:, i]) > 0.0)
+    """Inputs that vary and on which the restitution factor may depend: no pocket friction, no boundary."""
+    others = {question.boundary, *(case.friction for case in question.cases)}
+    return tuple(i for i in range(values.shape[1]) if i not in others and np.ptp(values[:, i]) > 0.0)
 
 
 def _maybe_log(values: Array, columns: Iterable[int], logarithmic: Iterable[bool]) -> Array:

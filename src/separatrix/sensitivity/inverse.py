@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import ndtri
+from numpy.typing import NDArray
 
+from separatrix.distribution import LogNormal
 from separatrix.errors import InputError
 from separatrix.sensitivity.design import BLOCKS, central_values, evaluated, is_stable
-from separatrix.sensitivity.question import Evaluated, Question
+from separatrix.sensitivity.question import Question
 from separatrix.sensitivity.records import AllowedFriction, Estimate, Span
 from separatrix.sensitivity.scatter import by_block, jackknife
 from separatrix.sensitivity.spans import largest, spans_above
@@ -26,7 +27,10 @@ FINER = 8
 
 NOMINAL_POINTS = 2049
 
-_Ask = Callable[[Array], Evaluated]
+TOGETHER = 16
+"""Frictions that are judged together."""
+
+_Ask = Callable[[Array], tuple[Array, Array]]
 
 
 def allowed_friction(
@@ -36,7 +40,6 @@ def allowed_friction(
     probability: Ratio = PROBABILITY,
     scatter: Ratio = 0.0,
     searched: Ratio = SEARCHED_FRICTION,
-    points: int = POINTS,
 ) -> tuple[AllowedFriction, ...]:
     """Largest pocket friction that is still STABLE, in place of each case's own, all else as it is.
 
@@ -55,24 +58,22 @@ def allowed_friction(
         Standard deviation of the new material's friction, as a share of it [-].
     searched : float
         Up to which friction [-].
-    points : int
-        Frictions looked at.
 
     Raises
     ------
     InputError
         A number outside its range, or no case with a friction.
     """
-    _require(question, probability, scatter, searched, points)
+    _require(question, probability, scatter, searched)
     if len(values) < 2 * BLOCKS:
         raise InputError("values", f"must be at least {2 * BLOCKS} samples", "", str(len(values)))
-    fine, scattered = _frictions(searched, NOMINAL_POINTS), _scattered(len(values), scatter)
-    frictions = _frictions(searched, points)
-    coarse = _shares(question, values, frictions, scattered)
-    more = _crossed(frictions, *coarse, probability)
-    added = _shares(question, values, more, scattered) if more.size else coarse
-    frictions, places = np.unique(np.concatenate((frictions, more)), return_index=True)
-    share, half = (np.concatenate(both)[places] for both in zip(coarse, added, strict=True))
+    fine, coarse = _frictions(searched, NOMINAL_POINTS), _frictions(searched, POINTS)
+    ask = _asked(question, values, _scattered(len(values), scatter))
+    first = ask(coarse)
+    more = _crossed(coarse, *first, probability)
+    both = zip(first, ask(more), strict=True) if more.size else ((one, one[:0]) for one in first)
+    frictions, places = np.unique(np.concatenate((coarse, more)), return_index=True)
+    share, half = (np.concatenate(parts)[places] for parts in both)
     nominal = _nominal(question, fine)
     answers: dict[AllowedFriction, list[str]] = {}
     for c, case in enumerate(question.cases):
@@ -99,12 +100,10 @@ def allowed_friction(
     )
 
 
-def _require(question: Question, probability: Ratio, scatter: Ratio, searched: Ratio, points: int) -> None:
+def _require(question: Question, probability: Ratio, scatter: Ratio, searched: Ratio) -> None:
     require_within("probability", probability, 0.5, 0.9999)
     require_within("scatter", scatter, 0.0, 1.0)
     require_within("searched", searched, 1e-3, 2.0)
-    if isinstance(points, bool) or not isinstance(points, int) or not 3 <= points <= 10_000:
-        raise InputError("points", "must be a whole number from 3 to 10000", "", shown(points))
     if all(case.friction is None for case in question.cases):
         raise InputError("No case", "has an uncertain pocket friction", cure="Give one its friction's place.")
 
@@ -129,26 +128,35 @@ def _crossed(frictions: Array, share: Array, half: Array, probability: Ratio) ->
 
 
 def _scattered(samples: int, scatter: Ratio) -> Array:
-    """Friction of each sample as a share of its mean, at equally likely places in a fixed random order."""
+    """Friction of each sample as a share of its mean: log-normal as any friction of a next cage.
+
+    At equally likely places in a fixed random order.
+    """
+    if scatter == 0.0:
+        return np.ones(samples)
     places = np.random.default_rng(samples).permutation(samples)
-    return np.asarray(np.maximum(1.0 + scatter * ndtri((places + 0.5) / samples), 0.0))
+    return LogNormal(mean=1.0, standard_deviation=scatter).quantile((places + 0.5) / samples)
 
 
-def _shares(question: Question, values: Array, frictions: Array, scattered: Array) -> tuple[Array, Array]:
-    """Probability of STABLE and half its interval, shape (friction, case)."""
-    ask = _asked_again(question, values)
-    found = [_share(ask(_with_friction(question, values, f * scattered))) for f in frictions]
-    share, half = zip(*found, strict=True)
-    return np.array(share), np.array(half)
+def _asked(question: Question, values: Array, scattered: Array) -> _Ask:
+    """Probability of STABLE and half its interval at frictions, shape (friction, case) each.
 
-
-def _asked_again(question: Question, values: Array) -> _Ask:
-    """Model for other frictions, on which the restitution factor does not depend."""
-    if question.judge is None:
-        return question.evaluate
-    first, judge = evaluated(question, values), question.judge
+    The restitution factor does not depend on the friction, so it is asked for once.
+    """
+    first, judge = evaluated(question, values), question.judged()
     factor = first.threshold - first.margin
-    return lambda changed: judge(changed, factor)
+
+    def ask(frictions: Array) -> tuple[Array, Array]:
+        found = []
+        for part in np.array_split(frictions, -(-frictions.size // TOGETHER)):
+            rows = np.tile(values, (part.size, 1))
+            changed = _with_friction(question, rows, np.outer(part, scattered).ravel())
+            stable = is_stable(judge(changed, np.tile(factor, (part.size, 1))))
+            found += [_share(one) for one in np.split(stable, part.size)]
+        share, half = zip(*found, strict=True)
+        return np.array(share), np.array(half)
+
+    return ask
 
 
 def _with_friction(question: Question, values: Array, friction: Array) -> Array:
@@ -159,18 +167,18 @@ def _with_friction(question: Question, values: Array, friction: Array) -> Array:
     return changed
 
 
-def _share(found: Evaluated) -> tuple[Array, Array]:
+def _share(stable: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Probability of STABLE of each case, and half its interval from the scatter between blocks."""
-    stable = is_stable(found)
     sums = by_block(np.column_stack((np.ones(len(stable)), stable)), BLOCKS)
     return jackknife(sums, lambda of: np.asarray(of[1:] / of[0]))
 
 
 def _nominal(question: Question, frictions: Array) -> Array:
-    """1 where the nominal verdict is STABLE, shape (friction, case)."""
+    """1 where the verdict with every input at its centre is STABLE, shape (friction, case)."""
     values = np.repeat(central_values(question), len(frictions), axis=0)
-    found = (question.nominal or question.evaluate)(_with_friction(question, values, frictions))
-    return is_stable(found).astype(float)
+    at_centre = evaluated(question, values[:1])
+    factor = np.tile(at_centre.threshold - at_centre.margin, (len(frictions), 1))
+    return is_stable(question.judged()(_with_friction(question, values, frictions), factor)).astype(float)
 
 
 def _most(

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from separatrix.distribution import Distribution, Samples
 from separatrix.errors import InputError
 from separatrix.sensitivity.design import BLOCKS, Design
 from separatrix.sensitivity.likelihood import likelihood
-from separatrix.sensitivity.question import Question
+from separatrix.sensitivity.question import Input, Question
 from separatrix.sensitivity.records import (
     SETTLED_HIGH,
     SETTLED_LOW,
@@ -36,6 +37,7 @@ RESULTS = 128
 ERROR: Ratio = 0.05
 """Standard deviation of what is measured to 10 %, written ``+- 10 %`` in a study."""
 
+TWICE_AS_WELL: Ratio = 0.5
 REPEATS = 3
 FEWEST_EFFECTIVE = 100
 """Samples that a result must leave some weight on; a test sharper than that is taken as this sharp."""
@@ -92,46 +94,47 @@ def _names(question: Question, chosen: NDArray[np.bool_]) -> tuple[tuple[str, st
 
 
 def default_measurements(
-    question: Question,
-    *,
-    error: Ratio = ERROR,
-    repeats: int = REPEATS,
-    reducible: Mapping[int, Ratio] | None = None,
+    question: Question, *, reducible: Mapping[int, Ratio] | None = None
 ) -> tuple[Measurement, ...]:
-    """Every input measured to 10 %; every friction by three more tests.
+    """Every input measured to 10 %, or twice as well as it is known if that is better.
 
-    Single tests scatter as the irreducible part of the friction does, or as all of it where all is reducible.
+    Every friction by three more tests. Single tests scatter as the irreducible part of the friction does, or
+    as all of it where all is reducible. What is counted, or set for the runs, is not measured.
 
     Parameters
     ----------
     question : Question
         Whose inputs.
-    error : float
-        Standard deviation of the test of an input that is no friction, as a share of its value [-].
-    repeats : int
-        Of a friction.
     reducible : mapping, optional
         By place of the input, see `Measurement`; 1 where nothing is said.
     """
     frictions = {case.friction for case in question.cases}
     shares = reducible or {}
     return tuple(
-        Measurement(
-            input=i,
-            error=_of_one_test(question, i, shares.get(i, 1.0)) if i in frictions else error,
-            repeats=repeats if i in frictions else 1,
-            reducible=shares.get(i, 1.0),
-        )
-        for i in range(len(question.inputs))
+        _three_tests(i, one.distribution, shares.get(i, 1.0))
+        if i in frictions
+        else Measurement(input=i, error=_better(one.distribution))
+        for i, one in enumerate(question.inputs)
+        if i != question.boundary and _is_measured(one)
     )
 
 
-def _of_one_test(question: Question, i: int, reducible: Ratio) -> Ratio:
-    known = question.inputs[i].distribution
+def _is_measured(one: Input) -> bool:
+    counted = isinstance(one.distribution, Samples) and one.distribution.is_whole
+    return not counted and not one.name.startswith("stability.")
+
+
+def _better(known: Distribution) -> Ratio:
+    """Error of 10 %, or half of what is known if that is less; of a mean of 0 there is no share."""
     if known.mean == 0.0:
         return ERROR
+    return min(ERROR, TWICE_AS_WELL * known.standard_deviation / abs(known.mean))
+
+
+def _three_tests(place: int, known: Distribution, reducible: Ratio) -> Measurement:
     share = 1.0 - reducible if reducible < 1.0 else 1.0
-    return float(share**0.5 * known.standard_deviation / abs(known.mean))
+    error = share**0.5 * known.standard_deviation / abs(known.mean)
+    return Measurement(input=place, error=error, repeats=REPEATS, reducible=reducible)
 
 
 def standing(low: Array, high: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

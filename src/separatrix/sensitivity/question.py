@@ -109,17 +109,18 @@ class Question:
         evaluate(values (sample, input)) -> Evaluated.
     judge : callable, optional
         judge(values (sample, input), restitution_factor (sample, case)) -> Evaluated: the same with the
-        restitution factor given. Cheap; where it is there, the dear part of `evaluate` is not asked again for
-        another friction or film.
-    nominal : callable, optional
-        Like `evaluate`, without what finite ensembles leave open; by default `evaluate` itself.
+        restitution factor given. Cheap: the dear part of `evaluate` is not asked again for another friction
+        or film. Without it there are no answers to inverse questions.
+    boundary : int, optional
+        Place of the input that says which of the boundaries that a finite number of runs allow a sample has:
+        nothing that is measured, and the restitution factor does not depend on it.
     """
 
     inputs: tuple[Input, ...]
     cases: tuple[Case, ...]
     evaluate: Evaluate
     judge: Judge | None = None
-    nominal: Evaluate | None = None
+    boundary: int | None = None
 
     def __post_init__(self) -> None:
         _check.settle(_something(self, "inputs"), _something(self, "cases"), _places(self))
@@ -131,18 +132,18 @@ class Question:
             enters[slice(None) if case.inputs is None else list(case.inputs), c] = True
         return enters
 
-    def place(self, name: str) -> int:
-        """Column of the input of this name.
+    def judged(self) -> Judge:
+        """Return `judge`.
 
         Raises
         ------
         InputError
             There is none.
         """
-        names = [one.name for one in self.inputs]
-        if name not in names:
-            raise InputError(name, "is no uncertain input", cure=f"There are: {', '.join(names)}.")
-        return names.index(name)
+        if self.judge is None:
+            cure = "Give it a judge of restitution factors."
+            raise InputError("The model", "cannot be asked for another friction or film", cure=cure)
+        return self.judge
 
 
 def _something(record: object, field: str) -> _check.Problems:

@@ -233,11 +233,16 @@ def _rising(axis: FilmAxis) -> _check.Problems:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionGrid:
-    """Restitution factor over two quantities of the film, shape (y, x) [-]."""
+    """Restitution factor over two quantities of the film, shape (y, x) [-].
+
+    `holds_up_to` is the value of x beyond which the model of the film is not known to hold, None if there is
+    none.
+    """
 
     x: FilmAxis
     y: FilmAxis
     restitution_factor: Array
+    holds_up_to: float | None = None
 
     def __post_init__(self) -> None:
         _check.settle(_fits(self))
@@ -262,7 +267,10 @@ def _fits(grid: RestitutionGrid) -> _check.Problems:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RegionRow:
-    """Stretches of x that keep a case stable at one value of y: nominally, and with the probability asked."""
+    """Stretches of x that keep a case stable at one value of y.
+
+    `nominal` with all but the film at its centre, `probable` with the probability asked.
+    """
 
     y: float
     nominal: tuple[Span, ...]
@@ -275,8 +283,8 @@ class StableRegion:
 
     Attributes
     ----------
-    margin, probability_stable : ndarray
-        Shape (y, x): margin with the other inputs at their centres, and share of samples that are STABLE [-].
+    probability_stable : ndarray
+        Share of the samples that are STABLE, all but the film as drawn, shape (y, x) [-].
     rows : tuple of RegionRow
         One for each y.
     """
@@ -285,6 +293,5 @@ class StableRegion:
     environment: str
     probability: Ratio
     grid: RestitutionGrid
-    margin: Array
     probability_stable: Array
     rows: tuple[RegionRow, ...]

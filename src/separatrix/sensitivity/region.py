@@ -1,27 +1,26 @@
-"""Which film keeps a cage stable: the plane of its thickness and its friction, or its modulus."""
+"""Which film keeps a cage stable: the plane of its thickness and its friction."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from separatrix.chain import RestitutionState
 from separatrix.errors import InputError
-from separatrix.lubrication import FILM_THICKNESSES, RACE_FRICTIONS, LubricationCurve, lubrication_curve
+from separatrix.lubrication import FILM_THICKNESSES, lubrication_curve
 from separatrix.sensitivity.design import central_values, evaluated, is_stable
 from separatrix.sensitivity.inverse import PROBABILITY, require_within
-from separatrix.sensitivity.question import Evaluated, Question
+from separatrix.sensitivity.question import Question
 from separatrix.sensitivity.records import FilmAxis, RegionRow, RestitutionGrid, StableRegion
 from separatrix.sensitivity.spans import spans_above
-from separatrix.study import Film, Material, Study
-from separatrix.units import Array, Metre, Pascal, Ratio
+from separatrix.study import Study
+from separatrix.traction.curve import THIN
+from separatrix.units import Array, Metre, Ratio
 
-MODULUS_STEPS = np.geomspace(0.1, 10.0, 9)
-"""Moduli of the grid over the study's own."""
+FRICTIONS: tuple[Ratio, ...] = (0.02, 0.03, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4)
+"""Race frictions of the grid: those of the lubrication curves, and one between each two."""
 
 FINER = 8
 """Values to a step of the grid at which the nominal verdict is asked for."""
@@ -32,7 +31,7 @@ def friction_grid(
     state: RestitutionState,
     *,
     thicknesses: Sequence[Metre] = FILM_THICKNESSES,
-    frictions: Sequence[Ratio] = RACE_FRICTIONS,
+    frictions: Sequence[Ratio] = FRICTIONS,
 ) -> RestitutionGrid:
     """Restitution factor over film thickness and race friction, the rolling held as it is.
 
@@ -41,82 +40,36 @@ def friction_grid(
     InputError
         Bare races: there is no film to choose.
     """
-    material = _film_material(study)
-    curve = _curve(state, material, thicknesses, frictions)
-    axis = FilmAxis(
-        name="film.race_friction",
-        words="race friction",
-        unit="-",
-        values=curve.race_friction,
-        own=study.film.race_friction,
-    )
-    return RestitutionGrid(
-        x=_thickness(study.film, thicknesses), y=axis, restitution_factor=curve.restitution_factor
-    )
-
-
-def modulus_grid(
-    study: Study,
-    state: RestitutionState,
-    *,
-    thicknesses: Sequence[Metre] = FILM_THICKNESSES,
-    moduli: Sequence[Pascal] | None = None,
-) -> RestitutionGrid:
-    """Restitution factor over film thickness and the film's elastic modulus, at the study's race friction.
-
-    Raises
-    ------
-    InputError
-        Bare races: there is no film to choose.
-    """
-    own = _film_material(study)
-    chosen = own.elastic_modulus * MODULUS_STEPS if moduli is None else np.array(moduli, float)
-    rows = [
-        _curve(state, replace(own, elastic_modulus=float(e)), thicknesses, [study.film.race_friction])
-        for e in chosen
-    ]
-    axis = FilmAxis(
-        name="film.elastic_modulus",
-        words="film modulus",
-        unit="Pa",
-        values=chosen,
-        own=own.elastic_modulus,
-    )
-    return RestitutionGrid(
-        x=_thickness(study.film, thicknesses),
-        y=axis,
-        restitution_factor=np.array([row.restitution_factor[0] for row in rows]),
-    )
-
-
-def _film_material(study: Study) -> Material:
-    if study.film.material is None:
+    film, contacts = study.film, state.traction.bearing
+    if film.material is None:
         cure = "Give the film a material and a thickness."
         raise InputError(f"{study.name}: [film]", "has bare races, so there is no film to choose", cure=cure)
-    return study.film.material
-
-
-def _curve(
-    state: RestitutionState, material: Material, thicknesses: Sequence[Metre], frictions: Sequence[Ratio]
-) -> LubricationCurve:
-    return lubrication_curve(
-        state.traction.bearing.inner,
-        state.traction.bearing.outer,
-        material,
+    curve = lubrication_curve(
+        contacts.inner,
+        contacts.outer,
+        film.material,
         ball_cage_stiffness=state.restitution.ball_cage_stiffness,
         cage_mass=state.restitution.cage_mass,
         film_thicknesses=thicknesses,
         race_frictions=frictions,
     )
-
-
-def _thickness(film: Film, thicknesses: Sequence[Metre]) -> FilmAxis:
-    return FilmAxis(
-        name="film.thickness",
-        words="film thickness",
-        unit="m",
-        values=np.array(thicknesses, float),
-        own=film.thickness or 0.0,
+    return RestitutionGrid(
+        x=FilmAxis(
+            name="film.thickness",
+            words="film thickness",
+            unit="m",
+            values=curve.film_thickness,
+            own=film.thickness or 0.0,
+        ),
+        y=FilmAxis(
+            name="film.race_friction",
+            words="race friction",
+            unit="-",
+            values=curve.race_friction,
+            own=film.race_friction,
+        ),
+        restitution_factor=curve.restitution_factor,
+        holds_up_to=THIN * min(contacts.inner.ellipse.semi_minor, contacts.outer.ellipse.semi_minor),
     )
 
 
@@ -132,39 +85,30 @@ def stable_regions(
     Parameters
     ----------
     question : Question
-        With `judge`, the verdict is the model's own; without, STABLE is a margin of 0 or more.
+        With `judge`.
     values : ndarray
         Samples of all inputs, shape (sample, input) [SI].
     grid : RestitutionGrid
-        From `friction_grid` or `modulus_grid`.
+        From `friction_grid`.
     probability : float
         Of STABLE, wanted [-].
     """
     require_within("probability", probability, 0.5, 0.9999)
-    centre = central_values(question)
-    nominal = (question.nominal or question.evaluate)(centre)
-    sampled = evaluated(question, values)
-    ratio, ratio_nominal = (
-        damping_ratios(found.threshold - found.margin) / _of_the_grid(question, grid, at)[:, None]
-        for found, at in ((sampled, values), (nominal, centre))
-    )
     zeta = damping_ratios(grid.restitution_factor)
-    share = np.array([[_stable_share(question, values, sampled, z * ratio) for z in row] for row in zeta])
-    margin = nominal.threshold[0] - restitution_factors(zeta[:, :, None] * ratio_nominal[0])
-    fine = _finer(grid.x.values)
-    nominally = _nominal(question, centre, nominal, _between(grid.x.values, zeta, fine), ratio_nominal[0])
+    share = _shares(question, values, grid, zeta)
+    fine, centre = _finer(grid.x.values), central_values(question)
+    nominal = _shares(question, centre, grid, _between(grid.x.values, zeta, fine))
     return tuple(
         StableRegion(
             candidate=case.candidate,
             environment=case.environment,
             probability=probability,
             grid=grid,
-            margin=margin[:, :, c],
             probability_stable=share[:, :, c],
             rows=tuple(
                 RegionRow(
                     y=float(y),
-                    nominal=spans_above(fine, nominally[k, :, c], 1.0),
+                    nominal=spans_above(fine, nominal[k, :, c], 1.0),
                     probable=spans_above(grid.x.values, share[k, :, c], probability),
                 )
                 for k, y in enumerate(grid.y.values)
@@ -172,6 +116,18 @@ def stable_regions(
         )
         for c, case in enumerate(question.cases)
     )
+
+
+def _shares(question: Question, values: Array, grid: RestitutionGrid, zeta: Array) -> Array:
+    """Share of the samples that are STABLE at damping ratios of shape (y, x), shape (y, x, case)."""
+    found, judge = evaluated(question, values), question.judged()
+    ratio = damping_ratios(found.threshold - found.margin) / _of_the_grid(question, grid, values)[:, None]
+    rows = []
+    for row in zeta:
+        factor = restitution_factors((row[:, None, None] * ratio).reshape(-1, ratio.shape[1]))
+        stable = is_stable(judge(np.tile(values, (row.size, 1)), factor))
+        rows.append(stable.reshape(row.size, *ratio.shape).mean(axis=1))
+    return np.array(rows)
 
 
 def _finer(x: Array) -> Array:
@@ -188,25 +144,6 @@ def _finer(x: Array) -> Array:
 def _between(x: Array, zeta: Array, fine: Array) -> Array:
     """Damping ratios at finer values of x, straight in their logarithm, shape (y, fine)."""
     return np.asarray(np.exp([np.interp(fine, x, row) for row in np.log(zeta)]))
-
-
-def _nominal(question: Question, centre: Array, nominal: Evaluated, zeta: Array, ratio: Array) -> Array:
-    """1 where the verdict with every input at its centre is STABLE, shape (y, fine, case)."""
-    factor = restitution_factors(zeta[:, :, None] * ratio)
-    if question.judge is None:
-        return np.asarray((nominal.threshold[0] >= factor).astype(float))
-    flat = factor.reshape(-1, factor.shape[-1])
-    judged = is_stable(question.judge(np.repeat(centre, len(flat), axis=0), flat))
-    return np.asarray(judged.astype(float).reshape(factor.shape))
-
-
-def _stable_share(question: Question, values: Array, sampled: Evaluated, zeta: Array) -> Array:
-    factor = restitution_factors(zeta)
-    if question.judge is None:
-        stable: NDArray[np.bool_] = sampled.threshold >= factor
-    else:
-        stable = is_stable(question.judge(values, factor))
-    return np.asarray(stable.mean(axis=0))
 
 
 def _of_the_grid(question: Question, grid: RestitutionGrid, values: Array) -> Array:

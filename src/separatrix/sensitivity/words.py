@@ -26,6 +26,9 @@ LEAST_WORTH = 0.5
 NAMED = 3
 """Factors or tests named in a sentence."""
 
+LISTED = 6
+"""Tests that have a sentence of their own."""
+
 LEAST_SHARE = 0.005
 """Smaller shares are not named."""
 
@@ -40,6 +43,8 @@ _WORDS = {
     "film.race_friction": "the friction between ball and race",
     "cage.ball_cage_stiffness": "the pocket's stiffness",
     "cage.ball_cage_friction": "the pocket friction",
+    "stability.duration": "the length of a run",
+    "stability.ball_scatter": "the scatter of the balls at the start of a run",
 }
 
 
@@ -50,15 +55,23 @@ def input_words(name: str) -> str:
     --------
     >>> input_words("film.thickness"), input_words("operation.axial_load")
     ("the film's thickness", 'the axial load')
-    >>> input_words("ranking.Armalon.liquid nitrogen, 440C")
-    'the pocket friction of Armalon in liquid nitrogen, 440C'
+    >>> input_words("ranking.PEEK 450.material.elastic_modulus")
+    'the elastic modulus of PEEK 450'
     """
-    section, _, rest = name.partition(".")
-    if section == "ranking" and "." in rest:
-        candidate, _, environment = rest.partition(".")
-        return f"the pocket friction of {case_name(candidate, environment)}"
-    parts = [part.replace("_", " ") for part in name.split(".") if part != "operation"]
-    return _WORDS.get(name, "the " + "'s ".join(parts))
+    if name in _WORDS:
+        return _WORDS[name]
+    material, candidate, quantity = name.rpartition(".material.")
+    if candidate:
+        return f"the {_spaced(quantity)} of {material.removeprefix('ranking.')}"
+    section, *rest = name.split(".")
+    if len(rest) > 1:
+        return f"the {_spaced(rest[1])} of the {_spaced(rest[0])}"
+    owner = "the" if section == "operation" else f"the {section}'s"
+    return f"{owner} {_spaced(rest[0])}"
+
+
+def _spaced(key: str) -> str:
+    return "Poisson's ratio" if key == "poisson_ratio" else key.replace("_", " ")
 
 
 def case_name(candidate: str, environment: str) -> str:
@@ -103,16 +116,21 @@ def next_test_sentences(answer: NextTest) -> tuple[str, ...]:
     if not answer.tests:
         return ("No test was asked about.", *border)
     best, told = answer.tests[0], [one for one in answer.tests if _is_worth_telling(one)]
-    if best.settled.value >= LEAST_WORTH:
-        listed = tuple(test_sentence(one, answer) for one in told)
-    else:
-        others = (test_sentence(one, answer) for one in told if one is not best)
-        listed = (_none_settles(best, answer), *others)
-    return (*listed, *_rest(answer, told), *border)
+    first = test_sentence if best.settled.value >= LEAST_WORTH else _none_settles
+    others = (test_sentence(one, answer) for one in told[:LISTED] if one is not best)
+    return (first(best, answer), *others, *_less(told[LISTED:], answer), *_rest(answer, told), *border)
 
 
 def _is_worth_telling(test: TestGain) -> bool:
     return test.settled.low > 0.0 and _number(test.settled.value) != "0"
+
+
+def _less(tests: Sequence[TestGain], answer: NextTest) -> tuple[str, ...]:
+    """Say of how many tests more something could be told."""
+    if not tests:
+        return ()
+    what = "One more test" if len(tests) == 1 else f"Each of {len(tests)} more tests"
+    return (f"{what} would settle less: {_expected(tests[0].settled, answer)} at most.",)
 
 
 def _rest(answer: NextTest, told: Sequence[TestGain]) -> tuple[str, ...]:
@@ -200,14 +218,18 @@ def allowed_sentence(answer: AllowedFriction) -> str:
     who = "A new material" if answer.all_alike else f"A new material with the pockets of {_and(answer.like)}"
     if answer.most is None or answer.spans[-1].to_edge:
         return f"{who}: {answer.reason}"
-    nominal = "none" if answer.most_nominal is None else f"{answer.most_nominal:.3f}"
     most = f"{answer.most.value:.3f} ({answer.most.low:.3f} to {answer.most.high:.3f})"
-    scatter = f", with a scatter of {percent(answer.scatter)} of it," if answer.scatter > 0.0 else ""
+    scatter = f" if it scatters by {percent(answer.scatter)} of itself" if answer.scatter > 0.0 else ""
     text = (
-        f"{who} may have a pocket friction of at most {most}{scatter} to be stable with a probability "
-        f"of {percent(answer.probability)} (nominally {nominal})."
+        f"{who} may have a pocket friction of at most {most}{scatter}, to be stable with a probability "
+        f"of {percent(answer.probability)}; {_nominally(answer)}."
     )
     return f"{text} {answer.reason}".rstrip()
+
+
+def _nominally(answer: AllowedFriction) -> str:
+    at_means = "with every input at its mean and no scatter"
+    return f"{'none' if answer.most_nominal is None else f'{answer.most_nominal:.3f}'} {at_means}"
 
 
 def region_sentences(region: StableRegion) -> tuple[str, ...]:
