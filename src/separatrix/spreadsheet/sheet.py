@@ -147,9 +147,11 @@ class SheetReader:
 
     def _float(self, text: str) -> float:
         try:
-            return float(text)
+            if text.isascii() and "_" not in text:
+                return float(text)
         except ValueError:
-            raise self._damaged(f'"{printable(text)}" is no number') from None
+            pass
+        raise self._damaged(f'"{printable(text)}" is no number')
 
     def _shared(self, text: str) -> str:
         strings = self._workbook.strings

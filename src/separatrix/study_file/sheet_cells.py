@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -81,6 +82,8 @@ class SheetText:
         if cell.format == "date":
             cure = "Format the cell as a number, and enter the value again."
             raise InputError(where, "holds a date or a time of day", cure=cure)
+        if isinstance(cell.value, float) and not math.isfinite(cell.value):
+            raise InputError(where, "must be a finite number", "", shown(cell.value))
         if isinstance(cell.value, str) and len(cell.value) > LONGEST_TEXT:
             raise InputError(where, f"is longer than {LONGEST_TEXT} characters")
 
