@@ -231,18 +231,27 @@ def printable(text: str, longest: int = LONGEST) -> str:
 
 
 def _scaled(number: str, scale: str, text: str, where: str) -> float:
-    from fractions import Fraction
-
     factor, _, offset = scale.removesuffix(" pi").partition(" + ")
-    top, _, bottom = factor.partition("/")
-    exact = (Fraction(number) + Fraction(offset or "0")) * Fraction(top) / Fraction(bottom or "1")
+    (a, b), (c, d), (e, f) = _integers(number), _integers(offset or "0"), _integers(factor)
+    top, bottom = (a * d + c * b) * e, b * d * f
     try:
-        value = float(exact) * (math.pi if scale.endswith(" pi") else 1.0)
+        value = top / bottom * (math.pi if scale.endswith(" pi") else 1.0)  # of integers: rounded once
     except OverflowError:
         value = math.inf
-    if math.isinf(value) or (value == 0.0 and exact != 0):
+    if math.isinf(value) or (value == 0.0 and top != 0):
         raise InputError(where, "must be a number that a computer can hold", "", shown(text))
     return value
+
+
+def _integers(text: str) -> tuple[int, int]:
+    """Numerator and denominator of a decimal number, or of a ratio; `fractions` takes long to import."""
+    if "/" in text:
+        (a, b), (c, d) = map(_integers, text.split("/"))
+        return a * d, b * c
+    mantissa, _, exponent = text.lower().partition("e")
+    whole, _, part = mantissa.partition(".")
+    power = int(exponent or 0) - len(part)
+    return int(whole + part) * 10 ** max(power, 0), 10 ** max(-power, 0)
 
 
 def _needs_unit(value: object, unit: str, where: str) -> InputError:

@@ -7,7 +7,8 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.library import joined, read_library
+from separatrix.library import joined, read_library, reading
+from separatrix.library.collection import shipped_records
 from separatrix.study_file import read_study
 
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
@@ -258,6 +259,27 @@ def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
     (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
     with pytest.raises(InputError, match=r"^materials.toml, line 2: \[cage_material\] Ours.elastic_modulus"):
         read_study(tmp_path / "case.toml")
+
+
+def test_a_wrong_study_is_refused_before_records_are_read_that_it_does_not_name(tmp_path, monkeypatch):
+    """No fluid, and one steel of four: a refusal takes milliseconds, most of them for reading records."""
+    read = []
+    record = reading._Reading.record
+    monkeypatch.setattr(
+        reading._Reading, "record", lambda self, *a: read.append((self.file.label, a[1])) or record(self, *a)
+    )
+    shipped_records.cache_clear()
+    (tmp_path / "case.toml").write_text(
+        'extends = "cryogenic-turbopump"\n[cage]\npocket_clearance = "5 mm"\n[ranking]\nmaterials = ["Armalon"]\n'
+    )
+    with pytest.raises(InputError, match="pocket_clearance"):
+        read_study(tmp_path / "case.toml")
+    assert sorted(read) == [
+        ("bearing_materials.toml", "440C"),
+        ("cage_materials.toml", "Armalon"),
+        ("films.toml", "PTFE transfer film"),
+        ("pin-on-disk-77K.toml", "pin-on-disk-77K"),
+    ]
 
 
 def test_one_name_in_two_libraries_is_refused(tmp_path):

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from separatrix.errors import DataError, InputError
-from separatrix.library.reading import Content, read_library
+from separatrix.library.reading import Content, Shipped, read_library
 from separatrix.library.records import KINDS, PROPERTIES, Choice, FrictionTable, LibraryFile, Record, choose
 from separatrix.study import Candidate, Material
 from separatrix.toml_text import path_text
@@ -46,9 +45,13 @@ class Library:
         """Records of one kind by name, the shipped ones first."""
         return {**shipped_records(kind), **self.own.get(kind, {})}
 
+    def find(self, kind: str, name: str) -> Record | FrictionTable | None:
+        """One record by its exact name, None if there is none; others of its kind are not read."""
+        return self.own.get(kind, {}).get(name) or shipped_records(kind).get(name)
+
     def names(self, kind: str) -> tuple[str, ...]:
         """Names of one kind, in the order of the files."""
-        return tuple(self.records(kind))
+        return tuple(dict.fromkeys([*shipped_records(kind), *self.own.get(kind, {})]))
 
     def record(self, kind: str, name: str) -> Record:
         """One material or fluid by its exact name.
@@ -58,7 +61,7 @@ class Library:
         DataError
             There is none of that name.
         """
-        found = self.records(kind).get(name)
+        found = self.find(kind, name)
         if not isinstance(found, Record):
             raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
         return found
@@ -82,7 +85,7 @@ class Library:
             There is none of that name.
         """
         kind = "friction table"
-        found = self.records(kind).get(name)
+        found = self.find(kind, name)
         if not isinstance(found, FrictionTable):
             raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
         return found
@@ -104,6 +107,9 @@ class Library:
 
     def fluid(self, name: str) -> Record | None:
         """Record of a fluid by its name or another name of it, in any case of letters; None if unknown."""
+        exact = self.find("fluid", name)
+        if isinstance(exact, Record):  # and no other is read
+            return exact
         wanted = name.strip().casefold()
         fluids = [record for record in self.records("fluid").values() if isinstance(record, Record)]
         known = {alias.casefold(): r for r in fluids for alias in r.facts.get("aliases") or ()}
@@ -162,7 +168,7 @@ def joined(contents: Sequence[Content]) -> Library:
             _refuse_hiding(kind.get(record.name) or shipped_records(record.kind).get(record.name), record)
             kind[record.name] = record
     for name, records in own.items():
-        _refuse_alike([*(shipped_records(name) | records).values()])
+        _refuse_alike({**shipped_records(name), **records}.values())
     return Library(files=tuple(content.file for content in contents), own=own)
 
 
@@ -182,7 +188,7 @@ def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTab
         raise InputError(where, f"has the name of a shipped {new.kind}", "", shown(new.name), cure)
 
 
-def _refuse_alike(records: Sequence[Record | FrictionTable]) -> None:
+def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
     """Refuse a name, or another name of a fluid, that one before it has but for capitals and spaces."""
     known: dict[str, Record | FrictionTable] = {}
     for record in records:
@@ -206,10 +212,7 @@ def place(record: Record | FrictionTable) -> str:
 @cache
 def shipped_records(kind: str) -> Records:
     """Records of one kind that come with the package, by name."""
-    folder = Path(str(files("separatrix.library") / "data"))
-    return {
-        record.name: record for record in read_library(folder / SHIPPED_FILES[kind], shipped=True).records
-    }
+    return Shipped(Path(__file__).with_name("data") / SHIPPED_FILES[kind])
 
 
 def shipped() -> Library:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,7 @@ class Content:
     records: tuple[Record | FrictionTable, ...]
 
 
-def read_library(path: Path, *, shipped: bool = False) -> Content:
+def read_library(path: Path) -> Content:
     """Records of a library file.
 
     Raises
@@ -46,15 +46,46 @@ def read_library(path: Path, *, shipped: bool = False) -> Content:
     InputError
         Everything that is wrong, on one line: file, line, record, rule, value, cure.
     """
-    return library_of_text(read_text(path, LIBRARY), label_of(path), shipped=shipped)
+    return library_of_text(read_text(path, LIBRARY), label_of(path))
 
 
-def library_of_text(given: str, label: str, *, shipped: bool = False) -> Content:
+def library_of_text(given: str, label: str) -> Content:
     """Records of the text of a library file."""
     data, lines = parsed(given, label, LIBRARY)
+    return _Reading(_file(given, label, shipped=False), lines).content(data)
+
+
+def _file(given: str, label: str, *, shipped: bool) -> LibraryFile:
     checksum = hashlib.sha256(given.encode()).hexdigest()
-    file = LibraryFile(label=label, checksum=checksum, shipped=shipped)
-    return _Reading(file, lines).content(data)
+    return LibraryFile(label=label, checksum=checksum, shipped=shipped)
+
+
+class Shipped(Mapping[str, Record | FrictionTable]):
+    """Records of a shipped file, of one kind, by name; each is read when asked for, as a study needs few.
+
+    Raises
+    ------
+    InputError
+        A record is wrong, when it is asked for.
+    """
+
+    def __init__(self, path: Path) -> None:
+        given = read_text(path, LIBRARY)
+        data, lines = parsed(given, label_of(path), LIBRARY)
+        self._reading = _Reading(_file(given, label_of(path), shipped=True), lines)
+        ((self._section, self._items),) = data.items()
+        self._read: dict[str, Record | FrictionTable] = {}
+
+    def __getitem__(self, name: str) -> Record | FrictionTable:
+        if name not in self._read:
+            self._read[name] = self._reading.record(self._section, name, self._items[name])
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
 
 
 class _Reading:
@@ -96,13 +127,15 @@ class _Reading:
         if len(value) > MOST_RECORDS:
             self.problems.append(InputError(where, f"holds more than {MOST_RECORDS} records"))
             return []
-        read = (self.attempt(self.record, section, name, item) for name, item in value.items())
+        read = (
+            self.attempt(self.record, section, name, item)
+            for name, item in value.items()
+            if len(self.problems) <= MOST_PROBLEMS
+        )
         return [record for record in read if record is not None]
 
-    def record(self, section: str, name: str, item: Any) -> Record | FrictionTable | None:
-        """Read one record, unless too much is wrong already."""
-        if len(self.problems) > MOST_PROBLEMS:
-            return None
+    def record(self, section: str, name: str, item: Any) -> Record | FrictionTable:
+        """Read one record."""
         key = f"{section}.{name}"
         line = self.lines.get(key)
         at = f"{self.place(key, section)}: [{section}] {printable(name)}"

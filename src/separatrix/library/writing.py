@@ -7,7 +7,6 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +53,7 @@ def _target(library: Path, source: Path) -> Path:
     if library.suffix != ".toml":
         raise InputError(where, "must end in .toml", cure="A library is a TOML file.")
     target = library.resolve()
-    if Path(str(files("separatrix"))).resolve() in target.parents:
+    if Path(__file__).resolve().parents[1] in target.parents:
         raise InputError(where, "belongs to separatrix", cure="Add to a library of your own.")
     if source.exists() and target == source.resolve():
         raise InputError(where, "is the file to add itself")

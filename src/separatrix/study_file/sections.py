@@ -109,12 +109,11 @@ def build_study(document: Document, name: str) -> Study:
         document.problems.append(InputError(document.label, rule))
     if document.problems:
         raise together(document.problems)
-    records = used_records(library, document)
     try:
-        study = Study(name=name, title=title or name, origins=_origins(document), records=records, **parts)
+        study = Study(name=name, title=title or name, origins=_origins(document), **parts)
     except InputError as error:
         raise relocated(document, error) from None
-    return _with_distributions(document, study)
+    return _with_distributions(document, replace(study, records=used_records(library, document)))
 
 
 def _with_distributions(document: Document, study: Study) -> Study:

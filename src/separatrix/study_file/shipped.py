@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 
 @cache
 def shipped_studies() -> dict[str, Path]:
     """Path of each shipped example by its name."""
-    folder = Path(str(files("separatrix") / "examples"))
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    folder = Path(__file__).parents[1] / "examples"
+    return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix == ".toml"}
 
 
 def template() -> str:
@@ -21,4 +20,4 @@ def template() -> str:
 
 def template_path() -> Path:
     """Where the template stands."""
-    return Path(str(files("separatrix.study_file") / "template.toml"))
+    return Path(__file__).with_name("template.toml")
