@@ -10,6 +10,8 @@ from minimal_xlsx import Fault, Formula, Shown, parts, workbook, zipped
 
 from separatrix.errors import InputError
 from separatrix.tribometer import sheet_numbers, tdms, xlsx
+from separatrix.tribometer.column_map import column_map
+from separatrix.tribometer.reading import read_log
 
 nptdms = pytest.importorskip("nptdms")
 
@@ -22,6 +24,13 @@ def log(tmp_path, sheets):
     path = tmp_path / "log.xlsx"
     path.write_bytes(workbook(sheets))
     return xlsx.read_tables(path)
+
+
+def logs(tmp_path, sheets, columns=None):
+    """Return the logs of a workbook with these sheets."""
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(workbook(sheets))
+    return read_log(path, column_map(columns or {}))
 
 
 def same(columns, numbers):
@@ -71,6 +80,88 @@ def test_times_of_day_become_seconds(tmp_path):
     assert np.diff(table.columns[0]) == pytest.approx(np.ones(4), abs=1e-10)
 
 
+def test_dates_count_from_the_first(tmp_path):
+    """A date of 2026 is 46 000 days: its seconds would hide those of the test."""
+    rows = [[Shown(46_000.4 + i / 86_400, 1), 0.1] for i in range(5)]
+    (table,) = log(tmp_path, {"a": [["Time", "COF"], *rows]})
+    # a date near 46 000 days is kept to 7e-12 of one, which is 6e-7 s
+    assert table.columns[0] == pytest.approx(np.arange(5.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("header", [["Time [s]", "COF [%]"], ["Time [s]", "COF"]])
+def test_a_cell_shown_as_a_percentage_holds_a_fraction(tmp_path, header):
+    """What shows 12 % is saved as 0.12, also below a header that says percent."""
+    rows = [[float(i), Shown(0.12, 2)] for i in range(5)]
+    (found,) = logs(tmp_path, {"a": [header, *rows]})
+    assert found.friction.tolist() == [0.12] * 5
+
+
+def test_words_stand_in_columns_that_are_not_read(tmp_path):
+    """Sample and status in every row, remarks in some, a mean computed beside the table, cells of no name."""
+    rows = [["A3", float(i), 0.1, "ok", "pump off" if i == 3 else None, None] for i in range(9)]
+    rows[2][5], rows[4][5] = Formula("AVERAGE(C2:C9)"), 3.0
+    (found,) = logs(tmp_path, {"a": [["Sample", "Time [s]", "COF", "Status", "Remark"], *rows]})
+    assert found.time.tolist() == list(range(9))
+
+
+def test_merged_headers_have_their_text_in_the_upper_row(tmp_path):
+    """Time over two rows, and "Forces" over its two columns."""
+    header = [["Time [s]", "Forces", None], [None, "Ff [N]", "Fn [N]"]]
+    (found,) = logs(tmp_path, {"a": header + [[float(i), 1.0, 10.0] for i in range(5)]})
+    assert found.friction.tolist() == [0.1] * 5
+
+
+def test_rows_of_numbers_above_the_names_are_metadata(tmp_path):
+    """A single row with its names above it, before the names of the table."""
+    above = [["Load", "Speed"], [5.0, 2.0]]
+    (table,) = log(tmp_path, {"a": above + ROWS + NUMBERS})
+    assert table.headers == ("Time", "COF", "Wear")
+    assert same(table.columns, NUMBERS)
+
+
+def test_units_in_words_are_a_row_of_units(tmp_path):
+    """As in text."""
+    header = [["Zeit", "Reibwert", "Temperatur"], ["Minuten", "ohne", "Grad C"]]
+    (found,) = logs(tmp_path, {"a": header + [[float(i), 0.1, 20.0] for i in range(5)]})
+    assert found.time.tolist() == [60.0 * i for i in range(5)]
+    assert found.conditions.temperature == 293.15
+
+
+BARE = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
+BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
+
+
+@pytest.mark.parametrize(
+    ("sheets", "given"),
+    [
+        ({"a": [["Time [s]", "COF"], *BARE]}, {}),
+        ({"a": [["Time [s]", "COF"], ["seen by", "A. N."], *BARE]}, {"header_line": 1}),
+        ({"a": [["Time", "COF"], ["made", "today"], ["s", "-"], *BARE]}, {"header_line": 1, "units_line": 3}),
+        ({"a": [["Time [s]", "COF"], *BARE], "b": [[1.0, 2.0]] * 3}, {"tables": ["a"]}),
+    ],
+)
+def test_the_column_map_is_heard_for_workbooks_too(tmp_path, sheets, given):
+    """Marks of missing values, rows of names and units, the sheets to read."""
+    (found,) = logs(tmp_path, sheets, {"format": {"missing": ["OVL"], **given}})
+    assert found.time.tolist() == [0.0, 1.0, 3.0, 4.0]
+
+
+def test_columns_of_a_sheet_may_be_given_by_their_numbers(tmp_path):
+    """Without any names."""
+    (found,) = logs(tmp_path, {"a": BARE}, BY_NUMBER | {"format": {"missing": ["OVL"]}})
+    assert found.time.tolist() == [0.0, 1.0, 3.0, 4.0]
+
+
+def test_headers_of_an_instrument_are_known_in_a_workbook(tmp_path):
+    """Rtec's CSV saved as a workbook: its names, its timestamp in seconds, and its steps."""
+    rows = [[float(i // 5), float(i % 5), 0.1] for i in range(10)]
+    found = logs(tmp_path, {"a": [["Step", "Timestamp", "DAQ.COF ()"], *rows]})
+    assert [(one.source, one.rows) for one in found] == [
+        ("log.xlsx, a, step 0", 5),
+        ("log.xlsx, a, step 1", 5),
+    ]
+
+
 def test_a_formula_has_its_saved_value(tmp_path):
     """Nothing is computed again: the value saved with the formula is taken."""
     rows = [[float(i), Formula(f"D{i}/10", 0.1), 1.0] for i in range(5)]
@@ -95,9 +186,12 @@ def test_many_rows_at_once_are_those_read_one_by_one(tmp_path, monkeypatch, gap)
 
 
 def test_plain_rows_are_indeed_read_at_once(tmp_path, monkeypatch):
-    """A table of plain numbers never meets the row by row reading, which takes seven times as long."""
+    """Plain numbers, whatever stands beside them, never meet the row by row reading, seven times as slow."""
     monkeypatch.setattr(xlsx._Columns, "read", None)
     assert same(log(tmp_path, {"a": ROWS + NUMBERS})[0].columns, NUMBERS)
+    noted = [[*row, "ok" if i % 3 else None, Formula("A1", 1.0)] for i, row in enumerate(NUMBERS)]
+    (found,) = logs(tmp_path, {"a": [["Time [s]", "COF", "Wear [um]", "Status", "Sum"], *noted]})
+    assert found.friction.tolist() == [row[1] for row in NUMBERS]
 
 
 def test_what_openpyxl_writes_is_read(tmp_path):

@@ -178,7 +178,7 @@ LOGS = [
     ("no names", {"a": ROWS[2:]}, "sheet a, row 1 has numbers without names above them"),
     ("no table", {"a": ROWS[:2]}, "has no sheet with rows of numbers under a row of names"),
     ("second table", {"a": [*ROWS, ["end of test"], [1.0, 2.0]]}, "row 9 has numbers again, after the table ended with row 8"),
-    ("unnamed column", {"a": [*ROWS, [5.0, 0.1, 3.0]]}, "cell C8 stands in a column that has no name"),
+    ("percentages in part", rows(5, 2, Shown(0.5, 2)), "column B holds both plain numbers and percentages"),
     ("external link", linked(rows(5, 2, Formula("[1]a!A1", 0.1))), "cell B5 is a formula in a workbook that takes values from other files"),
     ("dates in part", rows(5, 1, Shown(0.5, 1)), "column A holds both plain numbers and dates"),
     ("dates with a unit", {"a": [["Time", "COF"], ["min", "-"], [Shown(0.5, 1), 0.1], [Shown(0.6, 1), 0.1]]}, 'column A holds dates or times of day, which have no unit; got "min"'),

@@ -108,10 +108,11 @@ def is_number(field: str) -> bool:
 
 
 def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> str:
-    scores = {
-        candidate: sum(_is_data(fields(line, candidate), missing, candidate) for line in lines)
-        for candidate in _NAMES
-    }
+    scores = dict.fromkeys(_NAMES, 0)
+    for line in lines:
+        for candidate in scores:
+            if candidate in line or (candidate == " " and "\t" in line):
+                scores[candidate] += _is_data(fields(line, candidate), missing, candidate)
     best = max(scores, key=lambda candidate: scores[candidate])
     if scores[best] == 0:
         cure = "It needs a line of column names above at least two rows; say where with a column map."

@@ -10,7 +10,7 @@ from separatrix import units
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import TextFormat
 from separatrix.tribometer.dialect import Dialect, is_number
-from separatrix.tribometer.names import ALIASES, ranks
+from separatrix.tribometer.names import ALIASES, NONE, ranks
 from separatrix.units import printable
 
 _OTHER_UNITS = (
@@ -20,20 +20,7 @@ _OTHER_UNITS = (
 _UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
-    + [
-        *_OTHER_UNITS.split(),
-        "-",
-        "--",
-        "",
-        "n.a.",
-        "cycles",
-        "laps",
-        "rev",
-        "revs",
-        "u",
-        "\u00b5m",
-        "\u03bcm",
-    ]
+    + [*_OTHER_UNITS.split(), *NONE, "n.a.", "cycles", "laps", "rev", "revs", "u", "\u00b5m", "\u03bcm"]
 )
 
 

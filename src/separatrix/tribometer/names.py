@@ -102,7 +102,7 @@ SYMBOLS = {
 }
 """Signs that may stand behind a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
 
-_NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
+NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 _COUNTS = frozenset(
     {"cycle", "cycles", "lap", "laps", "rev", "revs", "revolution", "revolutions", "turn", "turns"}
     | {"u", "umdr", "tr", "tours", "#", "n", "count"}
@@ -142,7 +142,7 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
             return Scale(divisor=100.0)
         if meaning == "friction" and plain(spelling) in SYMBOLS["friction"]:
             return Scale()
-        fits = spelling.casefold() in _NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
+        fits = spelling.casefold() in NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
         return Scale() if fits else None
     return scale_in(spelling, si)
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import ColumnMap
-from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, ColumnRead, RawLog, RawTable, Wanted
 from separatrix.units import printable, shown
@@ -112,19 +111,26 @@ def _content(path: Path, name: str) -> bytes:
 def _from_workbook(file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer import xlsx
 
-    return _logs(xlsx.read_tables(file.path), file, "Excel workbook", PLAIN)
+    form, wanted = file.chosen.format, _wanted(file)
+    tables = xlsx.read_tables(file.path, form, wanted, headless=_by_number(file.chosen))
+    return _logs(tables, file, "Excel workbook")
 
 
 def _from_tdms(file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer import tdms
 
-    return _logs(tdms.read_tables(file.path), file, "LabVIEW TDMS", PLAIN)
+    return _logs(tdms.read_tables(file.path), file, "LabVIEW TDMS")
+
+
+def _by_number(chosen: ColumnMap) -> bool:
+    """True where columns are given by their numbers, so that they need no names."""
+    return any(choice.number is not None for choice in chosen.columns.values())
 
 
 def _from_text(raw: bytes, file: _File) -> tuple[RawLog, ...]:
     from separatrix.tribometer.encoding import text_of
     from separatrix.tribometer.formats import layout_of
-    from separatrix.tribometer.steps import joined, named, split_by_step
+    from separatrix.tribometer.steps import joined, named
     from separatrix.tribometer.text import read_tables
 
     form = file.chosen.format
@@ -132,10 +138,9 @@ def _from_text(raw: bytes, file: _File) -> tuple[RawLog, ...]:
     if not text[:65536].strip():
         raise InputError(file.name, "is empty")
     layout = layout_of(text[:20_000].decode(errors="ignore"))
-    headless = any(choice.number is not None for choice in file.chosen.columns.values())
-    tables, dialect = read_tables(text, file.name, form, layout, _wanted(file, layout), headless=headless)
+    wanted, headless = _wanted(file, layout), _by_number(file.chosen)
+    tables, dialect = read_tables(text, file.name, form, layout, wanted, headless=headless)
     tables = named(joined(tables, _abscissae(file, layout)))
-    tables = [part for table in tables for part in split_by_step(table, layout)]
     return _logs(tables, file, f"{layout.name} ({encoding}, {dialect.words})", layout)
 
 
@@ -151,15 +156,23 @@ def _understood(headers: Sequence[str], units: Sequence[str], file: _File, layou
     return {meaning: column.index for meaning, column in found.used.items()}
 
 
-def _wanted(file: _File, layout: Layout) -> Wanted:
-    """Which columns of a table are to be read."""
+def _wanted(file: _File, layout: Layout | None = None) -> Wanted:
+    """Which columns of a table are to be read; without a layout, that which the headers tell."""
     from separatrix.tribometer.steps import step_column
 
     def wanted(headers: Sequence[str], units: Sequence[str]) -> list[int]:
-        used = set(_understood(headers, units, file, layout).values())
-        return sorted(used | step_column(headers, layout)) if used else []
+        known = layout or _layout_of(headers)
+        used = set(_understood(headers, units, file, known).values())
+        return sorted(used | step_column(headers, known)) if used else []
 
     return wanted
+
+
+def _layout_of(headers: Sequence[str]) -> Layout:
+    """Layout of the instrument whose text was put into a workbook."""
+    from separatrix.tribometer.formats import layout_of
+
+    return layout_of("\t".join(headers))
 
 
 def _abscissae(file: _File, layout: Layout) -> Wanted:
@@ -172,16 +185,21 @@ def _abscissae(file: _File, layout: Layout) -> Wanted:
     return abscissae
 
 
-def _logs(tables: Sequence[RawTable], file: _File, format_name: str, layout: Layout) -> tuple[RawLog, ...]:
+def _logs(
+    tables: Sequence[RawTable], file: _File, format_name: str, layout: Layout | None = None
+) -> tuple[RawLog, ...]:
     """The log of each table; where only some are logs, the refusal says how to leave out the others."""
     from separatrix.tribometer.raw import raw_log
+    from separatrix.tribometer.steps import split_by_step
 
     found: list[tuple[str, RawLog]] = []
     wrong: InputError | None = None
-    for table in _wanted_tables(tables, file.name, file.chosen):
+    parts = [p for table in tables for p in split_by_step(table, layout or _layout_of(table.headers))]
+    for table in _wanted_tables(parts, file.name, file.chosen):
         source = f"{file.name}, {table.name}" if table.name else file.name
+        known = layout or _layout_of(table.headers)
         try:
-            log = raw_log(table, source, file.checksum, format_name, file.chosen, file.given, layout)
+            log = raw_log(table, source, file.checksum, format_name, file.chosen, file.given, known)
             found.append((table.name, log))
         except InputError as error:
             wrong = wrong or error

@@ -24,7 +24,7 @@ _FLOAT = re.compile(
 )
 """What numpy's reader takes for a number."""
 
-_FORTRAN = re.compile(rb"(?<=[0-9.])[dD](?=[+-]?[0-9])")
+_FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")
 """The exponent of a double in Fortran."""
 
 _COMMA = bytes.maketrans(b",.", b".'")
@@ -249,7 +249,9 @@ def _numbers(
     try:
         return _loaded(body, dialect.separator, needed)
     except ValueError:
-        marked = _with_missing(_FORTRAN.sub(b"e", body), dialect)
+        if b"D" in body or b"d" in body:
+            body = _FORTRAN.sub(b"e", body)
+        marked = _with_missing(body, dialect)
     try:
         return _loaded(marked, dialect.separator, needed)
     except ValueError:

@@ -1,15 +1,16 @@
 """Tables of numbers in the sheets of an .xlsx workbook.
 
 A table is a block of rows of numbers under a row of names, perhaps with a row of units between them; what
-stands above as name and value is metadata. A cell that is empty, that holds a mark for a missing value or
-that shows an error has no value. A formula has the value that was saved with it.
+stands above as name and value is metadata. Only the columns that are asked for are read: words may stand in
+the others. A cell that is empty, that holds a mark for a missing value or that shows an error has no value. A
+formula has the value that was saved with it; dates and times of day are seconds since the first row.
 """
 
 from __future__ import annotations
 
 import re
 from array import array
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
@@ -18,12 +19,11 @@ import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.spreadsheet import Cell, Row, Workbook, cell_name, column_name, open_workbook
-from separatrix.tribometer.log import RawTable
+from separatrix.tribometer.column_map import TextFormat
+from separatrix.tribometer.header import is_units
+from separatrix.tribometer.log import RawTable, Wanted
 from separatrix.tribometer.sheet_numbers import plain_numbers
-from separatrix.units import UNITS, Array, printable, shown
-
-MISSING = frozenset({"", "x", "-", "--", "---", "na", "n/a", "nan", "none", "null"})
-"""Marks of a missing value, in lower case."""
+from separatrix.units import Array, printable, shown
 
 MOST_HEADER_ROWS = 2000
 MOST_COLUMNS = 1000
@@ -31,114 +31,150 @@ LEAST_NUMBERS = 2
 """Numbers in a row that make it one of a table: friction, and what it is logged against."""
 
 SECONDS_IN_A_DAY = 86_400.0
-_OTHER_UNITS = ("", "-", "1", "%", "rpm", "C", "°C", "degC", "cycles", "rev", "laps", "V", "mV", "dB", "ppm")
-_BRACKETED = re.compile(r"[\[(].{0,20}[\])]")
+_NOTHING_SAID = TextFormat()
+
+
+def _every(headers: Sequence[str], units: Sequence[str]) -> Sequence[int]:  # noqa: ARG001  one signature for all
+    return range(len(headers))
 
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """Where a refusal stands."""
+    """A sheet, and what is asked of it."""
 
     workbook: Workbook
     name: str
+    form: TextFormat
+    wanted: Wanted
+    headless: bool
 
     def at(self, place: str = "") -> str:
         """File, sheet, and a place in it."""
         where = f"{self.workbook.label}, sheet {printable(self.name)}"
         return f"{where}, {place}" if place else where
 
+    def is_missing(self, cell: Cell) -> bool:
+        """True for a cell that is empty, or marked as such."""
+        if isinstance(cell.value, str):
+            return cell.value.strip().casefold() in self.form.missing
+        return cell.value is None
 
-def read_tables(path: Path) -> list[RawTable]:
+    def is_data(self, row: Row) -> bool:
+        """True for a row of the table: two numbers or more, and at most twice as many words."""
+        numbers = sum(_is_number(cell) for cell in row[1].values())
+        words = sum(not _is_number(cell) and not self.is_missing(cell) for cell in row[1].values())
+        return words <= 2 * numbers if numbers >= LEAST_NUMBERS else numbers == 1 and words == 0
+
+
+def read_tables(
+    path: Path, form: TextFormat = _NOTHING_SAID, wanted: Wanted = _every, *, headless: bool = False
+) -> list[RawTable]:
     """Return the table of each sheet that has one.
+
+    Parameters
+    ----------
+    path : Path
+        The workbook.
+    form : TextFormat
+        What the column map says: sheets to read, rows of names and units, marks of a missing value.
+    wanted : callable
+        From headers and units to the numbers of the columns to read; the others are left NaN.
+    headless : bool
+        The columns are known by their numbers, so that a table may lack names.
 
     Raises
     ------
     InputError
-        It is no workbook that can be read safely, no sheet has a table, or a table holds what is neither a
-        number nor missing.
+        It is no workbook that can be read safely, no sheet has a table, or a column that is read holds what
+        is neither a number nor missing.
     """
     workbook = open_workbook(path)
-    found = [_table(_Sheet(workbook, name)) for name in workbook.sheets]
-    tables = [table for table in found if table is not None]
+    names = form.tables if set(form.tables) <= set(workbook.sheets) else ()
+    sheets = (_Sheet(workbook, name, form, wanted, headless) for name in names or workbook.sheets)
+    tables = [table for sheet in sheets if (table := _table(sheet)) is not None]
     if not tables:
-        cure = "Put the names of the columns in one row, and the numbers below."
+        cure = "Put the names of the columns in one row, and the numbers (not as text) below."
         raise InputError(workbook.label, "has no sheet with rows of numbers under a row of names", cure=cure)
     return tables
 
 
 def _table(sheet: _Sheet) -> RawTable | None:
     rows = sheet.workbook.rows(sheet.name)
-    above, first = _split(rows)
-    if first is None:
+    above, first = _split(rows, sheet)
+    if not first:
         return None
-    header, units, metadata = _headings(above, first, sheet)
-    numbers = sorted({*header, *first[1]})
+    names, written, metadata = _headings(above, first[0], sheet)
+    numbers = sorted({*names, *first[0][1]})
     if len(numbers) > MOST_COLUMNS:
         raise InputError(sheet.at(), f"has more than {MOST_COLUMNS} columns", "", str(len(numbers)))
-    table = _Columns(sheet, numbers)
-    quick = plain_numbers(sheet.workbook, sheet.name, first[0], numbers)
-    columns = quick if quick is not None else table.read(chain([first], rows))
+    headers = tuple(names.get(n, f"column {column_name(n)}") for n in numbers)
+    kinds = {n: _kind(first, n) for n in numbers}
+    units = tuple(_unit(sheet, n, kinds[n], written.get(n, "")) for n in numbers)
+    needed = [numbers[i] for i in sheet.wanted(headers, units)]
     return RawTable(
         name=sheet.name,
-        headers=tuple(header.get(n, f"column {column_name(n)}") for n in numbers),
-        units=table.units(units, dated=quick is None),
-        columns=columns,
+        headers=headers,
+        units=units,
+        columns=_columns(sheet, chain(first, rows), first[0][0], kinds, needed),
         metadata=metadata,
     )
 
 
-def _split(rows: Iterator[Row]) -> tuple[list[Row], Row | None]:
-    """Rows above the first row of the table, and that row; None if there is none."""
+def _split(rows: Iterator[Row], sheet: _Sheet) -> tuple[list[Row], list[Row]]:
+    """Rows above the table, and its first rows; a single row of numbers above other rows is metadata."""
     above: list[Row] = []
+    first: list[Row] = []
     for row in rows:
-        if _is_data(row):
-            return above, row
-        above.append(row)
-        if len(above) > MOST_HEADER_ROWS:
+        if row[0] > sheet.form.begin and sheet.is_data(row):
+            first.append(row)
+        else:
+            above += [*first, row]
+            first = []
+        if len(first) == 2 or len(above) > MOST_HEADER_ROWS:
             break
-    return above, None
-
-
-def _is_data(row: Row) -> bool:
-    cells = row[1].values()
-    numbers = sum(_is_number(cell) for cell in cells)
-    return numbers >= LEAST_NUMBERS and all(_is_number(cell) or _is_missing(cell) for cell in cells)
+    return above, first
 
 
 def _is_number(cell: Cell) -> bool:
     return isinstance(cell.value, float)
 
 
-def _is_missing(cell: Cell) -> bool:
-    if isinstance(cell.value, str):
-        return cell.value.strip().casefold() in MISSING
-    return cell.value is None
+Heading = tuple[dict[int, str], dict[int, str], dict[str, str]]
 
 
-def _headings(
-    above: list[Row], first: Row, sheet: _Sheet
-) -> tuple[dict[int, str], dict[int, str], dict[str, str]]:
+def _headings(above: list[Row], first: Row, sheet: _Sheet) -> Heading:
     """Names and units by column, and the metadata above them."""
-    if not above or not _texts(above[-1]):
-        cure = "Put the names of the columns in the row above."
+    if sheet.form.header_line is not None:
+        return _told(above, sheet)
+    last = _texts(above[-1]) if above else {}
+    if not last and sheet.headless:
+        return {}, {}, _metadata(above)
+    if not last:
+        cure = "Put the names of the columns in the row above, or say which sheets to read: [format] tables."
         raise InputError(sheet.at(f"row {first[0]}"), "has numbers without names above them", cure=cure)
-    last = _texts(above[-1])
-    if len(above) > 1 and _are_units(last) and _names_of(_texts(above[-2]), last, first):
-        return _texts(above[-2]), last, _metadata(above[:-2])
-    return last, {}, _metadata(above[:-1])
+    units: dict[int, str] = {}
+    if len(above) > 1 and is_units(list(last.values())) and _names_of(_texts(above[-2]), last, first):
+        units = last
+        above = above[:-1]
+    names = _texts(above[-1])
+    if len(above) > 1 and not set(first[1]) <= set(names):  # merged cells have their text in the upper row
+        names = {n: text for n, text in _texts(above[-2]).items() if n in first[1]} | names
+    return names, units, _metadata(above[:-1])
+
+
+def _told(above: list[Row], sheet: _Sheet) -> Heading:
+    """Names and units in the rows that the column map names."""
+    texts = {number: _texts((number, cells)) for number, cells in above}
+    form = sheet.form
+    for key, number in (("header_line", form.header_line), ("units_line", form.units_line)):
+        if number is not None and not texts.get(number):
+            raise InputError(sheet.at(f"{key} = {number}"), "must be a row of texts")
+    metadata = [row for row in above if row[0] < (form.header_line or 0)]
+    return texts[form.header_line or 0], texts.get(form.units_line or 0, {}), _metadata(metadata)
 
 
 def _texts(row: Row) -> dict[int, str]:
     return {n: cell.value.strip() for n, cell in row[1].items() if isinstance(cell.value, str)}
-
-
-def _are_units(texts: Mapping[int, str]) -> bool:
-    return all(_is_unit(text) for text in texts.values())
-
-
-def _is_unit(text: str) -> bool:
-    known = any(text in spellings for spellings in UNITS.values())
-    return known or text in _OTHER_UNITS or _BRACKETED.fullmatch(text) is not None
 
 
 def _names_of(names: Mapping[int, str], units: Mapping[int, str], first: Row) -> bool:
@@ -163,76 +199,89 @@ def _as_text(cell: Cell) -> str:
     return "" if cell.value is None else str(cell.value)
 
 
+def _kind(first: list[Row], column: int) -> str:
+    """How the first number of a column is shown: as a date, a percentage, or nothing special."""
+    cells = (row[1][column] for row in first if column in row[1])
+    return next((cell.format for cell in cells if _is_number(cell)), "")
+
+
+def _unit(sheet: _Sheet, column: int, kind: str, written: str) -> str:
+    """Unit of a column: as written, seconds of dates; a percentage is kept as a fraction."""
+    if kind == "date" and written not in ("", "s"):
+        where = sheet.at(f"column {column_name(column)}")
+        cure = "Format the column as a number, or take the unit away."
+        rule = "holds dates or times of day, which have no unit"
+        raise InputError(where, rule, "", shown(written), cure)
+    return {"date": "s", "percent": "-"}.get(kind, written)
+
+
+def _columns(
+    sheet: _Sheet, rows: Iterator[Row], first: int, kinds: dict[int, str], needed: list[int]
+) -> list[Array]:
+    """The columns of a table, at once if all its cells are plain; those that are not needed are NaN."""
+    if not needed:
+        return [np.empty(0)] * len(kinds)
+    quick = plain_numbers(sheet.workbook, sheet.name, first, list(kinds), needed)
+    if quick is not None:
+        found = dict(zip(needed, quick, strict=True))
+    else:
+        found = _Columns(sheet, {n: kinds[n] for n in needed}).read(rows)
+    nothing = np.broadcast_to(np.float64(np.nan), (len(found[needed[0]]),))
+    return [found.get(n, nothing) for n in kinds]
+
+
 class _Columns:
     """Fills the columns of a table row by row."""
 
-    def __init__(self, sheet: _Sheet, numbers: list[int]) -> None:
+    def __init__(self, sheet: _Sheet, kinds: Mapping[int, str]) -> None:
         self._sheet = sheet
-        self._numbers = numbers
-        self._known = set(numbers)
-        self._dates = dict.fromkeys(numbers, 0)
-        self._count = dict.fromkeys(numbers, 0)
+        self._kinds = kinds
         self._ended = 0
 
-    def read(self, rows: Iterator[Row]) -> list[Array]:
-        """Return the columns of the rows; dates and times of day in seconds."""
-        columns = {n: array("d") for n in self._numbers}
+    def read(self, rows: Iterator[Row]) -> dict[int, Array]:
+        """Return the columns of the rows by their numbers; dates and times of day in seconds."""
+        columns = {n: array("d") for n in self._kinds}
         for number, cells in rows:
-            if not self._goes_on(number, cells):
-                continue
-            for n, column in columns.items():
-                cell = cells.get(n)
-                column.append(np.nan if cell is None else self._value(number, n, cell))
-        return [self._in_seconds(n, np.array(column)) for n, column in columns.items()]
+            if self._goes_on(number, [cells[n] for n in columns if n in cells]):
+                for n, column in columns.items():
+                    cell = cells.get(n)
+                    column.append(np.nan if cell is None else self._value(number, n, cell))
+        dates = {n for n, kind in self._kinds.items() if kind == "date"}
+        return {n: _seconds(np.array(c)) if n in dates else np.array(c) for n, c in columns.items()}
 
-    def _goes_on(self, row: int, cells: Mapping[int, Cell]) -> bool:
+    def _goes_on(self, row: int, cells: Sequence[Cell]) -> bool:
         """Whether a row belongs to the table; below its end there may be texts, but no second table."""
-        if not any(_is_number(cell) for cell in cells.values()):
-            self._ended = self._ended or (0 if all(map(_is_missing, cells.values())) else row)
+        if not any(_is_number(cell) for cell in cells):
+            self._ended = self._ended or (0 if all(map(self._sheet.is_missing, cells)) else row)
             return False
         if self._ended:
             rule = f"has numbers again, after the table ended with row {self._ended}"
             raise InputError(self._sheet.at(f"row {row}"), rule, cure="Put a second table on its own sheet.")
-        if extra := [n for n in cells if n not in self._known and not _is_missing(cells[n])]:
-            where = self._sheet.at(f"cell {cell_name(row, extra[0])}")
-            raise InputError(
-                where, "stands in a column that has no name", cure="Name the column, or clear it."
-            )
         return True
 
     def _value(self, row: int, column: int, cell: Cell) -> float:
         if cell.formula:
             _check_formula(self._sheet, row, column, cell)
         if isinstance(cell.value, float):
-            self._count[column] += 1
-            self._dates[column] += cell.format == "date"
+            if cell.format != self._kinds[column]:
+                raise self._mixed(column, cell.format or self._kinds[column])
             return cell.value
-        if _is_missing(cell):
+        if self._sheet.is_missing(cell):
             return np.nan
         where = self._sheet.at(f"cell {cell_name(row, column)}")
-        cure = _comma_cure(cell.value) if isinstance(cell.value, str) else ""
+        cure = _cure(cell.value) if isinstance(cell.value, str) else ""
         raise InputError(where, "must be a number or empty", "", shown(cell.value), cure)
 
-    def _in_seconds(self, column: int, values: Array) -> Array:
-        dates = self._dates[column]
-        if 0 < dates < self._count[column]:
-            where = self._sheet.at(f"column {column_name(column)}")
-            raise InputError(
-                where, "holds both plain numbers and dates", cure="Format the column in one way."
-            )
-        return values * SECONDS_IN_A_DAY if dates else values
+    def _mixed(self, column: int, kind: str) -> InputError:
+        where = self._sheet.at(f"column {column_name(column)}")
+        rule = f"holds both plain numbers and {'dates' if kind == 'date' else 'percentages'}"
+        return InputError(where, rule, cure="Format the column in one way.")
 
-    def units(self, written: Mapping[int, str], *, dated: bool) -> tuple[str, ...]:
-        """Return the units as written; of dates and times of day, seconds."""
-        dates = [n for n in self._numbers if dated and self._dates[n]]
-        for n in dates:
-            if written.get(n, "") not in ("", "s"):
-                where = self._sheet.at(f"column {column_name(n)}")
-                cure = "Format the column as a number, or take the unit away."
-                raise InputError(
-                    where, "holds dates or times of day, which have no unit", "", shown(written[n]), cure
-                )
-        return tuple("s" if n in dates else written.get(n, "") for n in self._numbers)
+
+def _seconds(days: Array) -> Array:
+    """Days since some date as seconds since the first."""
+    there = days[np.isfinite(days)]
+    return np.asarray((days - there[0]) * SECONDS_IN_A_DAY) if len(there) else days
 
 
 def _check_formula(sheet: _Sheet, row: int, column: int, cell: Cell) -> None:
@@ -245,5 +294,7 @@ def _check_formula(sheet: _Sheet, row: int, column: int, cell: Cell) -> None:
         raise InputError(where, "holds a formula without a saved value", "", shown(f"={cell.formula}"), cure)
 
 
-def _comma_cure(text: str) -> str:
-    return "Enter it as a number, not as text." if re.fullmatch(r"\s*[-+]?[0-9.,]+\s*", text) else ""
+def _cure(text: str) -> str:
+    if re.fullmatch(r"\s*[-+]?[0-9.,]+\s*", text):
+        return "Enter it as a number, not as text."
+    return f"If that means a missing value, add below [format] in a column map: missing = [{shown(text)}]."
