@@ -60,7 +60,7 @@ class Numbers(NamedTuple):
     sines: np.ndarray
 
 
-@numba.njit
+@numba.njit(cache=True)
 def speed_factor(t, rising, p):
     """Share of the full speed at this time, and its rate [1/s]."""
     if not rising:
@@ -69,7 +69,7 @@ def speed_factor(t, rising, p):
     return p.ramp_start + rise * t, rise
 
 
-@numba.njit
+@numba.njit(cache=True)
 def pocket(j, z, gx, gy, s, p, out):
     """Force on the cage (x, y, moment) from one pocket; enter its lead's rate and its works."""
     cos, sin = p.cos[j], p.sin[j]
@@ -89,7 +89,7 @@ def pocket(j, z, gx, gy, s, p, out):
     return fx, fy, N * sin, -N * cos, -N * p.radius
 
 
-@numba.njit
+@numba.njit(cache=True)
 def land(z, gx, gy, vgx, vgy, s, p, out):
     """Force on the cage (x, y, moment) from the land; enter its works."""
     r = math.hypot(gx, gy)
@@ -112,7 +112,7 @@ def land(z, gx, gy, vgx, vgy, s, p, out):
     return -F * dx - T * ny, -F * dy + T * nx, -F * turn + p.side * T * p.radius
 
 
-@numba.njit
+@numba.njit(cache=True)
 def rates(t, rising, z, p, out):
     """Rates of the state in the turning frame, and of the works done."""
     out[:] = 0.0
@@ -139,7 +139,7 @@ def rates(t, rising, z, p, out):
     out[WORK + 6] = M * (pull * vx + swing * vy) - p.inertia * dW * spin
 
 
-@numba.njit
+@numba.njit(cache=True)
 def march(z, steps, h, p, rows, most):
     """Take the steps in place; fill `rows` evenly; return the mean kinetic energy of the last fifth [J].
 

@@ -97,6 +97,11 @@ CASES = {
     "oval land with a damper": (replace(LAND, land_restitution=0.4), {"land_out_of_round": 3e-5}, {}),
     "a ramp on a land": (LAND, RAMP, {}),
     "a land that holds": (SLOW, {"land_friction": 0.6}, {"land_friction": 0.05}),
+    "a land that holds a heavy eccentric ring": (
+        replace(SLOW, moment_of_inertia=3 * M * R**2, unbalance=2e-6),
+        {"land_friction": 0.6},
+        {"land_friction": 0.05},
+    ),
     "everything": (BALL, {name: getattr(EVERYTHING, name) for name in EVERYTHING.__dataclass_fields__}, {}),
 }
 

@@ -150,6 +150,36 @@ def test_controlling_race_has_no_spin(model: KinematicModel, still: str) -> None
     assert abs(ratios.popitem()[1]) > 0.3
 
 
+@pytest.mark.parametrize("speeds", [(10_000.0, 0.0), (3000.0, -4000.0)])
+@pytest.mark.parametrize("model", [OUTER, INNER, FREE])
+def test_speeds_and_inertia_follow_from_the_motion(
+    model: KinematicModel, speeds: tuple[float, float]
+) -> None:
+    """Rigid bodies as vectors (along x, outward, along the orbit), seen from the ball's orbit; rounding only.
+
+    Rolling speed is the mean speed of both surfaces through the contact, spin over roll that of the ball's
+    turning on the race; forces and moment are those of a ball that is carried round.
+    """
+    inner, outer = (rpm * RPM for rpm in speeds)
+    loaded = Operation(inner_speed=inner, outer_speed=outer, axial_load=22_250.0)
+    result, D, dm = equilibrium(ball_218(), loaded, model, 0.15), 22.23e-3, 125.26e-3
+    spin, orbit = result.ball_spin[0], result.orbital_speed[0]
+    for side, name, ring in ((-1.0, "inner", inner), (1.0, "outer", outer)):
+        angle = getattr(result, f"contact_angle_{name}")[0]
+        normal = side * np.array([math.sin(angle), math.cos(angle), 0.0])
+        turn = np.array([ring - orbit, 0.0, 0.0])
+        surfaces = np.cross(turn, [0.0, 0.5 * dm, 0.0] + 0.5 * D * normal), np.cross(spin, 0.5 * D * normal)
+        along = np.array([0.0, 0.0, 1.0])
+        rolling = 0.5 * abs(sum(surfaces) @ along)
+        assert getattr(result, f"rolling_speed_{name}")[0] == pytest.approx(rolling, rel=1e-9)
+        pivoting = (spin - turn) @ normal / ((spin - turn) @ np.cross(normal, along))
+        assert getattr(result, f"spin_roll_ratio_{name}")[0] == pytest.approx(pivoting, rel=1e-9, abs=1e-12)
+    mass = STEEL.density * math.pi * D**3 / 6.0
+    moment = np.cross([orbit, 0.0, 0.0], 0.1 * mass * D**2 * spin)
+    assert result.gyroscopic_moment[0] == pytest.approx(np.linalg.norm(moment), rel=1e-9)
+    assert result.centrifugal_force[0] == pytest.approx(0.5 * mass * dm * orbit**2, rel=1e-9)
+
+
 def ring_loads(result: Equilibrium, bearing: BallBearing) -> Array:
     """Axial, radial force and tilting moment of the normal loads and the shared gyroscopic friction."""
     share = 2.0 if result.model is INNER else 0.0

@@ -13,7 +13,7 @@ from separatrix.cage import (
     run_hard_ensemble,
     simulate,
 )
-from separatrix.cage.ensemble import random_starts
+from separatrix.cage.ensemble import random_starts, run_limits
 from separatrix.cage.run import random_start
 from separatrix.errors import InputError
 from separatrix.study import Guidance, StabilitySettings
@@ -161,6 +161,15 @@ def test_starts_scatter_as_cage_and_settings_say():
     assert np.abs(angle - pitch * np.arange(11)).max() == pytest.approx(0.2 * pitch, rel=0.02)
     loose = random_starts(CAGE, replace(SETTINGS, ball_scatter=0.7), 0, 2000)[:, 1:12]
     assert np.abs(loose).max() == pytest.approx(0.7 * 3e-4, rel=0.02)
+
+
+def test_a_centre_beyond_the_play_is_drift_unless_a_land_holds_it():
+    """Twice half the play, from the axis; a guided cage and one that grips its balls know no drift."""
+    assert run_limits(CAGE, 0.5).drift == 6e-4
+    held = replace(CAGE, guidance=Guidance.OUTER, land_clearance=4e-4)
+    assert (
+        run_limits(held, 0.5).drift == run_limits(replace(CAGE, pocket_clearance=0.0), 0.5).drift == math.inf
+    )
 
 
 @pytest.mark.parametrize("land", [{}, {"guidance": Guidance.OUTER, "land_clearance": 4e-4}])
