@@ -194,6 +194,18 @@ def test_plain_rows_are_indeed_read_at_once(tmp_path, monkeypatch):
     assert found.friction.tolist() == [row[1] for row in NUMBERS]
 
 
+@pytest.mark.parametrize("odd", [Formula("A1", 0.3), Shown(0.3, 2), "0.3"])
+def test_a_cell_behind_words_is_not_passed_over(tmp_path, odd):
+    """The pattern for words ends with their cell: what is no plain number in the next is read or refused."""
+    rows = [[float(i), "ok", odd if i == 5 else 0.1] for i in range(9)]
+    sheets = {"a": [["Time [s]", "Status", "COF"], *rows]}
+    if isinstance(odd, Formula):
+        assert logs(tmp_path, sheets)[0].friction[5] == 0.3
+    else:
+        with pytest.raises(InputError, match=r"cell C7 must be a number|column C holds both"):
+            logs(tmp_path, sheets)
+
+
 def test_what_openpyxl_writes_is_read(tmp_path):
     """Shared texts, styles and gaps as a usual writer makes them."""
     book = openpyxl.Workbook()

@@ -66,11 +66,11 @@ def _pattern(columns: list[int], needed: list[int], formats: list[str]) -> re.Pa
     styles = "|".join(str(i) for i, kind in enumerate(formats) if not kind)
     style = f'(?: s="(?:{styles})")?'
     number = rf"{style}(?: t=\"n\")?><v>([-+.0-9eE]+)</v></c>|{style}/>"
-    anything = "[^<>]*/>|[^<>]*(?<!/)>.*?</c>"
+    anything = "[^<>]*/>|[^<>]*(?<!/)>[^<]*(?:<(?!/c>)[^<]*)*</c>"
     cells = "".join(
         f'(?:<c r="{column_name(n)}[0-9]+"(?:{number if n in needed else anything}))?' for n in columns
     )
-    return re.compile(rf"(<row [^<>]*>{cells}</row>\s*)".encode(), re.DOTALL)
+    return re.compile(rf"(<row [^<>]*>{cells}</row>\s*)".encode())
 
 
 def _block(text: bytes, pattern: re.Pattern[bytes]) -> Array | None:
