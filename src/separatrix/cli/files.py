@@ -45,16 +45,19 @@ def writable_folder(path: Path) -> Iterator[Path]:
     missing: list[Path] = []
     try:
         missing += [folder for folder in (path, *path.parents) if not folder.exists()]
+        _make_writable(path)
+        yield path
+    finally:  # also where an interrupt comes before the work
+        _remove_empty(missing)
+
+
+def _make_writable(path: Path) -> None:
+    try:
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path, prefix=".separatrix-"):
             pass
     except OSError as error:
-        _remove_empty(missing)
         raise _cannot_write(path, error) from error
-    try:
-        yield path
-    finally:
-        _remove_empty(missing)
 
 
 def _remove_empty(folders: list[Path]) -> None:
