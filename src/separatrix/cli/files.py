@@ -44,15 +44,16 @@ def writable_folder(path: Path) -> Iterator[Path]:
     """
     missing: list[Path] = []
     try:
-        missing += [folder for folder in (path, *path.parents) if not folder.exists()]
-        _make_writable(path)
+        _make_writable(path, missing)
         yield path
     finally:  # also where an interrupt comes before the work
         _remove_empty(missing)
 
 
-def _make_writable(path: Path) -> None:
+def _make_writable(path: Path, missing: list[Path]) -> None:
+    """Make the folder, and write in it; note which folders were not there."""
     try:
+        missing += [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path, prefix=".separatrix-"):
             pass
