@@ -43,12 +43,14 @@ def misfit(surrogate: Surrogate, points: Points) -> float:
     """
     share, steepness = foretold(surrogate, points)
     push, information = (share - points.grew) * steepness, share * (1.0 - share) * steepness**2
-    return math.sqrt(max(0.0, *(_excess(push, information, part) for part in _partings(points))))
+    return math.sqrt(max(0.0, *(_excess(push, information, part) for part in _partings(surrogate, points))))
 
 
-def _partings(points: Points) -> Iterator[NDArray[np.int_]]:
-    """Yield number of its part for each run: by kick, and along eta or a parameter."""
-    for along in (points.restitution_factor, *points.parameters.T):
+def _partings(surrogate: Surrogate, points: Points) -> Iterator[NDArray[np.int_]]:
+    """Yield number of its part for each run: by kick, and along eta, a parameter or the land's play."""
+    play = surrogate.scale.play
+    ratio = [] if play is None else [play.ratio(points.parameters)]
+    for along in (points.restitution_factor, *points.parameters.T, *ratio):
         ends = np.quantile(along, np.linspace(0.0, 1.0, PARTS + 1)[1:-1])
         yield points.kick.astype(np.int_) * PARTS + np.searchsorted(ends, along)
 

@@ -18,7 +18,7 @@ from separatrix.distribution import Distribution
 from separatrix.study import Guidance
 from separatrix.units import Array, Ratio
 
-BENDS: Array = np.log([1.16, 1.0, 0.82, 0.6])
+BENDS: Array = np.log([1.16, 1.08, 1.0, 0.82, 0.6])
 """Logarithms of the land's play over the pockets' at which the slope of the boundary may change."""
 
 RARE: Ratio = 1e-3

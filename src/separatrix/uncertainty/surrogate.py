@@ -25,8 +25,11 @@ from separatrix.uncertainty.terms import SIDE, UNIT_FRICTION, Scale
 from separatrix.uncertainty.traced import FEW, TracedBoundary
 from separatrix.units import Array, Ratio
 
-STEPS, SETTLED = 60, 1e-9
+STEPS, SETTLED = 60, 1e-7
 HALVED = tuple(0.5**k for k in range(20))
+LONGEST = 2.0
+"""Standard deviations of its prior by which a coefficient may move in a step of the scoring."""
+
 LEAST_SHARE = 1e-12
 """Probability to which those that are smaller are raised."""
 
@@ -162,14 +165,17 @@ def logit(share: Ratio) -> float:
     return math.log(share / (1.0 - share))
 
 
-def fitted(points: Points, scale: Scale, traced: TracedBoundary, *, seed: int) -> Surrogate:
-    """Law of every kick by penalised likelihood, each from its own runs."""
+def fitted(
+    points: Points, scale: Scale, traced: TracedBoundary, *, seed: int, near: Surrogate | None = None
+) -> Surrogate:
+    """Law of every kick by penalised likelihood, each from its own runs; `near` is where it is looked for."""
     modes, roots = [], []
     for kick in range(len(traced.kicks)):
         own = points.of(points.kick == kick)
         groups = scale.priors(traced.error[kick, 1])
         centre, deviation = (np.concatenate(parts) for parts in zip(*groups, strict=True))
-        mode, root = _mode(runs_of(own, scale, traced.restitution_factors), centre, deviation)
+        start = centre if near is None else near.mode[kick]
+        mode, root = _mode(runs_of(own, scale, traced.restitution_factors), start, centre, deviation)
         modes.append(mode)
         roots.append(root)
     return Surrogate(
@@ -215,20 +221,21 @@ def foretold_of(found: Array, runs: Runs) -> Foretold:
     count = runs.shift.shape[1]
     shift, below, above, land = np.split(found, [count, count + SIDE, count + 2 * SIDE])
     distance = runs.offset - runs.shift @ shift
-    width = np.exp(runs.width @ below)
-    np.copyto(width, np.exp(runs.width @ above), where=distance >= 0.0)
+    width = np.where(distance < 0.0, runs.width @ below, runs.width @ above)
+    width = np.exp(width)
     pockets, by_land = distance / width, runs.land @ land
     share = np.maximum(-np.expm1(-np.logaddexp(0.0, pockets) - np.logaddexp(0.0, by_land)), LEAST_SHARE)
     return Foretold(share, expit(pockets) / share, pockets, by_land, width)
 
 
-def _mode(runs: Runs, centre: Array, deviation: Array) -> tuple[Array, Array]:
-    """Mode of the coefficients and the root of their covariance, by Fisher scoring with halved steps."""
-    found = centre.copy()
+def _mode(runs: Runs, start: Array, centre: Array, deviation: Array) -> tuple[Array, Array]:
+    """Mode of the coefficients and the root of their covariance, by Fisher scoring with shortened steps."""
+    found = start
     value = _objective(found, runs, centre, deviation)
     for _ in range(STEPS):
         gradient, information = _scores(found, runs, centre, deviation)
         step = np.linalg.solve(information, gradient)
+        step *= min(1.0, LONGEST / float(np.max(np.abs(step) / deviation)))
         share = next(
             (s for s in HALVED if _objective(found + s * step, runs, centre, deviation) >= value), 0.0
         )

@@ -30,8 +30,8 @@ of the traced curve's own scatter there."""
 PRIOR_BEND, PRIOR_BEND_SLOPE, PRIOR_BEND_LINEAR = 6.0, 3.0, 0.5
 """The same of the slope of ln f below a bend: by itself, along eta, and by a standardised parameter."""
 
-WIDTH, WIDTH_SPREAD = 0.12, 1.0
-"""Width of logit P in ln f thought likely, and how far (a factor of e) it may be off."""
+WIDTH, WIDTH_SPREAD, WIDTH_HELD = 0.12, 1.0, 0.3
+"""Width of logit P in ln f thought likely; how far (a factor of e) it may be off, and differ on the land."""
 
 LAND, LAND_SPREAD = -6.0, 3.0
 """Logit of the probability that a cage grows by its land, thought likely: that it does not."""
@@ -106,9 +106,10 @@ class Scale:
             *[PRIOR_BEND_LINEAR] * (count if bends else 0),
         ]
         land = [LAND_SPREAD, *[LAND_LINEAR] * (1 + count), *[LAND_BEND] * bends, LAND_LINEAR]
+        likely = [math.log(WIDTH)] * WIDTH_KNOTS.size
         return (
             Group(np.zeros(len(shift)), np.array(shift)),
-            Group(np.full(2 * SIDE, math.log(WIDTH)), np.full(2 * SIDE, WIDTH_SPREAD)),
+            Group(np.tile([*likely, 0.0], 2), np.tile([*[WIDTH_SPREAD] * WIDTH_KNOTS.size, WIDTH_HELD], 2)),
             Group(np.array([LAND, *[0.0] * (len(land) - 1)]), np.array(land)),
         )
 

@@ -177,7 +177,7 @@ def trained(
         grew = _run(cages, wanted, traced, first=turn * plan.size, jobs=jobs, progress=told, stop=halt)
         new = replace(wanted, grew=grew)
         points = new if points is None else points + new
-        law = fitted(points, scale, traced, seed=seed)
+        law = fitted(points, scale, traced, seed=seed, near=law)
     if points is None or law is None:
         raise KeyboardInterrupt
     return _judged(points, law, traced, cages, count)
@@ -188,7 +188,7 @@ def _judged(
 ) -> tuple[Surrogate, SurrogateError]:
     """Return the law with the misfit that held-out runs show, and the record of its error."""
     out = np.arange(points.grew.size) % HELD_OUT == HELD_OUT - 1
-    tried = fitted(points.of(~out), law.scale, traced, seed=law.seed)
+    tried = fitted(points.of(~out), law.scale, traced, seed=law.seed, near=law)
     final = replace(law, misfit=misfit(tried, points.of(out)))
     as_drawn = [one for one in cages if one.place < count]
     eta = np.array([one.restitution_factor for one in as_drawn])
