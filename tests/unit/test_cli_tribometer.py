@@ -135,6 +135,11 @@ WRONG = {
     "out exists": (["a.csv", "--map", "map.toml", "--out", "map.toml"], ("map.toml exists already",)),
     "out is no toml": (["a.csv", "--out", "friction.csv"], ("--out must name a file that ends in .toml",)),
     "out is empty": (["a.csv", "--out", ""], ("--out needs the name of a file",)),
+    "a name too long": (
+        ["a.csv", "--out", "x" * 300 + "/f.toml"],
+        ("cannot be written; got File name too long",),
+    ),
+    "a log of a name too long": (["x" * 300], ("cannot be read; got File name too long",)),
     "out in a file": (["a.csv", "--map", "map.toml", "--out", "a.csv/f.toml"], ("cannot be written",)),
     "plots is a file": (["a.csv", "--plots", "b.csv"], ("b.csv cannot be written",)),
     "plots is empty": (["a.csv", "--plots", " "], ("--plots needs the name of a folder",)),

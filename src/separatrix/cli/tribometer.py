@@ -82,17 +82,24 @@ def _refuse(paths: Sequence[Path], options: TribometerOptions) -> None:
         if path.resolve() in known:
             raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
         known[path.resolve()] = path
-    if options.out is None:
-        return
-    if options.out.suffix != SUFFIX or options.out.is_dir():
+    if options.out is not None:
+        _refuse_out(options.out)
+
+
+def _refuse_out(out: Path) -> None:
+    """Refuse a friction file that has another name, or that exists."""
+    try:
+        folder, exists = out.is_dir(), out.exists() or out.is_symlink()
+    except OSError as error:
+        where = f"--out {printable(str(out), 200)}"
+        raise InputError(where, "cannot be written", "", error.strerror or type(error).__name__) from None
+    if out.suffix != SUFFIX or folder:
         cure = 'Name a file like "friction.toml".'
-        raise InputError(
-            "--out", f"must name a file that ends in {SUFFIX}", "", shown(str(options.out)), cure
-        )
-    if options.out.exists() or options.out.is_symlink():
+        raise InputError("--out", f"must name a file that ends in {SUFFIX}", "", shown(str(out)), cure)
+    if exists:
         from separatrix.friction_file.refusal import exists_already
 
-        raise exists_already(options.out)
+        raise exists_already(out)
 
 
 def _column_map(path: Path | None) -> ColumnMap | None:
