@@ -180,6 +180,7 @@ def test_text_and_files(capsys):
     places = [text.index(head) for head in heads]
     assert places == sorted(places)
     assert "0.150 (" in text
+    assert " own friction " in text
     assert MARK not in text.split("Uncertain inputs")[0]
     assert max(len(line) for line in text.splitlines()) <= 100
     pictures = {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-drivers",

@@ -225,7 +225,7 @@ def test_words_of_many_tests_are_few_and_keep_the_border():
     """Six tests by name, the number of the others and what they would settle at most."""
     asked = many_candidates(9)
     lines = next_test_sentences(next_test(asked, sampled_design(asked, 256)))
-    assert sum(line.startswith(("Measuring", "No single")) for line in lines) == 6
+    assert sum(line.startswith(("3 more tests of the x", "No single")) for line in lines) == 6
     assert lines[6].startswith("Each of 3 more tests would settle less: 0.")
 
 
@@ -244,6 +244,15 @@ def test_words_of_the_next_test():
     assert lines[1] in {
         f"Next to nothing would be settled by measuring the {a} or the {b}." for a, b in ORDERS
     }
+
+
+def test_words_of_more_tests_of_a_friction():
+    """Their number and the material; in brackets how likely each case is settled."""
+    asked = many_candidates(2)
+    tests = [Measurement(input=0, error=0.005, repeats=3)]
+    line = next_test_sentences(next_test(asked, sampled_design(asked, 256), tests))[0]
+    assert line.startswith("3 more tests of the x0 would settle ")
+    assert ": c0 in gas (" in line
 
 
 def test_words_where_no_single_test_helps():

@@ -22,7 +22,6 @@ HEADERS = (
     "P(best)",
 )
 MARK, GUESS = "*", "?"
-MOST_SENTENCES = 6
 
 LEGEND = paragraph(
     "tie: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean, and "
@@ -198,14 +197,17 @@ def _doubt(document: Document) -> Iterator[str]:
     yield section("What drives the doubt", DRIVERS_LEGEND, *_drivers(document))
     yield section("Which test to run next", *map(paragraph, _next_test(document["next_test"])))
     allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"])
-    yield section("Which friction a new material may have", *map(paragraph, allowed))
+    error = max(one["surrogate"]["error"] for one in document["boundaries"])
+    known = f"The boundary is known to {100.0 * error:.1f} %: that is in the first number, not in the last."
+    yield section("Which friction a new material may have", *map(paragraph, [*allowed, known]))
     yield section("Which film keeps the cage stable", *_films(document))
 
 
 DRIVERS_LEGEND = paragraph(
-    "Shares of the variance, with 95 % intervals: first what would be left if all else were known, then "
-    "(alone) what would go if this one were. Shares of a verdict may add up to more than 100 %, for inputs "
-    "decide it together."
+    "Shares of the variance of margin and verdict, in per cent: first (95 % interval) what would be left if "
+    "all else were known, for inputs decide together and these may add up to more than 100; behind the comma "
+    "what would go if this input alone were known. own friction: of the pocket, in that environment. "
+    "boundary: what the finite number of runs leaves open."
 )
 
 
@@ -218,14 +220,53 @@ def _next_test(answer: Document) -> Iterator[str]:
     yield from answer["sentences"]
 
 
-def _drivers(document: Document) -> list[str]:
-    """Return the sentences of the cases that are not decided; of all if there is none."""
-    cases = zip(document["sobol"]["cases"], document["sobol"]["sentences"], strict=True)
-    open_cases = [text for case, text in cases if 0.05 < case["probability_stable"]["value"] < 0.95]
-    shown = open_cases or document["sobol"]["sentences"]
-    left = len(shown) - MOST_SENTENCES
-    more = [paragraph(f"... and {left} more: sensitivity.json has all of them.")] if left > 0 else []
-    return [paragraph(text) for text in shown[:MOST_SENTENCES]] + more
+def _drivers(document: Document) -> Iterator[str]:
+    """Yield a table for each environment: the cases that are not decided there; all if none is open."""
+    cases = document["sobol"]["cases"]
+    shown = [case for case in cases if 0.05 < case["probability_stable"]["value"] < 0.95] or cases
+    columns = _columns(shown)
+    for place in dict.fromkeys(case["environment"] for case in shown):
+        own = [case for case in shown if case["environment"] == place]
+        cells = [[*row, *_shares(case, row[1], columns)] for case in own for row in _lines_of(case)]
+        yield ""
+        yield table([place, "of", *columns], cells, left=2)
+
+
+OWN, MOST_COLUMNS = "own friction", 3
+
+
+def _lines_of(case: Document) -> Iterator[list[str]]:
+    """Yield the two lines of a case."""
+    yield [case["candidate"], "margin"]
+    yield ["", "verdict"]
+
+
+def _columns(cases: Sequence[Document]) -> list[str]:
+    """Return the inputs of the largest total indices."""
+    largest: dict[str, float] = {}
+    for case in cases:
+        for index in (*case["margin"], *case["verdict"]):
+            name = _factor(index)
+            largest[name] = max(largest.get(name, 0.0), index["total"]["value"])
+    return sorted(largest, key=lambda name: -largest[name])[:MOST_COLUMNS]
+
+
+def _factor(index: Document) -> str:
+    return OWN if _is_friction({"name": index["factor"]}) else str(index["factor"])
+
+
+def _shares(case: Document, what: str, columns: Sequence[str]) -> list[str]:
+    """Return total with its interval, and first-order index, of each column in per cent."""
+    known = {_factor(index): index for index in case[what]}
+    return [_share(known[name]) if name in known else ABSENT for name in columns]
+
+
+def _share(index: Document) -> str:
+    value, low, high, alone = (
+        f"{100.0 * one:.0f}"
+        for one in (*(index["total"][k] for k in ("value", "low", "high")), index["first"]["value"])
+    )
+    return f"{value} ({low}-{high}), {alone}"
 
 
 def _films(document: Document) -> list[str]:

@@ -182,8 +182,8 @@ def test_sentence(test: TestGain, answer: NextTest) -> str:
         return f"{act(test.measurement, test.words)} would settle {_the_one(test.settled, answer)}."
     text = f"{act(test.measurement, test.words)} would settle {_expected(test.settled, answer)} on average"
     likely = [one for one in test.cases if one.settles >= 0.05][:NAMED]
-    parts = [f"{case_name(one.candidate, one.environment)} {percent(one.settles)}" for one in likely]
-    return f"{text}: {', '.join(parts)}." if parts else f"{text}."
+    parts = [f"{case_name(one.candidate, one.environment)} ({percent(one.settles)})" for one in likely]
+    return f"{text}: {'; '.join(parts)}." if parts else f"{text}."
 
 
 test_sentence.__test__ = False  # type: ignore[attr-defined]  # pytest must not collect it
@@ -209,7 +209,7 @@ def _noun(answer: NextTest, count: int) -> str:
 def act(test: Measurement, words: str) -> str:
     """What a person would do: the test as the subject of a sentence."""
     if test.repeats > 1:
-        return f"Measuring {words} {test.repeats} more times"
+        return f"{test.repeats} more tests of {words}"
     return f"Measuring {words} to {100 * COVERAGE * test.error:.3g} %"
 
 
