@@ -648,6 +648,16 @@ def test_column_map_goes_before_metadata(tmp_path):
     assert log.conditions.normal_force == 6.0
 
 
+def test_a_condition_that_cannot_be_read_is_said(tmp_path):
+    """Known keys whose values are no quantity are shown, and asked for."""
+    head = ["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]
+    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, head=head))
+    assert log.conditions.normal_force == 50.0
+    said = '"Pin diameter 1/4 in" is not understood and is not used; below [test]: pin_diameter = ...'
+    assert said in log.notes
+    assert any(note.startswith('"Speed as usual" is not understood') for note in log.notes)
+
+
 def test_description_shows_columns_units_and_reasons(tmp_path):
     """What is shown before it is trusted."""
     text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))

@@ -191,6 +191,14 @@ WRONG = {
         csv(columns={"time [ticks]": TIME, "COF": FRICTION}),
         'has a unit that is not one of the time (s, ms, us, min, ...); got "ticks"',
     ),
+    "two units of a column": (
+        csv(columns={"time [min]": TIME, "COF": FRICTION}, units=("s", "-")),
+        'column "time [min]" has a unit that is not one of the time (s, ms, us, min, ...); got "min, s"',
+    ),
+    "frictions of two stations": (
+        csv(columns={"time [s]": TIME, "COF_1": FRICTION, "COF_2": FRICTION}),
+        'got columns "COF_1", "COF_2". Say which below [columns] in a column map: friction = "COF_1".',
+    ),
     "T of time or temperature": (csv(columns={"T": TIME, "COF": FRICTION}), 'column "T" has no unit'),
     "every friction missing": (
         csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"),

@@ -111,12 +111,28 @@ def _given(
 ) -> Chosen:
     index = _place(meaning, choice, headers, source)
     ways = header_parts(layout.header(headers[index]))
-    written = [choice.unit, units[index], *(unit for _, unit in ways), layout.units.get(ways[0][0], "")]
+    beside = [unit for _, unit in ways if unit and _scale(meaning, unit, layout)]
+    if not choice.unit and beside:
+        written = [_agreed(units[index], beside[0], meaning, layout)]
+    else:
+        written = [choice.unit or units[index], *(u for _, u in ways), layout.units.get(ways[0][0], "")]
     for unit in [unit for unit in written if unit] + [""]:
-        scale = scale_of(layout.spellings.get((meaning, unit), unit), meaning)
+        scale = _scale(meaning, unit, layout)
         if scale is not None:
             return Chosen(index, scale, unit, "column map", choice.sign)
     raise _unit_wanted(meaning, headers[index], next((unit for unit in written if unit), ""), source)
+
+
+def _scale(meaning: str, unit: str, layout: Layout) -> Scale | None:
+    return scale_of(layout.spellings.get((meaning, unit), unit), meaning)
+
+
+def _agreed(unit: str, beside: str, meaning: str, layout: Layout) -> str:
+    """The unit of the line of units, else that beside the name; both, where they are not the same."""
+    if not unit or not beside:
+        return unit or beside
+    first, second = _scale(meaning, unit, layout), _scale(meaning, beside, layout)
+    return f"{beside}, {unit}" if first and second and first != second else unit
 
 
 def _place(meaning: str, choice: ColumnChoice, headers: Sequence[str], source: str) -> int:
@@ -146,22 +162,19 @@ def _place(meaning: str, choice: ColumnChoice, headers: Sequence[str], source: s
 def _options(header: str, unit: str, layout: Layout) -> list[_Option]:
     """What a column may mean: those meanings of its name whose unit fits, or all where it has no unit."""
     for way, (name, beside) in enumerate(header_parts(layout.header(header))):
-        written = unit or beside or layout.units.get(name, "")
-        options = _fitting(ranks(name), written, layout)
+        options = [
+            _option(meaning, rank, unit, beside or layout.units.get(name, ""), layout)
+            for meaning, rank in ranks(name).items()
+        ]
+        options = [option for option in options if option.unit and option.scale] or options
         if options and (way == 0 or any(option.scale for option in options)):
             return options
     return []
 
 
-def _fitting(known: dict[str, int], written: str, layout: Layout) -> list[_Option]:
-    options = []
-    for meaning, rank in known.items():
-        spelled = layout.spellings.get((meaning, written), written)
-        options.append(_Option(meaning, rank, written, scale_of(spelled, meaning)))
-    fitting = [option for option in options if option.scale is not None]
-    if written and fitting:
-        return fitting
-    return options
+def _option(meaning: str, rank: int, unit: str, beside: str, layout: Layout) -> _Option:
+    written = _agreed(unit, beside, meaning, layout)
+    return _Option(meaning, rank, written, _scale(meaning, written, layout))
 
 
 def _decided(

@@ -108,23 +108,20 @@ def _from_metadata(key: str, text: str, found: Found) -> None:
 
 
 def _number_from_metadata(key: str, text: str, beside: str, conditions: list[str], found: Found) -> None:
+    """Keep the first condition whose unit the value has; else say that it is not used."""
     match = _VALUE.fullmatch(text.strip())
-    if match is None:
-        return
-    unit = (match[2] or beside).strip()
-    value = float(match[1].replace(",", "."))
+    unit = (match[2] or beside).strip() if match else ""
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])
-        if scale is not None:
-            size = value * scale.factor / scale.divisor + scale.offset
+        if match and scale is not None:
+            size = float(match[1].replace(",", ".")) * scale.factor / scale.divisor + scale.offset
             if size > 0.0:
                 found.add(condition, size, f'"{printable(key)}" in the file')
-            return
-    if not unit and conditions[0] not in found.values:
-        line = f"{conditions[0]} = ..."
-        found.notes.append(
-            f'"{printable(key)} {printable(text)}" has no unit and is not used; below [test]: {line}'
-        )
+                return
+    if conditions[0] not in found.values:
+        why = "has no unit" if match and not unit else "is not understood"
+        shown = f'"{printable(key)} {printable(text)}"'
+        found.notes.append(f"{shown} {why} and is not used; below [test]: {conditions[0]} = ...")
 
 
 def _from_column(key: str, column: Array, found: Found) -> None:

@@ -39,7 +39,10 @@ def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header |
     The line below the names is that of the units if all its fields are units or in brackets.
     """
     matching: list[tuple[str, list[str]]] = []
-    for line in reversed(before[-8:]):
+    filled = [
+        line for line in before if any(f.casefold() not in dialect.missing for f in dialect.fields(line))
+    ]
+    for line in reversed(filled[-8:]):
         row = _row(line, count, dialect)
         if row is not None and _is_words(row, dialect):
             matching.append((line, row))

@@ -173,7 +173,7 @@ def header_parts(header: str) -> list[tuple[str, str]]:
         return [(bracket[1].strip(), bracket[2])]
     ways = [(text, "")]
     patterns = (re.fullmatch(pattern, text) for pattern in _UNIT_AT_END)
-    return ways + [(found[1].strip(), found[2].strip()) for found in patterns if found]
+    return ways + [(found[1].strip(), found[2].strip()) for found in patterns if found and found[2] != "1"]
 
 
 def ranks(name: str) -> dict[str, int]:

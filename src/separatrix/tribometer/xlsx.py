@@ -206,13 +206,13 @@ def _kind(first: list[Row], column: int) -> str:
 
 
 def _unit(sheet: _Sheet, column: int, kind: str, written: str) -> str:
-    """Unit of a column: as written, seconds of dates; a percentage is kept as a fraction."""
+    """Unit of a column: as written, seconds of dates, percent of what is shown as such."""
     if kind == "date" and written not in ("", "s"):
         where = sheet.at(f"column {column_name(column)}")
         cure = "Format the column as a number, or take the unit away."
         rule = "holds dates or times of day, which have no unit"
         raise InputError(where, rule, "", shown(written), cure)
-    return {"date": "s", "percent": "-"}.get(kind, written)
+    return {"date": "s", "percent": "%"}.get(kind, written)
 
 
 def _columns(
@@ -246,8 +246,7 @@ class _Columns:
                 for n, column in columns.items():
                     cell = cells.get(n)
                     column.append(np.nan if cell is None else self._value(number, n, cell))
-        dates = {n for n, kind in self._kinds.items() if kind == "date"}
-        return {n: _seconds(np.array(c)) if n in dates else np.array(c) for n, c in columns.items()}
+        return {n: _as_shown(np.array(column), self._kinds[n]) for n, column in columns.items()}
 
     def _goes_on(self, row: int, cells: Sequence[Cell]) -> bool:
         """Whether a row belongs to the table; below its end there may be texts, but no second table."""
@@ -278,10 +277,12 @@ class _Columns:
         return InputError(where, rule, cure="Format the column in one way.")
 
 
-def _seconds(days: Array) -> Array:
-    """Days since some date as seconds since the first."""
-    there = days[np.isfinite(days)]
-    return np.asarray((days - there[0]) * SECONDS_IN_A_DAY) if len(there) else days
+def _as_shown(values: Array, kind: str) -> Array:
+    """Numbers of a column in the unit of `_unit`: dates are saved as days, percentages as fractions."""
+    if kind == "date":
+        there = values[np.isfinite(values)]
+        return np.asarray((values - there[:1]) * SECONDS_IN_A_DAY)
+    return values * 100.0 if kind == "percent" else values
 
 
 def _check_formula(sheet: _Sheet, row: int, column: int, cell: Cell) -> None:
