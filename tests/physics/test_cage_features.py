@@ -215,7 +215,11 @@ def test_balls_start_on_their_free_lead_held_by_their_pockets():
 
 @pytest.mark.slow
 def test_as_many_runs_grow_with_everything_on():
-    """P(grow) near the threshold with every feature on, from the same starts: within 3 standard errors."""
+    """P(grow) near the threshold with every feature on, from the same starts: within 3 standard errors.
+
+    What the first blows cannot tell: no contact is missed later, growing is judged alike. 96 runs tell 0.2;
+    the step is a 25th of a contact's time.
+    """
     waves = {"orbital_cosines": (0.02, 0.01), "orbital_sines": (-0.01, 0.01)}
     cage = replace(
         EVERYTHING,
@@ -234,7 +238,7 @@ def test_as_many_runs_grow_with_everything_on():
         begun = simulate(cage, kick=kick, run=run, duration=duration, samples=2)
         direction = math.atan2(begun.velocity[0, 1], begun.velocity[0, 0])
         start = {"kick": kick, "direction": direction, "ball_lead": begun.ball_lead[0]}
-        ends.append(small_step.grows(cage, **start, duration=duration, step=4e-6, slip=5e-3))
+        ends.append(small_step.grows(cage, **start, duration=duration, step=8e-6, slip=5e-3))
     theirs = np.mean(np.array(ends) > 1.0)
     assert 0.1 < ours < 0.9
     assert abs(ours - theirs) < 3 * math.sqrt(2 * 0.25 / runs), (ours, theirs)
