@@ -210,7 +210,11 @@ WRONG = {
     ),
     "dates for a time": (
         lines("time [s];COF;n", *(f"2026-02-01 10:00:{i:02d};0.{100 + i};{i}" for i in range(9))),
-        'line 2, column "time [s]" must be a number; got "2026-02-01 10:00:00"',
+        'line 2, column "time [s]" must be a number; got "2026-02-01 10:00:00". Dates and times of day are not read',
+    ),
+    "times of day": (
+        lines("time;COF", *(f"10:00:{i:02d};0.{100 + i}" for i in range(9))),
+        "has no table of numbers with two columns or more. Dates and times of day are not read from text",
     ),
     "a second table without header": (
         csv() + b"second run\n" + csv().split(b"\n", 1)[1],

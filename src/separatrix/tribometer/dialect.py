@@ -49,7 +49,10 @@ _NAMES = {
 }
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eEdD][+-]?[0-9]{1,3})?")
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[.,][0-9]{3})+")
-_WORD = re.compile(r"[^\W\d_].*|[0-9]{1,4}[-/.:][0-9]{1,2}[-/.:][0-9]{1,4}.*|[0-9]{1,2}:[0-9]{2}.*")
+_MOMENT = re.compile(r"[0-9]{1,4}[-/.:][0-9]{1,2}[-/.:][0-9]{1,4}|[0-9]{1,2}:[0-9]{2}")
+_WORD = re.compile(rf"(?:[^\W\d_]|{_MOMENT.pattern}).*")
+
+NO_MOMENTS = "Dates and times of day are not read from text: log or export the time in seconds."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,6 +119,8 @@ def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> st
     best = max(scores, key=lambda candidate: scores[candidate])
     if scores[best] == 0:
         cure = "It needs a line of column names above at least two rows; say where with a column map."
+        if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
+            cure = NO_MOMENTS
         raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
     return best
 
@@ -135,6 +140,11 @@ def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> boo
     if numbers < 2:
         return numbers == 1 and absent > 0 and words == 0
     return words <= (1 if separator == " " else 2) * numbers
+
+
+def is_moment(field: str) -> bool:
+    """True for a date or a time of day."""
+    return _MOMENT.match(field) is not None
 
 
 def _several_signs(field: str) -> bool:

@@ -11,7 +11,15 @@ import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.tribometer.column_map import TextFormat
-from separatrix.tribometer.dialect import QUOTED, Dialect, dialect_of, fields, is_number
+from separatrix.tribometer.dialect import (
+    NO_MOMENTS,
+    QUOTED,
+    Dialect,
+    dialect_of,
+    fields,
+    is_moment,
+    is_number,
+)
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.header import Header, find_header, header_at
 from separatrix.tribometer.lines import HEAD, Lines, indexed, stretches, unquoted
@@ -298,6 +306,7 @@ def _no_number(
 
 def _not_a_number(line: str, column: str, text: str) -> InputError:
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{_toml(text)}]."
+    cure = NO_MOMENTS if is_moment(text) else cure
     where = f'{line}, column "{printable(column)}"'
     return InputError(where, "must be a number", "", f'"{printable(text)}"', cure)
 
