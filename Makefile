@@ -1,5 +1,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
+# Each worker begins elsewhere, so that kernels are compiled once between them.
+TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
 .PHONY: demo test check bench docs clean
 
@@ -7,14 +9,14 @@ demo: .venv/ready ## rank the paper's seven cage materials
 	$(BIN)/separatrix rank cryogenic-turbopump --out demo
 
 test: .venv/ready ## every test
-	$(BIN)/pytest -n 2
+	$(TESTS)
 
 check: .venv/ready ## what CI and reviewers run: lint, types, layers, tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2
+	$(TESTS)
 
 bench: .venv/ready ## speeds; numbers go in benchmarks/README.md
 	$(BIN)/pytest benchmarks --benchmark-only -p no:xdist

@@ -193,7 +193,7 @@ def test_ending_early_changes_no_outcome(monkeypatch):
         )
         for kick in (0.1, 0.5, 2.0)
     ]
-    settings = StabilitySettings(runs=24, duration=0.3)
+    settings = StabilitySettings(runs=24, duration=0.2)
     early = [run_ensemble(cage, settings, kicks=(kick,), jobs=2).outcome for cage, kick in cases]
     growth = [
         run_ensemble(cage, settings, kicks=(kick,), growth_only=True, jobs=2).outcome for cage, kick in cases

@@ -229,12 +229,18 @@ def lose_an_interrupt(then) -> None:
         then()
 
 
+def wait() -> None:
+    """Five seconds, in steps between which a signal is heard."""
+    for _ in range(500):
+        time.sleep(0.01)
+
+
 def test_a_swallowed_interrupt_is_sent_again():
     """The work is ended all the same."""
     usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a test worker may ignore it
     try:
         with pytest.raises(KeyboardInterrupt):
-            lose_an_interrupt(lambda: time.sleep(5.0))
+            lose_an_interrupt(wait)
     finally:
         signal.signal(signal.SIGINT, usual)
 
