@@ -390,6 +390,12 @@ def test_a_limit_that_comes_back_is_told_whole():
     assert "Not every friction below is" in allowed_sentence(found)
 
 
+def test_where_no_friction_is_uncertain_none_is_varied():
+    """No answer, and no error after all the work: a pocket without friction, say."""
+    asked = question([OWN], lambda x: x[:, 0])
+    assert allowed_friction(asked, sampled_values(asked, 128)) == ()
+
+
 def test_no_friction_at_all_has_its_reason():
     """A film that returns too much."""
     asked = friction_limit(lambda f: 0.4 - 0.0 * f)

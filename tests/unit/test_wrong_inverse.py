@@ -29,7 +29,6 @@ from separatrix.sensitivity.design import evaluated
 KNOWN = (Normal(mean=0.5, standard_deviation=0.05), Normal(mean=0.1, standard_deviation=0.01))
 CASES = (Case(candidate="A", environment="gas", friction=1),)
 ASKED = question(KNOWN, lambda x: 0.6 - x[:, 1] - x[:, 0], cases=CASES)
-WITHOUT_FRICTION = question(KNOWN, lambda x: x[:, 0])
 VALUES = sampled_values(ASKED, 128)
 DESIGN = sampled_design(ASKED, 128)
 X = FilmAxis(name="film.thickness", words="film thickness", unit="m", values=np.array([0.0, 1e-6]), own=5e-7)
@@ -223,11 +222,6 @@ WRONG = [
         lambda: allowed_friction(ASKED, VALUES, searched=10.0),
         "searched must lie",
         "got 10.0",
-    ),
-    (
-        "a model without an uncertain friction",
-        lambda: allowed_friction(WITHOUT_FRICTION, VALUES),
-        "No case has an uncertain pocket friction",
     ),
     (
         "a region of a wrong probability",

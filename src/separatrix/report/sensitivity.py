@@ -7,7 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from separatrix.report.cage import chain_facts, study_facts
-from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, significant, table
+from separatrix.report.tables import (
+    ABSENT,
+    WIDTH,
+    facts,
+    number,
+    paragraph,
+    quantity,
+    section,
+    significant,
+    table,
+)
 
 Document = Mapping[str, Any]
 
@@ -196,13 +206,14 @@ def _doubt(document: Document) -> Iterator[str]:
         return
     yield section("What drives the doubt", DRIVERS_LEGEND, *_drivers(document))
     yield section("Which test to run next", *map(paragraph, _next_test(document["next_test"])))
-    allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"])
+    allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"]) or [NO_FRICTION]
     error = max(one["surrogate"]["error"] for one in document["boundaries"])
     known = f"The boundary is known to {100.0 * error:.1f} %: that is in the first number, not in the last."
     yield section("Which friction a new material may have", *map(paragraph, [*allowed, known]))
     yield section("Which film keeps the cage stable", *_films(document))
 
 
+NO_FRICTION = "No candidate's friction is uncertain: none was varied."
 DRIVERS_LEGEND = paragraph(
     "Shares of the variance of margin and verdict, in per cent: first (95 % interval) what would be left if "
     "all else were known, for inputs decide together and these may add up to more than 100; behind the comma "
@@ -227,12 +238,22 @@ def _drivers(document: Document) -> Iterator[str]:
     columns = _columns(shown)
     for place in dict.fromkeys(case["environment"] for case in shown):
         own = [case for case in shown if case["environment"] == place]
-        cells = [[*row, *_shares(case, row[1], columns)] for case in own for row in _lines_of(case)]
         yield ""
-        yield table([place, "of", *columns], cells, left=2)
+        texts = [_of(place, own, columns[:n]) for n in range(MOST_COLUMNS, 0, -1)]
+        yield next((text for text in texts if _fits(text)), texts[-1])
 
 
-OWN, MOST_COLUMNS = "own friction", 3
+OWN, MOST_COLUMNS, LEAST = "own friction", 6, 0.01
+
+
+def _of(place: str, cases: Sequence[Document], columns: Sequence[str]) -> str:
+    """Return the table of one environment."""
+    cells = [[*row, *_shares(case, row[1], columns)] for case in cases for row in _lines_of(case)]
+    return table([place, "of", *columns], cells, left=2)
+
+
+def _fits(text: str) -> bool:
+    return max(map(len, text.splitlines())) <= WIDTH
 
 
 def _lines_of(case: Document) -> Iterator[list[str]]:
@@ -242,13 +263,13 @@ def _lines_of(case: Document) -> Iterator[list[str]]:
 
 
 def _columns(cases: Sequence[Document]) -> list[str]:
-    """Return the inputs of the largest total indices."""
+    """Return the inputs by their largest total index, but those that matter to none."""
     largest: dict[str, float] = {}
     for case in cases:
         for index in (*case["margin"], *case["verdict"]):
             name = _factor(index)
             largest[name] = max(largest.get(name, 0.0), index["total"]["value"])
-    return sorted(largest, key=lambda name: -largest[name])[:MOST_COLUMNS]
+    return sorted((name for name in largest if largest[name] >= LEAST), key=lambda name: -largest[name])
 
 
 def _factor(index: Document) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -49,7 +49,7 @@ def allowed_friction(
     Parameters
     ----------
     question : Question
-        Cases without a friction input are left out.
+        Cases without a friction input are left out; if all are, there is no answer.
     values : ndarray
         Samples of all inputs, best from `sampled_values`, shape (sample, input) [SI].
     probability : float
@@ -62,9 +62,9 @@ def allowed_friction(
     Raises
     ------
     InputError
-        A number outside its range, or no case with a friction.
+        A number outside its range.
     """
-    _require(question, probability, scatter, searched)
+    _require(probability, scatter, searched)
     if len(values) < 2 * BLOCKS:
         raise InputError("values", f"must be at least {2 * BLOCKS} samples", "", str(len(values)))
     fine, coarse = _frictions(searched, NOMINAL_POINTS), _frictions(searched, POINTS)
@@ -81,8 +81,6 @@ def allowed_friction(
             spans = spans_above(frictions, share[:, c], probability)
             spans_nominal = spans_above(fine, nominal[:, c], 1.0)
             found = AllowedFriction(
-                like=(),
-                all_alike=False,
                 probability=probability,
                 scatter=scatter,
                 searched=searched,
@@ -94,18 +92,21 @@ def allowed_friction(
                 spans_nominal=spans_nominal,
             )
             answers.setdefault(found, []).append(case.candidate)
-    alike = len(answers) == 1
+    return _alike(answers)
+
+
+def _alike(answers: Mapping[AllowedFriction, Sequence[str]]) -> tuple[AllowedFriction, ...]:
+    """Answers with the candidates whose pockets they hold for."""
     return tuple(
-        replace(one, like=tuple(dict.fromkeys(names)), all_alike=alike) for one, names in answers.items()
+        replace(one, like=tuple(dict.fromkeys(names)), all_alike=len(answers) == 1)
+        for one, names in answers.items()
     )
 
 
-def _require(question: Question, probability: Ratio, scatter: Ratio, searched: Ratio) -> None:
+def _require(probability: Ratio, scatter: Ratio, searched: Ratio) -> None:
     require_within("probability", probability, 0.5, 0.9999)
     require_within("scatter", scatter, 0.0, 1.0)
     require_within("searched", searched, 1e-3, 2.0)
-    if all(case.friction is None for case in question.cases):
-        raise InputError("No case", "has an uncertain pocket friction", cure="Give one its friction's place.")
 
 
 def require_within(name: str, value: object, low: float, high: float) -> None:

@@ -188,8 +188,6 @@ class AllowedFriction:
     are allowed.
     """
 
-    like: tuple[str, ...]
-    all_alike: bool
     probability: Ratio
     scatter: Ratio
     searched: Ratio
@@ -199,6 +197,8 @@ class AllowedFriction:
     most_nominal: Ratio | None
     reason_nominal: str
     spans_nominal: tuple[Span, ...]
+    like: tuple[str, ...] = ()
+    all_alike: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
