@@ -70,6 +70,7 @@ def candidates(friction):
     return {
         "material_friction": (at, np.array(friction, dtype=float)),
         "material_restitution_factor": (at, np.full(shape, 0.27)),
+        "material_extrapolation": (at, np.full(shape, "", dtype=object)),
         "environment": [f"environment {i}" for i in range(shape[0])],
         "material": [f"material {i}" for i in range(shape[1])],
     }

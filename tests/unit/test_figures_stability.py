@@ -112,6 +112,17 @@ def test_each_candidate_is_drawn_at_its_friction_in_each_environment():
     assert points == [[0.1, 0.3], [0.12, 0.2]]
 
 
+def test_a_candidate_asked_for_where_it_was_not_tested_is_marked():
+    """In one environment is enough; the legend says what the mark is, and is silent where all was tested."""
+    data = drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]]))
+    data["material_extrapolation"][1, 0] = "too fast"
+    _, beside = stability.stability(data).axes
+    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0 *"]
+    assert "friction asked for where it was not tested" in beside.get_legend_handles_labels()[1]
+    _, beside = stability.stability(CURVES["candidates"]).axes
+    assert "friction asked for where it was not tested" not in beside.get_legend_handles_labels()[1]
+
+
 def test_cells_are_halfway_between_values():
     """In steps and, where values are in proportion, in factors; a single value has a cell of its own."""
     assert maps.cell_edges(np.array([0.0, 1.0, 3.0])).tolist() == [-0.5, 0.5, 2.0, 4.0]

@@ -3,15 +3,17 @@
 import json
 import sys
 import tomllib
+from dataclasses import replace
 from subprocess import run
 
 import pytest
 
-from separatrix.errors import InputError
+from separatrix.chain import known_friction
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.friction_file import friction_text, read_friction, write_friction
 from separatrix.friction_fit import FrictionTest, TestedFriction
 from separatrix.pocket_contact import PocketConditions
-from separatrix.ranking.friction import friction_seen, frictions_seen
+from separatrix.ranking.friction import first_seen, friction_seen, frictions_seen
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 
@@ -141,6 +143,19 @@ def test_tests_in_the_fluid_of_the_study_by_another_name_are_no_extrapolation(tm
     said = {env: " ".join(one.extrapolation) for env, one in armalon.friction.items()}
     assert "tested in" not in said["LN2, 440C"]
     assert "tested in GN2, not in liquid nitrogen" in said["GN2, 440C"]
+
+
+def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket_sees_it(tmp_path):
+    """Tests at 1 and 5 m/s: that at 5, not their mean, and what was not tested is said."""
+    second = SMALL.split("[[test]]")[1].replace("0.08", '0.12\nslip_speed = "5 m/s"')
+    text = SMALL.replace("0.08", '0.08\nslip_speed = "1 m/s"') + 2 * f"[[test]]{second}"
+    asked = read_study(study(tmp_path, text))
+    assert known_friction(asked) == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
+    with pytest.warns(ValidityWarning, match=r"0\.12 of Armalon in liquid nitrogen, 440C, not tested"):
+        seen = first_seen(asked)
+    assert known_friction(seen) == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
+    given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
+    assert first_seen(given) is given
 
 
 def test_the_cage_asks_for_what_its_pocket_rubs():

@@ -269,9 +269,9 @@ def test_a_wrong_study_is_refused_before_records_are_read_that_it_does_not_name(
         reading._Reading, "record", lambda self, *a: read.append((self.file.label, a[1])) or record(self, *a)
     )
     shipped_records.cache_clear()
-    (tmp_path / "case.toml").write_text(
-        'extends = "cryogenic-turbopump"\n[cage]\npocket_clearance = "5 mm"\n[ranking]\nmaterials = ["Armalon"]\n'
-    )
+    cage = 'extends = "cryogenic-turbopump"\n[cage]\npocket_clearance = "5 mm"\n'
+    text = f'{cage}[ranking]\nmaterials = ["Armalon"]\n'
+    (tmp_path / "case.toml").write_text(text)
     with pytest.raises(InputError, match="pocket_clearance"):
         read_study(tmp_path / "case.toml")
     assert sorted(read) == [

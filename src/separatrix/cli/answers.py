@@ -189,8 +189,9 @@ def simulate(
     """Follow one run of the ensemble, by default the first from the middle kick."""
     from separatrix.cage import linear_whirl_frequency, simulate
     from separatrix.chain import cage_state
+    from separatrix.ranking.friction import first_seen
 
-    state, settings = cage_state(study), study.stability
+    state, settings = cage_state(first_seen(study)), study.stability
     speed = settings.middle_kick if kick is None else kick
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(state.cage) * settings.duration
     history = simulate(

@@ -17,6 +17,7 @@ from separatrix.figures.style import (
     BLACK,
     CYCLE,
     GREY,
+    MARK,
     MARKERS,
     PAGE,
     VERDICT_COLOURS,
@@ -128,10 +129,6 @@ def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
     statement = textwrap.fill(str(data["paper_statement"].values), 110)
     axes.text(0, 1.09, statement, transform=axes.transAxes, fontsize=6.5, color=GREY, va="bottom")
-
-
-MARK = "*"
-"""After a friction that was asked for where nothing was tested."""
 
 
 def _untested(axes: Axes, sentences: xr.DataArray) -> None:

@@ -15,6 +15,7 @@ from separatrix.figures.style import (
     CYCLE,
     GREEN,
     GREY,
+    MARK,
     MARKERS,
     PAGE,
     SKY,
@@ -216,8 +217,15 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
     data = data.isel(material=np.argsort(_measured_mean(_frictions(data)), kind="stable"))
     count = data.sizes["material"]
     axes.set(xlim=(-0.6, count - 0.4), title=r"b  Candidates at their $\eta$")
-    axes.set_xticks(range(count), data["material"].values.astype(str), rotation=90, fontsize=6.5)
+    said = data["material_extrapolation"].transpose("environment", "material").values.astype(str)
+    untested = (said != "").any(axis=0)
+    names = data["material"].values.astype(str)
+    marked = [f"{name} {MARK}" if mark else name for name, mark in zip(names, untested, strict=True)]
+    axes.set_xticks(range(count), marked, rotation=90, fontsize=6.5)
     axes.tick_params(axis="x", length=0)
+    if untested.any():
+        label = "friction asked for where it was not tested"
+        axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
     _own_bands(axes, data)
     friction, error = _frictions(data), _errors(data)
     for place in range(count):

@@ -33,6 +33,9 @@ BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW, BLACK = (
 
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 GREY = "#6b6b6b"
+MARK = "*"
+"""After a friction that was asked for where nothing was tested."""
+
 MARKERS = ("o", "s", "^", "v", "P", "*", "p")
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}

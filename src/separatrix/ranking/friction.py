@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 
 from separatrix.chain import CageState, cage_state, traction_state
+from separatrix.errors import ValidityWarning
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.study import Candidate, Friction, Operation, Study
 from separatrix.units import Ratio
@@ -88,6 +90,35 @@ def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Cand
         for environment, one in candidate.friction.items()
     }
     return replace(candidate, friction=friction)
+
+
+def first_seen(study: Study) -> Study:
+    """The study with its first candidate's frictions as the cage sees them, where it has no friction itself.
+
+    Warns
+    -----
+    ValidityWarning
+        The friction is asked for where nothing was tested.
+    """
+    if study.cage is None or study.cage.ball_cage_friction is not None or study.ranking is None:
+        return study
+    first, *others = study.ranking.candidates
+    name, friction = next(((env, f) for env, f in first.friction.items() if f is not None), ("", None))
+    if friction is None or friction.law is None:
+        return study
+    seen = candidate_seen(study, first, cage_state(study, friction=0.0))
+    _say_what_was_not_tested(first.name, name, seen.friction[name])
+    return replace(study, ranking=replace(study.ranking, candidates=(seen, *others)))
+
+
+def _say_what_was_not_tested(candidate: str, environment: str, friction: Friction | None) -> None:
+    if friction is not None and friction.extrapolation:
+        warnings.warn(
+            f"Pocket friction {friction.mean:.3g} of {candidate} in {environment}, not tested as the pocket "
+            f"rubs: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction gives another.",
+            ValidityWarning,
+            stacklevel=3,
+        )
 
 
 def conditions_of(study: Study, state: CageState) -> PocketConditions:
