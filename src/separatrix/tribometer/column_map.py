@@ -146,16 +146,7 @@ def _document(path: Path, name: str) -> dict[str, Any]:
 
 def _columns(given: Mapping[str, Any], where: str) -> dict[str, ColumnChoice]:
     _known(given, tuple(MEANINGS), where, "column")
-    choices = {meaning: _choice(meaning, value, f"{where} {meaning}") for meaning, value in given.items()}
-    taken: dict[object, str] = {}
-    for meaning, choice in choices.items():
-        column = choice.name if choice.name is not None else choice.number
-        if column in taken:
-            raise InputError(
-                f"{where} {meaning}", f"is the same column as {taken[column]}", "", shown(column)
-            )
-        taken[column] = meaning
-    return choices
+    return {meaning: _choice(meaning, value, f"{where} {meaning}") for meaning, value in given.items()}
 
 
 def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
@@ -164,7 +155,8 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     _known(table, ("name", "unit", "sign"), where, "key")
     name, unit, sign = table.get("name"), table.get("unit"), table.get("sign", 1)
     if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
-        raise InputError(where, "must name a column, or give its number", "", shown(name), cure)
+        value = "" if name is None else shown(name)
+        raise InputError(where, "must name a column, or give its number", "", value, cure)
     if isinstance(name, int) and name < 1:
         raise InputError(where, "must be the number of a column, counted from 1", "", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):
@@ -256,5 +248,9 @@ def _line(given: Mapping[str, Any], key: str, where: str) -> int | None:
 def _texts(given: Mapping[str, Any], key: str, where: str) -> tuple[str, ...]:
     value = given.get(key, [])
     if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
-        raise InputError(f"{where} {key}", "must be a list of texts", "", shown(value))
+        raise InputError(
+            f"{where} {key}",
+            "must be a list of texts",
+            cure=f'Write {key} = ["-999", "OVL"].' if key == "missing" else f'Write {key} = ["step 2"].',
+        )
     return tuple(value)

@@ -86,6 +86,7 @@ def understand(
         meaning: _given(meaning, choice, headers, units, source, layout)
         for meaning, choice in columns.columns.items()
     }
+    _refuse_same(given, headers, source)
     options = {
         i: _options(headers[i], units[i], layout)
         for i in range(len(headers))
@@ -99,6 +100,15 @@ def understand(
     _require_abscissa(result, headers, source, options)
     result.columns = _read(headers, units, options, result)
     return result
+
+
+def _refuse_same(given: dict[str, Chosen], headers: Sequence[str], source: str) -> None:
+    taken: dict[int, str] = {}
+    for meaning, chosen in given.items():
+        other = taken.setdefault(chosen.index, meaning)
+        if other != meaning:
+            rule = f"is both {_words(other)} and {_words(meaning)} in the column map"
+            raise InputError(f"{source}: column {shown(headers[chosen.index].strip())}", rule)
 
 
 def _given(
