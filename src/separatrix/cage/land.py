@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
 
 from separatrix.cage.series import product
 from separatrix.cage.slots import (
@@ -62,7 +61,10 @@ def rebound_damping(restitution: Ratio) -> Ratio:
     if restitution >= 1.0:
         return 0.0
     target = max(restitution, LOWEST_RESTITUTION)
-    return float(brentq(lambda zeta: rebound(zeta) - target, 0.0, 100.0, xtol=1e-14))
+    low, high = 0.0, 100.0
+    while low < (middle := 0.5 * (low + high)) < high:  # down to neighbouring numbers
+        low, high = (middle, high) if rebound(middle) > target else (low, middle)
+    return low
 
 
 @inner_kernel

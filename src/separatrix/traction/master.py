@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.compiled import kernel
 from separatrix.traction.influence import node_pressure, strip_influence, toeplitz_product
@@ -138,16 +137,29 @@ def _ordered(c: Array, F: Array, S: Array) -> Knots:
 
 def _row(knots: Knots, scale: float) -> Array:
     """One strip's F and dF/dv on the grid of v = s c/(1 + s c), shape (creep, 2) [-]."""
-    c, F, S = knots
+    c = knots[0]
     v = np.linspace(0.0, 1.0, CREEP_COUNT)[:-1]
     creep = v / (1.0 - v) / scale
     inside, within = creep < c[-1], np.minimum(creep, c[-1])
-    curve = CubicHermiteSpline(c, F, S)
+    curve, tangent = _hermite(knots, within)
     row = np.zeros((CREEP_COUNT, 2))
-    row[:-1, 0] = np.where(inside, np.minimum(curve(within), 1.0), 1.0)
-    row[:-1, 1] = np.where(inside, np.maximum(curve(within, 1), 0.0), 0.0) / (scale * (1.0 - v) ** 2)
+    row[:-1, 0] = np.where(inside, np.minimum(curve, 1.0), 1.0)
+    row[:-1, 1] = np.where(inside, np.maximum(tangent, 0.0), 0.0) / (scale * (1.0 - v) ** 2)
     row[-1, 0] = 1.0
     return row
+
+
+def _hermite(knots: Knots, at: Array) -> tuple[Array, Array]:
+    """Value and tangent of the cubics that have the values and tangents of the knots."""
+    c, F, S = knots
+    i = np.clip(np.searchsorted(c, at, side="right") - 1, 0, c.size - 2)
+    step, x = c[i + 1] - c[i], at - c[i]
+    chord = (F[i + 1] - F[i]) / step
+    bend = (S[i] + S[i + 1] - 2.0 * chord) / step
+    square, cube = (chord - S[i]) / step - bend, bend / step
+    return F[i] + S[i] * x + square * (x * x) + cube * (x * x * x), S[i] + square * x * 2.0 + cube * (
+        x * x
+    ) * 3.0
 
 
 def master_tables(
