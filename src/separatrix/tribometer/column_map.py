@@ -248,9 +248,5 @@ def _line(given: Mapping[str, Any], key: str, where: str) -> int | None:
 def _texts(given: Mapping[str, Any], key: str, where: str) -> tuple[str, ...]:
     value = given.get(key, [])
     if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
-        raise InputError(
-            f"{where} {key}",
-            "must be a list of texts",
-            cure=f'Write {key} = ["-999", "OVL"].' if key == "missing" else f'Write {key} = ["step 2"].',
-        )
+        raise InputError(f"{where} {key}", "must be a list of texts", cure=f'Write {key} = ["..."].')
     return tuple(value)
