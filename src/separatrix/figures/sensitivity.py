@@ -300,7 +300,11 @@ def _film_panel(axes: Axes, data: xr.Dataset) -> None:
             continue
         lines = axes.contour(thickness, friction, share, levels=[level], colors=[colour], linewidths=1.2)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
-        axes.plot([], [], color=colour, label=f"{name}: stable with {level:.2f} or more on the ticked side")
+        axes.plot([], [], color=colour, label=name)
+    ticks: Any = {"color": GREY, "lw": 1.2, "path_effects": [withTickedStroke(angle=90, length=0.5)]}
+    axes.plot(
+        [], [], label=f"ticks: the side that is stable with a probability of {level:.2f} or more", **ticks
+    )
     if limit < thickness[-1]:
         label = "thicker than the model of a film holds for"
         axes.axvspan(limit, thickness[-1], color=GREY, alpha=0.12, lw=0, label=label)
