@@ -236,4 +236,13 @@ def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
     assert (test["friction"], test["slip_speed"], test["sample"]) == (0.2, [1.0, 5.0], "s1")
     assert found["friction_scatter"]["value"] == 0.09
+    assert found["other_tests"] == []
     json.dumps(found, allow_nan=False)
+
+
+def test_a_result_holds_the_tests_of_materials_that_are_not_ranked(tmp_path):
+    """The scatter is pooled over them too."""
+    from separatrix.study_file import resolved
+
+    found = resolved(read_study(study(tmp_path, ranking='materials = ["My compound"]')))["ranking"]
+    assert [test["material"] for test in found["other_tests"]] == ["Armalon"]

@@ -67,7 +67,7 @@ class FrictionTest:
     reduced_by: str | None = None
 
     def __post_init__(self) -> None:
-        logarithm = "The fit takes its logarithm."
+        logarithm = "Its logarithm is fitted; 8 % is 0.08."
         _check.settle(
             *(_check.printable_text(self, name) for name in _TEXTS),
             _plain_names(self),

@@ -21,7 +21,6 @@ from separatrix.library.writing import add_records
 from separatrix.study import Material
 
 __all__ = [
-    "FRICTION_TABLES",
     "KINDS",
     "Choice",
     "Content",
@@ -47,9 +46,6 @@ __all__ = [
     "shipped",
     "with_files",
 ]
-
-FRICTION_TABLES = ("pin-on-disk-77K",)
-"""Names of the shipped friction tables."""
 
 
 def names(kind: str) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from enum import Enum
 from typing import Any
@@ -136,9 +137,18 @@ def _ranking(study: Study) -> dict[str, Any] | None:
         "candidates": candidates,
         "friction_scatter": _value(study, study.ranking, "ranking", "friction_scatter"),
         "table": table,
+        "other_tests": [_test(test) for test in _other_tests(study.ranking.candidates)],
     }
     key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
     return _origin(study, key, item)
+
+
+def _other_tests(candidates: Sequence[Candidate]) -> list[FrictionTest]:
+    """Tests of the friction file whose material is not ranked: its scatter is pooled over all of them."""
+    laws = [f.law for one in candidates for f in one.friction.values() if f is not None]
+    tests = next((law.tests for law in laws if isinstance(law, TestedFriction)), ())
+    ranked = {candidate.name for candidate in candidates}
+    return [test for test in tests if test.material not in ranked]
 
 
 def _candidate(candidate: Candidate) -> dict[str, Any]:

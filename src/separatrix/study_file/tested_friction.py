@@ -11,6 +11,7 @@ from typing import Any
 from separatrix.errors import InputError
 from separatrix.friction_file import read_friction
 from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
+from separatrix.friction_fit.records import CONDITIONS
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
@@ -126,6 +127,3 @@ def _stated(friction: Friction, environment: str, table: FrictionTable, scatter:
         default_scatter=scatter,
     )
     return replace(friction, law=law)
-
-
-CONDITIONS = ("slip_speed", "pressure", "temperature")
