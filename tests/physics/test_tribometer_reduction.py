@@ -91,8 +91,8 @@ def test_scale_and_level_of_friction_change_nothing_but_themselves():
 
 
 @pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
-def test_an_exponential_is_cut_where_its_rest_is_small(share):
-    """A fall of known size and length: what stays of it behind the cut, integrated, is the 15 % or less."""
+def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
+    """A fall of known size and length: what stays of it behind the cut, integrated, and no late cut."""
     rng = np.random.default_rng(11)
     n, size = 256, 1.0
     x = (np.arange(n) + 0.5) / n
@@ -102,8 +102,25 @@ def test_an_exponential_is_cut_where_its_rest_is_small(share):
     rest = size * np.exp(-3.0 * x[behind] / share).mean()
     error = 0.02 / np.sqrt(behind.sum())
     assert found.ends
-    assert rest < 2 * run_in.SHARE * error  # the fall is known to half of its rest
-    assert found.end < 4.0 * share  # exp(-12) of it is left there
+    assert rest < error  # of two parts whose sum is least, the one that falls fast is the smaller
+    assert found.end < 3.0 * share  # exp(-9) of it is left there
+
+
+def test_an_excess_that_noise_hides_is_in_the_error():
+    """An excess that shifts the mean by 1.8 standard errors is seldom seen: of 300 logs 92 % are held.
+
+    A cut where it is seen, and no more, holds 86 % of them.
+    """
+    rng = np.random.default_rng(15)
+    x = (np.arange(256) + 0.5) / 256
+    held = 0
+    for _ in range(300):
+        values = 1.1 * np.exp(-10.0 * x) + rng.standard_normal(256)
+        found = run_in.run_in(values)
+        mean = steady.steady_mean(values[round(found.end * 256) :])
+        error = np.hypot(mean.standard_error, found.rest)
+        held += abs(mean.mean) <= steady.half_width(error, mean.degrees_of_freedom)
+    assert held > 0.89 * 300
 
 
 def test_a_fall_that_is_no_exponential_is_cut_too():

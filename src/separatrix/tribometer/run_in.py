@@ -1,70 +1,68 @@
-"""Where running-in ends: a fall fitted in correlated noise, cut where what is left of it does not count.
+"""Where running-in ends: an excess fitted in correlated noise, cut where the error of the mean is least.
 
-A straight line and an excess that falls, A exp(-x/L) or A (1 - x/L), are fitted by generalised least squares
-with noise whose neighbours are correlated (a first-order autoregression) [1]_, [2]_. The excess is believed
-if it fits better and if the start lies farther from the line than any later stretch as long. The test is then
-cut where what stays of it in the mean is 15 % of the standard error of that mean; what is left is asked
-again, so that a peak or another fall is cut in pieces. All shapes and correlations count with their weight.
+Friction is a straight line, noise whose neighbours are correlated (a first-order autoregression) and perhaps
+an excess that falls: as an exponential, slower than one, straight, at once, or after a peak [1]_. Shapes,
+lengths and correlations, and no excess at all, have their Akaike weights [2]_. So it is known how much of an
+excess may be left in the mean behind each cut, also where noise hides it. An early cut leaves much of it, a
+late one little of the test: the cut is where both together are least. What is behind it is asked again, so
+that a mixture of shapes is cut in pieces.
 
 References
 ----------
 .. [1] P. J. Blau, "On the nature of running-in", Tribology International 38 (2005) 1007-1012: its shapes.
-.. [2] D. Cochrane and G. H. Orcutt, "Application of least squares regression to relationships containing
-   auto-correlated error terms", Journal of the American Statistical Association 44 (1949) 32-61.
+.. [2] K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer 2002:
+   weights of models, and the error of what is averaged over them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from separatrix.units import Array, Ratio
 
-METHOD = "falling excess in correlated noise, cut where its rest no longer counts"
-
-LENGTHS = np.geomspace(0.002, 0.3, 26)
-"""Lengths in which the excess of friction falls to 1/e, tried as shares of what is looked at."""
-
-RAMPS = np.geomspace(0.02, 0.6, 16)
-"""Lengths of straight falls that then stop, tried as shares of what is looked at."""
+METHOD = "falling excess in correlated noise, cut where the error of the mean is least"
 
 CORRELATIONS = np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97])
 """Correlations of neighbouring spans tried."""
 
-GAIN = 9.0
-"""Fall of -2 ln(likelihood) from which an excess is believed: 1 % for a free size and length."""
+SHAPES: tuple[tuple[Array, Callable[[Array], Array]], ...] = (
+    (np.geomspace(0.003, 0.3, 96), lambda x: -np.exp(-x)),  # exponential
+    (np.geomspace(0.004, 0.2, 14), lambda x: -1.0 / (1.0 + x)),  # 1/(1 + x)^2, slower than that
+    (np.geomspace(0.02, 0.6, 16), lambda x: -0.5 * np.maximum(0.0, 1.0 - x) ** 2),  # straight, then none
+    (np.geomspace(0.005, 0.6, 20), lambda x: np.minimum(x, 1.0)),  # level, then none
+    (np.geomspace(0.004, 0.15, 14), lambda x: -(1.0 + x) * np.exp(-x)),  # x exp(-x), a peak
+)
+"""Falls tried: lengths as shares of what is looked at, and the integral over x, the place over the length."""
 
-SHARE = 0.15
-"""Of the standard error of the mean; a smaller rest of the excess does not count."""
+COST = 6.0
+"""By how much -2 ln(likelihood) must fall for an excess to weigh as much as none: two for each of size,
+length and kind, which it adds [2]_."""
+
+WORTH = 0.9
+"""A cut is made if it brings the error below this share of what it is without."""
 
 LATEST = 0.75
 """Share of the test beyond which no cut is made."""
 
-PASSES = 4
-"""Falls that may follow on one another."""
-
-
-_SHAPES = np.concatenate([LENGTHS, RAMPS])
-
+PASSES = 5
+"""How often what is left is asked again, at most, the first time included."""
 
 ROUNDING = 1e-12
 """Share of friction below which differences are those of rounding."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RunIn:
     """End of running-in, as a share of the stretch that was looked at."""
 
     end: Ratio
-    amplitude: Ratio
-    """Of the last excess that was believed, at its start [-]; 0 if none was."""
-    length: Ratio
-    """In which it falls to 1/e, or to nothing if straight, as a share of the whole stretch."""
     rest: Ratio
-    """What is left of it in the mean behind the end [-]."""
+    """What may be left of it in the mean behind the end, root mean square [-]."""
     ends: bool
-    """Whether the rest is small before `LATEST`."""
+    """Whether that is less than the error by noise, and a later cut would not make it less."""
 
 
 def run_in(values: Array) -> RunIn:
@@ -76,103 +74,73 @@ def run_in(values: Array) -> RunIn:
         Means over equal spans, shape (span,).
     """
     n, first = values.size, 0
-    found = RunIn(end=0.0, amplitude=0.0, length=0.0, rest=0.0, ends=True)
-    latest = int(LATEST * n)
+    found = RunIn(end=0.0, rest=0.0, ends=True)
     if np.ptp(values) <= ROUNDING * np.abs(values).max():
         return found
     for _ in range(PASSES):
-        falls = _falls(values[first:])
-        if falls is None:
-            break
-        left = n - first
-        cut, rest, ends = _cut(falls, left, latest - first)
+        rest, noise = _errors(values[first:])
+        latest = int(LATEST * n) - first
+        both = np.hypot(rest, noise)[: latest + 1]
+        best = int(np.argmin(both))
+        cut = best if both[best] <= WORTH * both[0] else 0
+        ends = bool(rest[cut] <= noise[cut]) and not 0 < cut == latest
         first += cut
-        amplitude, length = falls.best
-        share = length * left / n
-        found = RunIn(end=first / n, amplitude=amplitude, length=share, rest=rest, ends=ends)
-        if not ends:
+        found = RunIn(end=first / n, rest=float(rest[cut]), ends=ends)
+        if not ends or cut == 0:
             break
     return found
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Falls:
-    """Falls that may be, one for each correlation and shape tried."""
-
-    weights: Array
-    """How likely each is, all together one, shape (correlation, fall)."""
-    amplitudes: Array
-    """Shape (correlation, fall) [-]."""
-    density: float
-    """Spectral density of the noise at zero frequency, one span being the unit of time."""
-
-    def rest(self, share: Array) -> Array:
-        """Return the root mean square of what they add to the mean behind each cut, shape (cut,)."""
-        length, ramp = LENGTHS[:, None], RAMPS[:, None]
-        exponential = length * (np.exp(-share / length) - np.exp(-1.0 / length))
-        straight = np.maximum(0.0, ramp - share) ** 2 / (2.0 * ramp)
-        tail = np.concatenate([exponential, straight]) / (1.0 - share)
-        return np.asarray(np.sqrt((self.weights * self.amplitudes**2).sum(axis=0) @ tail**2), dtype=float)
-
-    @property
-    def best(self) -> tuple[float, float]:
-        """Amplitude and length of the most likely one."""
-        row, column = np.unravel_index(int(np.argmax(self.weights)), self.weights.shape)
-        return float(self.amplitudes[row, column]), float(_SHAPES[column])
-
-
-def _falls(values: Array) -> _Falls | None:
-    """Return the falls that may be, if the best fits better than none."""
+def _errors(values: Array) -> tuple[Array, Array]:
+    """Return what may be left of an excess in the mean behind each span, and its error by noise; (cut,)."""
     n = values.size
-    x = (np.arange(n) + 0.5) / n
-    straight, falls = np.stack([np.ones(n), x - 0.5]), _shapes(x)
-    designs = np.concatenate([np.broadcast_to(straight, (len(falls), 2, n)), falls[:, None]], axis=1)
-    without, _, _ = _fits(straight[None], values)
-    deviance, coefficients, variances = _fits(designs, values)
-    if without.min() - deviance.min() < GAIN:
-        return None
-    weights = np.exp(-0.5 * (deviance - deviance.min()))
+    falls = shapes(n)
+    found = [_weighed(values, falls, rho) for rho in CORRELATIONS]
+    logs = np.array([log for log, _, _ in found])
+    weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    row, column = np.unravel_index(int(np.argmax(weights)), weights.shape)
-    if not _stands_out(values - coefficients[row, column, :2] @ straight, float(_SHAPES[column])):
-        return None
-    density = float((weights * variances / (1.0 - CORRELATIONS[:, None]) ** 2).sum())
-    return _Falls(weights=weights, amplitudes=coefficients[..., -1], density=density)
+    squares = np.einsum("rs,rs->s", weights, np.array([square for _, square, _ in found]))
+    density = float((weights * np.array([one for _, _, one in found])).sum())
+    left = n - np.arange(n)
+    tails = np.cumsum(falls[:, ::-1], axis=1)[:, ::-1] / left
+    return np.sqrt(squares[1:] @ tails**2), np.sqrt(density / left)
 
 
-def _shapes(x: Array) -> Array:
-    """Return the falls tried, one at the start, as means over spans around x, shape (fall, span)."""
-    half = 0.5 / x.size / LENGTHS[:, None]
-    exponential = np.exp(-x / LENGTHS[:, None]) * np.sinh(half) / half
-    ramp, edge = RAMPS[:, None], np.arange(x.size + 1) / x.size
-    straight = -np.diff(np.maximum(0.0, ramp - edge) ** 2) * x.size / (2.0 * ramp)
-    return np.concatenate([exponential, straight])
+def _weighed(values: Array, falls: Array, rho: float) -> tuple[Array, Array, Array]:
+    """Return no excess and each shape under one correlation.
 
-
-def _stands_out(residual: Array, length: float) -> bool:
-    """Return whether the start lies farther from the straight line than any later stretch as long.
-
-    A slow oscillation has a fall at its start too, and others like it later on.
+    Returns
+    -------
+    tuple
+        Logarithm of the weight, mean square of the size [-], and spectral density of the noise at zero
+        frequency with one span as the unit of time; shape (1 + shape,) each.
     """
-    size = int(np.clip(round(length * residual.size), 1, residual.size // 3))
-    count = residual.size // size
-    means = np.abs(residual[: size * count].reshape(count, size).mean(axis=1))
-    return bool(means[0] > means[1:].max())
-
-
-def _fits(designs: Array, values: Array) -> tuple[Array, Array, Array]:
-    """Return -2 ln(likelihood), coefficients and variance for each correlation and design."""
-    deviance, coefficients, variances = [], [], []
     n = values.size
-    for rho in CORRELATIONS:
-        X, y = _whitened(designs, rho), _whitened(values, rho)
-        beta = np.linalg.solve(X @ X.swapaxes(-1, -2), (X @ y)[..., None])[..., 0]
-        residual = y - (beta[:, None] @ X)[:, 0]
-        variance = np.maximum((residual**2).mean(axis=-1), 1e-300)
-        deviance.append(n * np.log(variance) - np.log1p(-(rho**2)))
-        coefficients.append(beta)
-        variances.append(variance)
-    return np.array(deviance), np.array(coefficients), np.array(variances)
+    line = np.stack([np.ones(n), (np.arange(n) + 0.5) / n - 0.5])
+    y, straight, g = (_whitened(one, rho) for one in (values, line, falls))
+    basis, factor = np.linalg.qr(straight.T)
+    y, g = y - basis @ (basis.T @ y), g - (g @ basis) @ basis.T
+    total, power = max(float(y @ y), 1e-300), (g * g).sum(axis=-1)
+    size = g @ y / power
+    left = np.concatenate([[1.0], np.maximum(1.0 - size**2 * power / total, 1e-13)])
+    cost = np.concatenate([[0.0], np.full(size.size, 0.5 * COST + np.log(size.size))])
+    level = 0.5 * np.log1p(-(rho**2)) - np.log(np.abs(np.diag(factor))).sum() - 0.5 * (n - 2) * np.log(total)
+    variance = total * left / (n - 3)
+    square = np.concatenate([[0.0], size**2 + variance[1:] / power])
+    return level - 0.5 * (n - 2) * np.log(left) - cost, square, variance / (1.0 - rho) ** 2
+
+
+def shapes(count: int) -> Array:
+    """Return the falls tried, as means over equal spans of a stretch of length one, shape (shape, span).
+
+    Each is the slope of what stands here, x from the start over its length.
+    """
+    edges = np.arange(count + 1) / count
+    sums = []
+    for lengths, integral in SHAPES:
+        x = edges / lengths[:, None]
+        sums.append(lengths[:, None] * integral(x))
+    return np.diff(np.concatenate(sums), axis=1) * count
 
 
 def _whitened(values: Array, rho: float) -> Array:
@@ -181,12 +149,3 @@ def _whitened(values: Array, rho: float) -> Array:
     out[..., 1:] -= rho * values[..., :-1]
     out[..., 0] *= np.sqrt(1.0 - rho**2)
     return out
-
-
-def _cut(falls: _Falls, count: int, latest: int) -> tuple[int, float, bool]:
-    """Return the first span after which the rest does not count, that rest, and whether it is so."""
-    cuts = np.arange(1, max(latest, 1) + 1)
-    rest = falls.rest(cuts / count)
-    small = rest <= SHARE * np.sqrt(falls.density / (count - cuts))
-    place = int(np.argmax(small)) if small.any() else cuts.size - 1
-    return int(cuts[place]), float(rest[place]), bool(small.any())
