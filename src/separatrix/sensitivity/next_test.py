@@ -115,11 +115,12 @@ def default_measurements(
         if i in frictions
         else Measurement(input=i, error=_better(one.distribution))
         for i, one in enumerate(question.inputs)
-        if i != question.boundary and _is_measured(one)
+        if _is_measured(one)
     )
 
 
 def _is_measured(one: Input) -> bool:
+    """Whether it is neither counted, as the boundaries that runs allow are, nor a setting of the runs."""
     counted = isinstance(one.distribution, Samples) and one.distribution.is_whole
     return not counted and not one.name.startswith("stability.")
 
