@@ -133,3 +133,18 @@ def test_the_mirror_image_of_the_mirror_image_is_the_cage():
     )
     assert again.pocket_angles == pytest.approx(ANGLES, rel=1e-14)  # 2 pi - (2 pi - a)
     assert again.orbital_cosines == mirror.orbital_cosines
+
+
+@pytest.mark.parametrize(
+    ("cage", "inner", "outer", "sense"),
+    [
+        (-1.0, 9.0, 9.0, -1),
+        (0.0, 3.0, -5.0, -1),
+        (0.0, 5.0, -3.0, 1),
+        (0.0, -4.0, 4.0, -1),
+        (0.0, 0.0, 0.0, 1),
+    ],
+)
+def test_a_bearing_turns_as_its_ball_set_does(cage, inner, outer, sense):
+    """At rest, as its rings do in the mean, or as the inner one."""
+    assert replace(CAGE, cage_speed=cage, inner_speed=inner, outer_speed=outer).rotation_sense == sense

@@ -17,7 +17,7 @@ from separatrix.cage import (
     judge,
     wilson_interval,
 )
-from separatrix.cage.drive import drive_energy, room
+from separatrix.cage.drive import drifts, drive_energy, room
 from separatrix.study import Guidance
 
 CAGE = PlanarCage(
@@ -136,6 +136,7 @@ def test_runs_that_drift_are_not_stable():
     assert result.verdict is Verdict.UNDECIDED
     assert "drifts" in result.reason
     assert "12 of 60 runs" in result.reason
+    assert result.probability_stable == 48 / 60
     assert judge(CAGE, ensemble([[DIES] * 8 + [DRIFT] * 8] * 3)).cage_motion is CageMotion.UNSTABLE
 
 
@@ -149,6 +150,27 @@ def test_a_landless_turning_cage_is_never_stable():
     assert result.drift_rate_law == pytest.approx(2 * 0.05 * 670.0**2 / (11 * 2000.0), rel=1e-12)  # rounding
     held = judge(GUIDED, ensemble([[DIES] * 16] * 3))
     assert (held.verdict, held.drift_rate_law) == (Verdict.STABLE, 0.0)
+
+
+def test_runs_that_were_cut_count_as_those_that_were_followed():
+    """Of three that die one was followed, and it circles: so do all three of four."""
+    runs = ensemble([[GROWS, DIES, DIES, DIES]], cut=np.array([[False, False, True, True]]))
+    assert runs.share(np.array([[False, True, False, False]])).tolist() == [0.75]
+
+
+def test_the_drift_is_that_of_the_runs_that_do_not_grow():
+    """Their median; 0 where all grow."""
+    rates = [[1.0, 2.0, 3.0, 90.0, 80.0, 70.0, 60.0]]
+    mostly = ensemble([[DIES] * 3 + [GROWS] * 4], drift_rate=rates)
+    assert judge(CAGE, mostly).drift_rate == 2.0
+    assert judge(CAGE, ensemble([[GROWS] * 7], drift_rate=rates)).drift_rate == 0.0
+
+
+def test_turning_or_weight_moves_a_cage_that_nothing_holds():
+    """Without a land; one at rest in orbit stays."""
+    moved = (replace(CAGE, cage_speed=670.0), replace(CAGE, gravity=9.81))
+    assert [drifts(cage) for cage in (*moved, CAGE)] == [True, True, False]
+    assert not drifts(replace(GUIDED, gravity=9.81))
 
 
 def test_stalled_runs_are_undecided():
