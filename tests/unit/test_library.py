@@ -205,6 +205,7 @@ def datum(value, temperature):
         (295.0, 1.0, None),
         (320.0, 3.0, None),
         (150.0, 2.0, "none is stated at 150 K, that of 77 K is taken as it is"),
+        (405.0, 3.0, "none is stated at 405 K, that of 280 K to 400 K is taken as it is"),
         (500.0, 3.0, "none is stated at 500 K, that of 280 K to 400 K is taken as it is"),
     ],
 )
