@@ -96,6 +96,12 @@ def test_the_mean_takes_the_measured_environments_only():
     assert overall([None, None]) is None
 
 
+def test_the_error_of_a_mean_over_environments_falls_with_their_number():
+    """Half the root of the sum of squares of two; rounding."""
+    both = [Friction(mean=0.2, standard_deviation=0.03, count=9), Friction(mean=0.4, standard_error=0.04)]
+    assert overall(both).error == pytest.approx(math.hypot(0.01, 0.04) / 2, rel=1e-12)
+
+
 def test_scatter_of_the_friction_becomes_a_standard_error():
     """Standard deviation over the root of the count; without a count the deviation itself."""
     assert measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).error == pytest.approx(0.01)
@@ -155,6 +161,7 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
     both = RankingQuestion(environments=("air", "vacuum"), candidates=(measured_in_both, blank))
     study = quick_study(ranking=both)
     a, b = rank(study).environments[0].materials
+    assert a.margin == a.restitution_threshold - a.restitution_factor
     cage = cage_state(study, friction=0.1).cage
     found = judge(cage, whole_ensemble(cage, QUICK, Event()))
     names = {f.name for f in fields(Judgement)}
@@ -227,6 +234,12 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
     soft_one, stiff_one = sorted(found, key=lambda row: row.ball_cage_stiffness)
     assert (soft_one.name, stiff_one.name) == ("soft", "stiff")
     assert soft_one.restitution_factor > stiff_one.restitution_factor
+    for row, candidate in ((soft_one, candidates[0]), (stiff_one, candidates[1])):
+        lonely = replace(question, candidates=(candidate,))
+        (alone,) = rank(replace(study, cage=cage, ranking=lonely)).overall
+        assert repr(replace(row, rank=1, probability_lowest_friction=1.0)) == repr(
+            replace(alone, probability_lowest_friction=1.0)
+        )
 
 
 def test_a_study_without_candidates_is_refused():

@@ -79,6 +79,18 @@ def test_a_field_without_friction_is_empty():
     assert field.pressure.min() > 0.0
 
 
+def test_traction_without_slip_knows_no_friction():
+    """Elastic shear of the same creep; with friction enough it is the traction; rounding."""
+    how = {"film_compliance": 1e-15, "creep_increment": 1e-3, "strips": 3, "nodes": 20}
+    still = Creep(spin=0.0, curvature=0.0)
+    fields = [shear_field(ELLIPSE, still, race_friction=mu, **how) for mu in (0.1, 0.2, 100.0)]
+    for field in fields[1:]:
+        assert field.shear_without_slip == pytest.approx(fields[0].shear_without_slip, rel=1e-9)
+    stuck = fields[2].slip == 0.0
+    assert stuck.sum() > 50
+    assert fields[2].shear[stuck] == pytest.approx(fields[2].shear_without_slip[stuck], rel=1e-2)
+
+
 def test_a_layer_needs_a_film():
     """Bare races have no layer."""
     bearing = BallBearing(
