@@ -100,13 +100,17 @@ class Surrogate:
     seed: int
 
     def coefficients(self, draw: int | None) -> Coefficients:
-        """Coefficients of every kick: the mode, or a draw."""
+        """Coefficients of every kick: the mode, or a draw; those of the land stay at their mode.
+
+        Where no run grew by the land their posterior is far from normal: draws would make cages grow by it.
+        """
         kicks, count = self.mode.shape
         if draw is None:
             return self._parted(self.mode, np.zeros(kicks))
         normal = Generator(Philox(key=[self.seed, draw])).standard_normal((kicks, count + 1))
         found = self.mode + np.einsum("kij,kj->ki", self.root, normal[:, 1:])
-        return self._parted(found, self.misfit * normal[:, 0])
+        drawn = self._parted(found, self.misfit * normal[:, 0])
+        return drawn._replace(land=self._parted(self.mode, drawn.misfit).land)
 
     def _parted(self, found: Array, misfit: Array) -> Coefficients:
         ends = np.cumsum([self.shift_terms, SIDE, SIDE])
