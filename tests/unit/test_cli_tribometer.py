@@ -195,3 +195,34 @@ def test_names_of_pages_are_names_of_files():
     """Whatever stands in the name of a log, its page stays in its folder."""
     assert file_name("../a b.xlsx, sheet 1") == "a-b.xlsx-sheet-1"
     assert file_name("...") == "test"
+
+
+def test_a_column_map_says_where_running_in_ends_in_each_file(logs, capsys):
+    """One file's end is given, the other's is found; `--run-in` goes before the map."""
+    with (logs / "map.toml").open("a") as file:
+        file.write('run_in_end = "5 min"\n')
+    command = ["tribometer", "a.csv", "b.csv", "--map", "map.toml", "--json"]
+    assert main(command) == 0
+    first, second = json.loads(capsys.readouterr().out)["tests"]
+    assert (first["run_in_method"] == "given", second["run_in_method"]) == (False, "given")
+    assert second["run_in_end"] == 300.0
+    assert main([*command, "--run-in", "6 min"]) == 0
+    found = json.loads(capsys.readouterr().out)["tests"]
+    assert [test["run_in_end"] for test in found] == [360.0, 360.0]
+
+
+@pytest.mark.parametrize(
+    ("end", "words"),
+    [
+        ('"5"', 'map.toml: [files."b.csv"] run_in_end must be a time, a distance'),
+        ("5.0", "run_in_end must be a time, a distance"),
+        ('"5 h"', "b.csv: run_in_end must lie before the end of the test"),
+        ('"5 m"', "b.csv needs a column of distance"),
+    ],
+)
+def test_a_wrong_end_of_running_in_in_a_column_map_is_refused(logs, capsys, end, words):
+    """The line names the map, or the file whose log it does not fit."""
+    with (logs / "map.toml").open("a") as file:
+        file.write(f"run_in_end = {end}\n")
+    assert main(["tribometer", "a.csv", "b.csv", "--map", "map.toml"]) == 2
+    assert words in capsys.readouterr().err

@@ -6,7 +6,7 @@ import contextlib
 import json
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -152,12 +152,15 @@ def _of_file(path: Path, chosen: ColumnMap | None, how: ReductionOptions) -> lis
     from separatrix.tribometer.reading import read_log
     from separatrix.tribometer.reduction import reduction
 
+    said = None if chosen is None else chosen.run_in_end(path)
+    key = "--run-in" if how.run_in_end is not None else "run_in_end"
     try:
-        return [reduction(log, how) for log in read_log(path, chosen)]
+        cut = how if how.run_in_end is not None else replace(how, run_in_end=said)
+        return [reduction(log, cut) for log in read_log(path, chosen)]
     except InputError as error:
         if not error.where.startswith("ReductionOptions."):
             raise
-        where = f"{printable(path.name, 150)}: --run-in"
+        where = f"{printable(path.name, 150)}: {key}"
         raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
 
 

@@ -15,6 +15,7 @@ from separatrix.tribometer.dialect import MISSING, SEPARATORS
 from separatrix.tribometer.encoding import ENCODINGS
 from separatrix.tribometer.log import MEANINGS
 from separatrix.tribometer.names import known_units, scale_of
+from separatrix.tribometer.options import place
 from separatrix.units import printable, shown
 
 LARGEST = 1_000_000
@@ -35,6 +36,9 @@ QUANTITIES = {
 
 TEXTS = ("material", "counterface", "medium", "sample", "test")
 """Conditions that are words."""
+
+RUN_IN_END = "run_in_end"
+"""No condition, but said with them: where running-in ends."""
 
 _AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
 
@@ -76,12 +80,21 @@ class ColumnMap:
     columns: Mapping[str, ColumnChoice] = field(default_factory=dict)
     format: TextFormat = field(default_factory=TextFormat)
     test: Mapping[str, str | float] = field(default_factory=dict)
-    """Conditions in SI units, by the keys of `QUANTITIES` and `TEXTS`."""
+    """Conditions in SI units, by the keys of `QUANTITIES` and `TEXTS`, and `RUN_IN_END` as written."""
     files: Mapping[str, Mapping[str, str | float]] = field(default_factory=dict)
     source: str = ""
 
     def conditions(self, path: Path) -> dict[str, str | float]:
-        """Conditions of one file: `[test]`, then every matching pattern in the order written.
+        """Conditions of one file, in SI units."""
+        return {key: value for key, value in self.said(path).items() if key != RUN_IN_END}
+
+    def run_in_end(self, path: Path) -> str | None:
+        """Where running-in ends in one file; None to find it."""
+        end = self.said(path).get(RUN_IN_END)
+        return None if end is None else str(end)
+
+    def said(self, path: Path) -> dict[str, str | float]:
+        """What is said of one file: `[test]`, then every matching pattern in the order written.
 
         A pattern is one of the file's name, or of the names of its last folders, too: ``"run 1/*.csv"``.
         """
@@ -188,7 +201,7 @@ def _format(given: Mapping[str, Any], where: str) -> TextFormat:
 
 
 def _conditions(given: Mapping[str, Any], where: str) -> dict[str, str | float]:
-    _known(given, (*TEXTS, *QUANTITIES), where, "condition")
+    _known(given, (*TEXTS, *QUANTITIES, RUN_IN_END), where, "condition")
     return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
 
 
@@ -197,10 +210,21 @@ def _condition(key: str, value: object, where: str) -> str | float:
         if not isinstance(value, str) or not 0 < len(value) <= 200 or not value.isprintable():
             raise InputError(where, "must be printable text of 1 to 200 characters", "", shown(value))
         return value
+    if key == RUN_IN_END:
+        return _end(value, where)
     number = _area(value, where) if key == "contact_area" else units.parse(value, QUANTITIES[key], where)  # type: ignore[arg-type]
     if number <= 0.0:
         raise InputError(where, "must be > 0", "", shown(value))
     return number
+
+
+def _end(value: object, where: str) -> str:
+    """An end of running-in, as it is written."""
+    try:
+        place(value)  # type: ignore[arg-type]  # it refuses what is no text
+    except InputError as error:
+        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
+    return str(value)
 
 
 def _area(value: object, where: str) -> float:
