@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from separatrix.report import ranking, report
+from separatrix.report import ranking, report, whereabouts
 
 
 def row(name: str, rank: int | None, friction: float | None = 0.1, **other: object) -> dict:
@@ -142,6 +142,4 @@ def test_the_answer_in_short(rows, said):
 
 def test_check_does_not_promise_figures():
     """`check --out` writes its text and document only, and says so."""
-    parts = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
-    study = {"title": "T", "study": dict.fromkeys(parts), "warnings": []}
-    assert report("check", study, where="there").endswith("This text and the document are in there/\n")
+    assert whereabouts("check", {}, "there") == "This text and the document are in there/\n"

@@ -223,14 +223,14 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = report("check", document("check", None, study, []), where=None)
+    shown = report("check", document("check", None, study, []))
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
     from separatrix.chain import bearing_state
 
-    told = report("bearing", document("bearing", bearing_state(study), study, []), where=None)
+    told = report("bearing", document("bearing", bearing_state(study), study, []))
     assert "An uncertain input stands at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = report("bearing", document("bearing", bearing_state(certain), certain, []), where=None)
+    told = report("bearing", document("bearing", bearing_state(certain), certain, []))
     assert "uncertain" not in told
 
 

@@ -188,6 +188,6 @@ def test_a_stalled_run_says_so():
     history = replace(simulate(CAGE, kick=0.5, duration=0.01, samples=20), outcome=RunOutcome.STALLED)
     answer = SimulationAnswer(cage=cage_state(asked), history=history, kick=0.5, run=0)
     found = document("simulate", answer, asked, [])
-    said = " ".join(report("simulate", found, where=None).split())
+    said = " ".join(report("simulate", found).split())
     assert found["outcome"] == "STALLED"
     assert "STALLED after 10 ms. Too many impacts in no time: the run was ended undecided." in said

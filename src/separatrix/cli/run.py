@@ -93,19 +93,17 @@ def _document(
 
 
 def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options: Options) -> None:
-    """Write the files, then the answer: who reads "figures are in ..." finds them there."""
-    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
-    summary = _summary(verb, document, folder)
-    if folder is not None:
-        with staged(folder) as stage:
-            _write_files(verb, document, stage, {".json": text, ".txt": summary}, quiet=options.quiet)
+    """Write the answer, then the files, which take as long again, and say where they are."""
+    from separatrix.report import report, whereabouts
+
+    text, summary = json.dumps(document, indent=1, allow_nan=False) + "\n", report(verb.name, document)
     answer(text if options.json else summary)
-
-
-def _summary(verb: Verb, document: dict[str, Any], folder: Path | None) -> str:
-    from separatrix.report import report
-
-    return report(verb.name, document, where=str(folder) if folder else None)
+    if folder is None:
+        return
+    with staged(folder) as stage:
+        _write_files(verb, document, stage, {".json": text, ".txt": summary}, quiet=options.quiet)
+    if not options.json:
+        answer("\n" + whereabouts(verb.name, document, str(folder)))
 
 
 def _write_files(

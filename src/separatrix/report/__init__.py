@@ -29,7 +29,7 @@ DRAWS = ("check", "sensitivity")
 """Verbs that show uncertain inputs as what they are."""
 
 
-def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
+def report(verb: str, document: Mapping[str, Any]) -> str:
     """Return the answer as text, ASCII but for what the study says.
 
     Parameters
@@ -38,14 +38,10 @@ def report(verb: str, document: Mapping[str, Any], *, where: str | None) -> str:
         The question.
     document : mapping
         What `results.document` returns.
-    where : str or None
-        Folder of the figures and the dataset, if they are written.
     """
     blocks = [heading(document["title"]), *REPORTS[verb](document)]
     notes = [*_means(verb, document), *document["warnings"]]
     blocks += [paragraph(note, first="Note: ", indent="      ") for note in notes]
-    if where is not None:
-        blocks.append(_where(verb, document, where))
     return "\n\n".join(blocks) + "\n"
 
 
@@ -55,9 +51,9 @@ def _means(verb: str, document: Mapping[str, Any]) -> list[str]:
     return [at_their_means(uncertain)] if uncertain and verb not in DRAWS else []
 
 
-def _where(verb: str, document: Mapping[str, Any], folder: str) -> str:
+def whereabouts(verb: str, document: Mapping[str, Any], folder: str) -> str:
     """Return where the files are, and for a ranking which picture to open first."""
     if verb == "check":
-        return f"This text and the document are in {folder}/"
+        return f"This text and the document are in {folder}/\n"
     first = verb == "rank" and document["complete"]
-    return f"Figures and data are in {folder}/" + (" (begin with rank-overview.png)" if first else "")
+    return f"Figures and data are in {folder}/" + (" (begin with rank-overview.png)" if first else "") + "\n"

@@ -16,10 +16,10 @@ from separatrix.study import StabilitySettings
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
-LEDGERS, FOLLOWED = 2, 6
+LEDGERS, FOLLOWED = 2, 4
 """Runs from each kick whose ledger of work is kept, and those that are followed to their end also where it is
-known to be rest on the land: the fewest whose Wilson interval lies clearly above one half, 0.61 to 1, if all
-end alike."""
+known to be rest on the land: the fewest whose Wilson interval lies above one half, 0.51 to 1, if all end
+alike."""
 
 
 def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -> Ensemble:
