@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
 __all__ = ["main"]
+
+BLAS_THREADS = "OPENBLAS_NUM_THREADS"
+"""Our threads are those of --jobs, and our matrices small: more threads inside a product wait for each other."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -20,6 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 answered, 1 a fault of ours, 2 a wrong input (one line on standard error), 130 interrupted.
     """
+    os.environ.setdefault(BLAS_THREADS, "1")  # read when numpy is first imported, below
     try:
         from separatrix.cli.app import run_command_line
 

@@ -18,7 +18,7 @@ from separatrix.units import MetrePerSecond, Ratio
 BAND_FEW, BAND_MOST = 0.1, 0.9
 """Shares of growing runs at which a kick is said to die, and to grow."""
 
-MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.0, 0.75, 0.25
+MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
 """Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
 band, for kicks that may set it; on a first look at where each kick's crossings are."""
 
