@@ -284,7 +284,9 @@ class _Plan:
         kick, own, low = passes % self.kicks, passes < 2 * self.kicks, passes < self.kicks
         unit = qmc.Sobol(2, rng=np.random.default_rng([self.seed, 2, turn])).random(_power(self.size))
         etas = np.array([one.restitution_factor for one in self.cages])[cage]
-        eta = np.minimum(np.where(own, etas, HIGHEST * unit[: self.size, 0]), HIGHEST)
+        # Densest at both ends, as Chebyshev's points: there a fit has neighbours on one side only.
+        spread = 0.5 * HIGHEST * (1.0 - np.cos(np.pi * unit[: self.size, 0]))
+        eta = np.minimum(np.where(own, etas, spread), HIGHEST)
         parameters = np.array([one.parameters for one in self.cages]).reshape(len(self.cages), -1)[cage]
         way = 2.0 * unit[: self.size, 1] - 1.0
         none = np.zeros(self.size)
