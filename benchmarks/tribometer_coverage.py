@@ -1,8 +1,8 @@
 """How often the stated 95 % interval of friction holds the known one, over synthetic logs of every kind.
 
-    python benchmarks/tribometer_coverage.py [LOGS] [FORMAT ...]
+    python benchmarks/tribometer_coverage.py [--seed SEED] [LOGS] [FORMAT ...]
 
-LOGS logs (1000) are drawn from the recipes of tests/physics/synthetic_friction.py and reduced: as they are,
+LOGS logs (1000) are drawn with the seed SEED (20260) from the recipes of tests/physics/synthetic_friction.py and reduced: as they are,
 or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced, then of at most 4000 rows.
 "Held" counts logs whose interval holds the truth: the mean, over the steady part that the reduction states,
 of the friction without noise, running-in and modulation. "Flagged" ones carry the sentence that the interval
@@ -12,6 +12,7 @@ may be too narrow, or that running-in does not end.
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 from collections import defaultdict
@@ -134,7 +135,9 @@ def groups(recipe: Recipe) -> Iterator[str]:
     yield "irregular steps" if recipe.irregular else "regular steps"
     yield f"rows up to {next(most for most in (400, 1400, 6000, 20000) if recipe.rows <= most):5d}"
     yield f"modulation {100 * recipe.modulation / recipe.friction:2.0f} %"
-    yield "with white noise" if recipe.white else "without white noise"
+    white = "with white noise" if recipe.white else "without white noise"
+    yield white
+    yield f"running-in {100 * run_in:2.0f} %, {white}"
 
 
 def holds(test: TestFriction, known: Made, log: RawLog) -> tuple[float, bool]:
@@ -218,12 +221,16 @@ def _through(name: str, known: Made, folder: Path) -> RawLog:
 
 def main() -> None:
     """Report the coverage."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    names = [*FORMATS, UNKNOWN, FOUND] if sys.argv[2:] == ["all"] else sys.argv[2:]
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("logs", type=int, nargs="?", default=1000)
+    parser.add_argument("formats", nargs="*", help="names of FORMATS, unknown_cycle, found_cycle or all")
+    parser.add_argument("--seed", type=int, default=SEED)
+    given = parser.parse_args()
+    names = [*FORMATS, UNKNOWN, FOUND] if given.formats == ["all"] else given.formats
     if not names:
-        report("as made", answers(count, SEED))
+        report("as made", answers(given.logs, given.seed))
     for i, name in enumerate(names, start=1):
-        report(name, answers(count, SEED + i, name), grouped=False)
+        report(name, answers(given.logs, given.seed + i, name), grouped=False)
 
 
 if __name__ == "__main__":

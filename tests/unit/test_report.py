@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from separatrix.report import ranking, report, whereabouts
+from separatrix.report import ranking, whereabouts
 
 
 def row(name: str, rank: int | None, friction: float | None = 0.1, **other: object) -> dict:

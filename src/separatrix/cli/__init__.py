@@ -8,7 +8,7 @@ from collections.abc import Sequence
 __all__ = ["main"]
 
 BLAS_THREADS = "OPENBLAS_NUM_THREADS"
-"""Our threads are those of --jobs, and our matrices small: more threads inside a product wait for each other."""
+"""Our threads are those of --jobs; our matrices are small, and more threads in a product would only wait."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -86,8 +86,10 @@ def canvas(width: float = COLUMN, height: float = 2.6, **grid: Any) -> tuple[Fig
 
 def settled(figure: Figure) -> Figure:
     """Lay the figure out once for all, so that every format and every drawing of it is the same."""
-    for _ in range(2):  # the labels beside the axes are known after the first
-        figure.get_layout_engine().execute(figure)
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        for _ in range(2):  # the labels beside the axes are known after the first
+            layout.execute(figure)
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
     return figure
 
