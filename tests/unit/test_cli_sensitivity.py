@@ -223,7 +223,7 @@ def test_an_earlier_interrupt_writes_nothing(capsys, monkeypatch):
     monkeypatch.setattr("separatrix.uncertainty.model.trained", interrupt)
     assert main(["sensitivity", "small.toml", "--samples", "64"]) == 130
     out, err = capsys.readouterr()
-    assert (out, err) == ("", "separatrix: interrupted; nothing was written.\n")
+    assert (out, err) == ("", "separatrix: interrupted; no file was written.\n")
     assert [path.name for path in Path().iterdir()] == ["small.toml"]
 
 

@@ -104,7 +104,7 @@ def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
 
     monkeypatch.setattr("separatrix.figures.frames._Cage.move", stop)
     assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
-    assert "nothing was written" in capsys.readouterr().err
+    assert "no file was written" in capsys.readouterr().err
     assert not list(Path().iterdir())
 
 

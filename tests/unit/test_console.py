@@ -147,7 +147,7 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert said == "separatrix: interrupted; nothing was written.\n"
+    assert said == "separatrix: interrupted; no file was written.\n"
     assert not out.exists()
 
 

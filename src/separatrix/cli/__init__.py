@@ -32,4 +32,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         from separatrix.cli.console import interrupted
 
-        return interrupted("nothing was written.")
+        return interrupted("no file was written.")

@@ -100,7 +100,7 @@ def _answer(verb: Verb, study: str, *, json: bool, out: str | None, quiet: bool,
             return run(verb, study, options)
     except KeyboardInterrupt:  # here, for typer would swallow it
         kept = verb.keeps_points and not (json and out is None)
-        return interrupted("points that were finished are kept." if kept else "nothing was written.")
+        return interrupted("points that were finished are kept." if kept else "no file was written.")
 
 
 def _command(verb: Verb) -> Callable[..., int]:
