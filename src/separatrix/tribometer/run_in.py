@@ -44,6 +44,9 @@ length and kind, which it adds [2]_."""
 WORTH = 0.9
 """A cut is made if it brings the error below this share of what it is without."""
 
+LIKELY = 0.5
+"""Weight of a statement from which it is more likely than not."""
+
 LATEST = 0.75
 """Share of the test beyond which no cut is made."""
 
@@ -62,7 +65,7 @@ class RunIn:
     rest: Ratio
     """What may be left of it in the mean behind the end, root mean square [-]."""
     ends: bool
-    """Whether that is less than the error by noise, and a later cut would not make it less."""
+    """Whether more likely than not it is less than the error by noise."""
 
 
 def run_in(values: Array) -> RunIn:
@@ -78,32 +81,46 @@ def run_in(values: Array) -> RunIn:
     if np.ptp(values) <= ROUNDING * np.abs(values).max():
         return found
     for _ in range(PASSES):
-        rest, noise = _errors(values[first:])
+        rest, noise, chance = _errors(values[first:])
         latest = int(LATEST * n) - first
         both = np.hypot(rest, noise)[: latest + 1]
         best = int(np.argmin(both))
         cut = best if both[best] <= WORTH * both[0] else 0
-        ends = bool(rest[cut] <= noise[cut]) and not 0 < cut == latest
         first += cut
-        found = RunIn(end=first / n, rest=float(rest[cut]), ends=ends)
-        if not ends or cut == 0:
+        found = RunIn(end=first / n, rest=float(rest[cut]), ends=bool(chance[cut] <= LIKELY))
+        if cut in (0, latest) or rest[cut] > noise[cut]:
             break
     return found
 
 
-def _errors(values: Array) -> tuple[Array, Array]:
-    """Return what may be left of an excess in the mean behind each span, and its error by noise; (cut,)."""
+def _errors(values: Array) -> tuple[Array, Array, Array]:
+    """Return both parts of the error of the mean behind each span.
+
+    Parameters
+    ----------
+    values : ndarray
+        Means over equal spans, shape (span,).
+
+    Returns
+    -------
+    tuple
+        What may be left of an excess, root mean square [-]; the error by noise [-]; how likely the first is
+        larger than the second; shape (span,) each. A root mean square may come from a shape of little weight
+        that leaves much, so it does not tell that.
+    """
     n = values.size
     falls = shapes(n)
     found = [_weighed(values, falls, rho) for rho in CORRELATIONS]
     logs = np.array([log for log, _, _ in found])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    squares = np.einsum("rs,rs->s", weights, np.array([square for _, square, _ in found]))
+    squares = np.array([square for _, square, _ in found])[:, 1:]
     density = float((weights * np.array([one for _, _, one in found])).sum())
     left = n - np.arange(n)
-    tails = np.cumsum(falls[:, ::-1], axis=1)[:, ::-1] / left
-    return np.sqrt(squares[1:] @ tails**2), np.sqrt(density / left)
+    tails = (np.cumsum(falls[:, ::-1], axis=1)[:, ::-1] / left) ** 2
+    noise, weights = density / left, weights[:, 1:]
+    chance = np.einsum("rs,rsc->c", weights, squares[..., None] * tails > noise)
+    return np.sqrt(np.einsum("rs,rs->s", weights, squares) @ tails), np.sqrt(noise), chance
 
 
 def _weighed(values: Array, falls: Array, rho: float) -> tuple[Array, Array, Array]:
