@@ -106,6 +106,31 @@ def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
     assert found.end < 3.0 * share  # exp(-9) of it is left there
 
 
+def test_an_excess_that_is_over_is_seldom_told_not_to_end():
+    """What a slow fall of little weight would leave is in the error, but is no reason to say so.
+
+    An exponential of a tenth of the test, thirty times its noise: a third of a standard error is left in
+    truth behind the usual cut. Of 100 logs at most five may say that it does not end.
+    """
+    rng = np.random.default_rng(16)
+    x = (np.arange(256) + 0.5) / 256
+    found = [run_in.run_in(30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
+    assert sum(not one.ends for one in found) <= 5
+
+
+@pytest.mark.parametrize(
+    "excess",
+    [lambda x: np.exp(-5.0 * x), lambda x: np.maximum(0.0, 1.0 - x / 0.9)],
+    ids=["exponential", "straight"],
+)
+def test_an_excess_that_goes_on_is_told(excess):
+    """A slow exponential, and a straight fall of nine tenths of the test: eight of ten logs say so."""
+    rng = np.random.default_rng(17)
+    x = (np.arange(256) + 0.5) / 256
+    found = [run_in.run_in(30.0 * excess(x) + rng.standard_normal(256)) for _ in range(40)]
+    assert sum(not one.ends for one in found) >= 32
+
+
 def test_an_excess_that_noise_hides_is_in_the_error():
     """An excess that shifts the mean by 1.8 standard errors is seldom seen: of 300 logs 92 % are held.
 

@@ -82,6 +82,15 @@ def rank_beside(logs):
     assert seen.extrapolation == ("slip speed 25 m/s is beyond the tested 2 to 4 m/s (held at 4 m/s)",)
 
 
+@pytest.mark.parametrize(
+    ("files", "words"), [(["a.csv"], "1 test from 1 log as"), (["a.csv", "b.csv"], "2 tests from 2 logs as")]
+)
+def test_one_log_is_no_logs(logs, capsys, files, words):
+    """The heading counts tests and logs in singular and plural."""
+    assert main(["tribometer", *files, "--map", "map.toml"]) == 0
+    assert words in capsys.readouterr().out
+
+
 def test_json_is_one_document_and_writes_nothing(logs, capsys):
     """Keys of the contract: tests and files; no file beside the logs."""
     before = names(logs)

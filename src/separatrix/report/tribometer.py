@@ -36,7 +36,7 @@ def tribometer(document: Document, *, plots: str | None) -> str:
     """Return the answer as text."""
     tests, files = document["tests"], document["files"]
     blocks = [
-        heading(f"{len(tests)} test{'s'[: len(tests) != 1]} from {len(files)} logs as read below"),
+        heading(f"{_counted(len(tests), 'test')} from {_counted(len(files), 'log')} as read below"),
         section("What was read", *("\n".join(file["described"]) + "\n" for file in files)),
         section("Tests", _tests(tests), *_flags(tests), LEGEND),
         *_fits(document),
@@ -53,6 +53,10 @@ FIT_LEGEND = "\n" + paragraph(
     "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
     "standard deviation of a new sample about it."
 )
+
+
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}" if count == 1 else f"{count} {name}s"
 
 
 def _tests(tests: Sequence[Document]) -> str:

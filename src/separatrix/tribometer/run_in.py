@@ -39,7 +39,8 @@ SHAPES: tuple[tuple[Array, Callable[[Array], Array]], ...] = (
 
 COST = 6.0
 """By how much -2 ln(likelihood) must fall for an excess to weigh as much as none: two for each of size,
-length and kind, which it adds [2]_."""
+length and kind, which it adds [2]_. Four can be defended too; docs/theory/friction-tests.md says how six was
+chosen."""
 
 WORTH = 0.9
 """A cut is made if it brings the error below this share of what it is without."""
@@ -65,7 +66,8 @@ class RunIn:
     rest: Ratio
     """What may be left of it in the mean behind the end, root mean square [-]."""
     ends: bool
-    """Whether more likely than not it is less than the error by noise."""
+    """Whether more likely than not it is less than the error by noise, and was not cut in pieces up to
+    the latest place."""
 
 
 def run_in(values: Array) -> RunIn:
@@ -86,9 +88,11 @@ def run_in(values: Array) -> RunIn:
         both = np.hypot(rest, noise)[: latest + 1]
         best = int(np.argmin(both))
         cut = best if both[best] <= WORTH * both[0] else 0
+        in_pieces = first > 0 and 0 < cut == latest
         first += cut
-        found = RunIn(end=first / n, rest=float(rest[cut]), ends=bool(chance[cut] <= LIKELY))
-        if cut in (0, latest) or rest[cut] > noise[cut]:
+        ends = bool(chance[cut] <= LIKELY) and not in_pieces
+        found = RunIn(end=first / n, rest=float(rest[cut]), ends=ends)
+        if cut == 0 or not ends:
             break
     return found
 
