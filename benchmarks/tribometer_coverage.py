@@ -3,10 +3,10 @@
     python benchmarks/tribometer_coverage.py [--seed SEED] [LOGS] [FORMAT ...]
 
 LOGS logs (1000) are drawn with the seed SEED (20260) from the recipes of tests/physics/synthetic_friction.py
-and reduced: as they are, or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced, then of
-at most 4000 rows. "Held" counts logs whose interval holds the truth: the mean, over the steady part that the reduction states,
-of the friction without noise, running-in and modulation. "Flagged" ones carry the sentence that the interval
-may be too narrow, or that running-in does not end.
+and reduced: as they are, or for each FORMAT (a name of `FORMATS`, or "all") written, read back and reduced,
+then of at most 4000 rows. "Held" counts logs whose interval holds the truth: the mean, over the steady part
+that the reduction states, of the friction without noise, running-in and modulation. "Flagged" ones carry the
+sentence that the interval may be too narrow, or that running-in does not end.
 """
 # ruff: noqa: E402  the makers of logs are found beside the tests
 

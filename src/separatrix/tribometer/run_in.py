@@ -39,7 +39,7 @@ SHAPES: tuple[tuple[Array, Callable[[Array], Array]], ...] = (
 
 COST = 6.0
 """By how much -2 ln(likelihood) must fall for an excess to weigh as much as none: two for each of size,
-length and kind, which it adds [2]_. Four can be defended too; docs/theory/friction-tests.md says how six was
+length and kind, which it adds [2]_. Four can be defended too: docs/theory/friction-tests.md says how six was
 chosen."""
 
 WORTH = 0.9
