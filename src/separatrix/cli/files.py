@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
+import uuid
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -52,13 +53,16 @@ def writable_folder(path: Path) -> Iterator[Path]:
 
 def _make_writable(path: Path, missing: list[Path]) -> None:
     """Make the folder, and write in it; note which folders were not there."""
+    probe = path / f".separatrix-{uuid.uuid4().hex}"
     try:
         missing += [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path, prefix=".separatrix-"):
-            pass
+        probe.touch(exist_ok=False)
     except OSError as error:
         raise _cannot_write(path, error) from error
+    finally:  # also where an interrupt comes just after it was made
+        with contextlib.suppress(OSError):
+            probe.unlink()
 
 
 def _remove_empty(folders: list[Path]) -> None:
