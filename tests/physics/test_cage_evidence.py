@@ -45,7 +45,7 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
     found = run_ensemble(cage, SETTINGS)
     for run in range(SETTINGS.runs):
         ours = simulate(cage, kick=0.5, run=run, seed=4, duration=0.02, samples=20_000)
-        assert ours.time[-1] == pytest.approx(0.02, rel=1e-3)  # none of these is decided early
+        assert ours.time[-1] == pytest.approx(0.02)  # none of these is decided early
         for name, value, tolerance in told(cage, ours):
             assert getattr(found, name)[0, run] == pytest.approx(value, **tolerance), name
         assert found.pocket_impacts[0, run].tolist() == begun(ours.contact_force != 0.0).tolist()
@@ -53,7 +53,12 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
 
 
 def told(cage, ours):
-    """Name, value and tolerance of what a history tells of its run."""
+    """Name, value and tolerance of what a history tells of its run.
+
+    A fifth has 4000 rows and ends within one, 2.5e-4 of it at each end: means differ by up to 6e-4, rates and
+    orbit by such a part of what they are differences of. Between two rows a largest value is missed by up to
+    6e-5. A row across a blow, of some 10 in its contact, turns the heading by a finite angle: 1 %.
+    """
     near, largest = {"rel": 1e-3}, {"rel": 5e-4}
     last, before = (slice_of(ours.time, fifth) for fifth in (4, 3))
     (x, y), (vx, vy) = ours.position.T, ours.velocity.T

@@ -121,11 +121,11 @@ def test_the_fit_of_one_test_is_the_printed_mean_of_a_table():
     assert a.extrapolation == b.extrapolation
     assert len(a.extrapolation) == 4
     for name in ("mean", "standard_error"):
-        assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)
+        assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)  # rounding
     assert a.widening == 0.0 < b.widening
     a, b = (friction.at(slip_speed=3.0, temperature=77.0) for friction in (stated, one))
     for name in ("mean", "standard_error", "standard_deviation", "widening", "next_cage"):
-        assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)
+        assert getattr(a, name) == pytest.approx(getattr(b, name), rel=1e-9)  # rounding
 
 
 def test_exact_power_laws_of_speed_and_pressure_come_back():
