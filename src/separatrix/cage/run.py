@@ -66,7 +66,7 @@ if TYPE_CHECKING:
 
 FIFTHS = 5
 LOOKS = 20  # looks at the energy in each fifth
-LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 3, 10, 6
+LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 3, 10, 12
 """Looks in a row, at the mean energy since the last, that tell how a run ends: beyond limits, or alike."""
 
 LONG_LOOK = 25.0
@@ -75,8 +75,9 @@ LONG_LOOK = 25.0
 NOTHING_LEFT = 2.0**-104
 """Share of the kick's energy below which speeds are rounding: growth rates count no further."""
 
-EVEN, SURELY, WEAK = 0.01, 1.05, 0.1
-"""Share by which looks may differ that are alike; shares of the kick's energy beyond which they tell."""
+EVEN, SURELY, WEAK = 0.15, 1.5, 0.5
+"""Share by which looks may differ that are alike; shares of the kick's energy beyond which they tell, where
+the last is no nearer to it than the first: a slow growth from little energy does not pass for a whirl."""
 
 UNKNOWN = -1
 DIES, GROWS, DRIFT, STALLED = (
@@ -94,6 +95,7 @@ class Limits(NamedTuple):
     grows_above: float
     dies_below: float
     mean_grows_above: float  # of the mean since the last look
+    mean_grows_at_once: float  # of the same, at a single look
     mean_dies_below: float
 
 
@@ -115,7 +117,7 @@ def watch(  # type: ignore[no-untyped-def]
     Returns
     -------
     tuple
-        Outcome or `UNKNOWN`, the last window looked at, and its length.
+        Outcome or `UNKNOWN`, the last window looked at, its length, and whether a steady whirl told it.
     """
     look = fifth / LOOKS
     above = below = even = touches = 0
@@ -140,12 +142,12 @@ def watch(  # type: ignore[no-untyped-def]
                 room,
             )
             if not going:
-                return STALLED, window, (part + 1) * look
+                return STALLED, window, (part + 1) * look, False
             energy = kinetic(p, s) + held_energy(p, pockets, touch, mode[0])
             if energy > limits.grows_above:
-                return GROWS, window, (part + 1) * look
+                return GROWS, window, (part + 1) * look, False
             if energy < limits.dies_below:
-                return DIES, window, (part + 1) * look
+                return DIES, window, (part + 1) * look, False
             if look < LONG_LOOK:
                 continue
             mean = (tally[window, KINETIC] - before) / look
@@ -157,11 +159,15 @@ def watch(  # type: ignore[no-untyped-def]
             if even == 1:
                 level = mean
             settled = even >= LOOKS_EVEN and limits.mean_grows_above < np.inf
-            if above == LOOKS_ABOVE or (settled and mean > SURELY * start):
-                return GROWS, window, (part + 1) * look
-            if below == LOOKS_BELOW or (settled and may_die and mean < WEAK * start):
-                return DIES, window, (part + 1) * look
-    return UNKNOWN, FIFTHS - 1, fifth
+            if above == LOOKS_ABOVE or mean > limits.mean_grows_at_once:
+                return GROWS, window, (part + 1) * look, False
+            if settled and mean >= max(level, SURELY * start):
+                return GROWS, window, (part + 1) * look, True
+            if below == LOOKS_BELOW:
+                return DIES, window, (part + 1) * look, False
+            if settled and may_die and mean <= min(level, WEAK * start):
+                return DIES, window, (part + 1) * look, True
+    return UNKNOWN, FIFTHS - 1, fifth, False
 
 
 @kernel
@@ -198,7 +204,7 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
         mode[0] = balls
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
     start = kinetic(p, s)
-    outcome, window, length = watch(
+    outcome, window, length, steady = watch(
         p,
         pockets,
         touch,
@@ -219,7 +225,8 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
     out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
     mean = end[KINETIC] / length
     out[GROWTH] = mean / start
-    middle = (window * fifth + 0.5 * length) * p.unit
+    # A steady whirl lasts: its energy is that of the last fifth.
+    middle = ((FIFTHS - 0.5) * fifth if steady else window * fifth + 0.5 * length) * p.unit
     out[FOLLOWED] = (window * fifth + length) * p.unit
     out[GROWTH_RATE] = 0.5 * np.log(max(out[GROWTH], NOTHING_LEFT)) / middle
     if outcome == UNKNOWN:

@@ -26,8 +26,8 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
     """Every run of the settings from every kick.
 
     The first `LEDGERS` have their ledger, the first `FOLLOWED` are followed to their end. Where a land holds
-    the cage, which cannot drift then, the others that die end as soon as that is known (`Ensemble.cut`),
-    which changed 2 outcomes of 6912 (`ensemble.DIES_OUT`).
+    the cage, which cannot drift then, the others end as soon as it is known how (`Ensemble.cut`): fewer than
+    one outcome in 1000 changes by it (`ensemble.DIES_OUT`).
 
     Raises
     ------
