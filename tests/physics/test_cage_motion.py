@@ -217,18 +217,18 @@ def test_ending_early_changes_no_outcome(monkeypatch):
     assert np.array_equal(np.array(growth) == RunOutcome.GROWS, np.array(late) == RunOutcome.GROWS)
 
 
-@pytest.mark.parametrize("excess", [-0.02, 0.003, 0.01, 0.03])
+@pytest.mark.parametrize("excess", [-0.02, 0.002, 0.004, 0.02])
 def test_slow_growth_is_no_steady_whirl(monkeypatch, excess):
     """Without play the motion is linear: part of a kick dies, the rest grows, slowly at first."""
     gripped = replace(CAGE, pocket_clearance=0.0)
     cage = replace(gripped, ball_cage_friction=(1.0 + excess) * linear_critical_friction(gripped))
-    settings = StabilitySettings(runs=4, duration=0.2)
+    settings = StabilitySettings(runs=4, duration=0.5)
     early = run_ensemble(cage, settings, kicks=(0.5,), growth_only=True).outcome
     for name, value in TO_THE_END.items():
         monkeypatch.setattr(ensemble, name, value)
     late = run_ensemble(cage, settings, kicks=(0.5,), growth_only=True).outcome
     assert np.array_equal(early, late)
-    assert np.all((early == RunOutcome.GROWS) == (excess >= 0.01))
+    assert np.all((early == RunOutcome.GROWS) == (excess >= 0.004))
 
 
 def test_a_run_ended_in_a_steady_whirl_keeps_the_rate_of_a_whole_run():
