@@ -130,6 +130,12 @@ def test_runs_in_which_nothing_touches_decide_nothing():
     )
 
 
+def test_one_run_that_touches_is_enough_to_decide():
+    """A kick between two balls may miss all of them; the next one does not."""
+    met = ensemble([[DIES] * 24], kicks=(0.5,), largest_contact_force=[0.0] * 23 + [9.0])
+    assert judge(CAGE, met).verdict is Verdict.STABLE
+
+
 def test_runs_that_drift_are_not_stable():
     """A fifth of the runs left the play: UNDECIDED, and the centre's motion is not called stable for long."""
     result = judge(CAGE, ensemble([[DIES] * 16 + [DRIFT] * 4] * 3))
@@ -156,6 +162,31 @@ def test_runs_that_were_cut_count_as_those_that_were_followed():
     """Of three that die one was followed, and it circles: so do all three of four."""
     runs = ensemble([[GROWS, DIES, DIES, DIES]], cut=np.array([[False, False, True, True]]))
     assert runs.share(np.array([[False, True, False, False]])).tolist() == [0.75]
+
+
+def test_a_tenth_that_circles_is_counted_up_where_runs_were_cut():
+    """One in eight that were followed is 2.5 of 20: three, and 17 of 20 are less than nine in ten."""
+    followed, cut = np.arange(20) < 8, np.arange(20) >= 8
+    orbit = {"mean_offset": np.where(followed & (np.arange(20) < 1), 1.9e-4, 0.0), "orbit_speed": -2010.0}
+    runs = ensemble([[DIES] * 20], kicks=(0.5,), energy_growth=0.5, cut=cut[np.newaxis], **orbit)
+    assert judge(GUIDED, runs).verdict is Verdict.UNDECIDED
+
+
+def test_the_end_of_a_run_that_was_cut_is_no_evidence():
+    """Medians are those of the three that were followed, also where more were cut."""
+    ends = {
+        "mean_offset": [1e-5, 2e-5, 4e-5] + [9e-5] * 7,
+        "offset_spread": [2e-6, 2e-6, 2e-6] + [9e-5] * 7,
+        "energy_growth": [1e-6, 2e-6, 9e-6] + [1e-3] * 7,
+        "drift_rate": [1.0, 2.0, 4.0] + [0.0] * 7,
+        "whirl_frequency": [100.0, 200.0, 400.0] + [900.0] * 7,
+    }
+    result = judge(GUIDED, ensemble([[DIES] * 10], cut=np.array([[False] * 3 + [True] * 7]), **ends))
+    assert (result.mean_offset, result.energy_growth, result.drift_rate) == (2e-5, 2e-6, 2.0)
+    assert (result.orbit_evenness, result.whirl_frequency) == (
+        pytest.approx(0.1, rel=1e-12),
+        200.0,
+    )  # rounding
 
 
 def test_the_drift_is_that_of_the_runs_that_do_not_grow():
@@ -226,6 +257,7 @@ def test_impacts_are_shared_out_among_pockets_and_land():
     [
         (1.9e-4, 1e-6, 670.0, CageMotion.CIRCLING),  # on the land, round with the balls
         (1.9e-4, 1e-6, -2000.0, CageMotion.CIRCLING),  # backward on the land
+        (1.1e-4, 1e-6, 670.0, CageMotion.CIRCLING),  # just beyond half the room to the land
         (1.9e-4, 0.6e-4, 670.0, CageMotion.STABLE),  # no even distance
         (0.9e-4, 1e-6, 670.0, CageMotion.STABLE),  # near the axis
         (1.9e-4, 1e-6, 90.0, CageMotion.STABLE),  # rests: less than a turn in 0.06 s
@@ -245,6 +277,9 @@ def test_the_class_is_that_of_the_worst_kick():
     assert judge(GUIDED, ensemble([[DIES] * 16] * 2, **circles)).cage_motion is CageMotion.CIRCLING
     fewer = {"mean_offset": [[0.0] * 9 + [1.9e-4] * 7, [0.0] * 16], "orbit_speed": 670.0}
     assert judge(GUIDED, ensemble([[DIES] * 16] * 2, **fewer)).cage_motion is CageMotion.STABLE
+    grown = ensemble([[GROWS] * 4 + [DIES] * 12] * 2, **circles)
+    grown.mean_offset[0, 12:] = 0.0  # four grow, four circle, eight rest
+    assert judge(GUIDED, grown).cage_motion is CageMotion.CIRCLING
 
 
 def test_a_centre_far_outside_its_pockets_is_not_stable():
@@ -321,16 +356,16 @@ def test_a_run_that_keeps_circling_neither_dies_nor_grows():
     )
 
 
-@pytest.mark.parametrize("energy_growth", [0.09, 0.05])
-def test_a_circle_that_costs_no_energy_is_stable(energy_growth):
-    """Round with the balls on the land, less than a tenth of the kick, or of what the frame gives: STABLE."""
+@pytest.mark.parametrize(("kick", "energy_growth"), [(0.5, 0.09), (0.2, 0.4)])
+def test_a_circle_that_costs_no_energy_is_stable(kick, energy_growth):
+    """Less than a tenth of the kick, or 0.4 mJ of the 0.449 mJ that the frame gives: STABLE."""
     orbit = {"mean_offset": 1.9e-4, "offset_spread": 1e-6, "orbit_speed": 670.0}
-    result = judge(GUIDED, ensemble([[DIES] * 16], kicks=(0.5,), energy_growth=energy_growth, **orbit))
+    result = judge(GUIDED, ensemble([[DIES] * 16], kicks=(kick,), energy_growth=energy_growth, **orbit))
     assert (result.verdict, result.cage_motion) == (Verdict.STABLE, CageMotion.CIRCLING)
 
 
 def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest():
-    """Largest of the largest; medians of mean offset and of spread over mean."""
+    """Largest of the largest, among them what a ledger leaves open; medians of energy, offset and spread."""
     result = judge(
         GUIDED,
         ensemble(
@@ -340,8 +375,11 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
             offset_spread=[5e-5, 2e-5, 1e-5],
             largest_land_force=[5.0, 70.0, 6.0],
             largest_contact_force=[50.0, 7.0, 6.0],
+            energy_imbalance=[1e-12, 0.0, 1e-3],
+            energy_growth=[1e-6, 4e-3, 2e-6],
         ),
     )
+    assert (result.energy_imbalance, result.energy_growth) == (1e-3, 2e-6)
     assert (result.largest_offset, result.mean_offset) == (3e-4, 2e-4)
     assert result.orbit_evenness == pytest.approx(0.1, rel=1e-12)  # rounding
     assert (result.largest_land_force, result.largest_contact_force) == (70.0, 50.0)
