@@ -194,6 +194,25 @@ def test_plain_rows_are_indeed_read_at_once(tmp_path, monkeypatch):
     assert found.friction.tolist() == [row[1] for row in NUMBERS]
 
 
+def test_dates_percentages_and_formulas_are_read_at_once_too(tmp_path, monkeypatch):
+    """A column of one kind is cut out by the pattern, with the very numbers of reading row by row."""
+    rows = [
+        [Shown(0.5 + i / 7e4, 1), Shown(0.1 + 1e-3 * i, 2), Formula(f"B{i + 2}*3", 0.3 * i)]
+        for i in range(50)
+    ]
+    rows[7][1] = rows[8][2] = None
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(workbook({"a": [["Time", "COF", "Wear"], *rows]}))
+    with monkeypatch.context() as slow:
+        slow.setattr(xlsx, "plain_numbers", lambda *_: None)
+        (one_by_one,) = xlsx.read_tables(path)
+    monkeypatch.setattr(xlsx._Columns, "read", None)
+    (at_once,) = xlsx.read_tables(path)
+    assert at_once.units == one_by_one.units == ("s", "%", "")
+    assert np.array_equal(np.array(at_once.columns), np.array(one_by_one.columns), equal_nan=True)
+    assert at_once.columns[1][:2].tolist() == [10.0, 100.0 * 0.101]
+
+
 @pytest.mark.parametrize("odd", [Formula("A1", 0.3), Shown(0.3, 2), "0.3"])
 def test_a_cell_behind_words_is_not_passed_over(tmp_path, odd):
     """The pattern for words ends with their cell: what is no plain number in the next is read or refused."""

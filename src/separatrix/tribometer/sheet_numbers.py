@@ -1,14 +1,15 @@
-"""Long tables of plain numbers in a sheet, many rows at once.
+"""Long tables of numbers in a sheet, many rows at once.
 
 A log of a million rows is a hundred megabytes of XML in which every row looks like the one before. If every
-row from the first to the last has just the columns of the first, and plain numbers or nothing in those that
-are needed, it is cut out of the text by one pattern. The pattern must leave no letter of the text, or the
-answer is None and the sheet is read event by event instead.
+row from the first to the last has just the columns of the first, and in those that are needed numbers of one
+kind (written or saved with a formula) or nothing, it is cut out of the text by one pattern. The pattern must
+leave no letter of the text, or the answer is None and the sheet is read event by event instead.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -24,8 +25,8 @@ MOST_STYLES = 500
 
 
 def plain_numbers(
-    workbook: Workbook, sheet: str, first_row: int, columns: list[int], needed: list[int]
-) -> list[Array] | None:
+    workbook: Workbook, sheet: str, first_row: int, columns: Sequence[int], needed: Mapping[int, str]
+) -> dict[int, Array] | None:
     """Return the needed columns from the first row of a table to the end of the sheet; None if not plain.
 
     Parameters
@@ -36,10 +37,11 @@ def plain_numbers(
         Name of the sheet.
     first_row : int
         Number of the table's first row.
-    columns : list of int
+    columns : sequence of int
         Numbers of its columns, rising.
-    needed : list of int
-        Those of them that are read; anything may stand in the others.
+    needed : mapping
+        Those of them that are read, in the same order, with the kind of their numbers (`Cell.format`);
+        anything may stand in the others.
     """
     part = workbook.sheets[sheet]
     text = b"".join(Guard(workbook.label, part)(workbook.archive.pieces(part)))
@@ -58,19 +60,25 @@ def plain_numbers(
             return None
         blocks.append(block)
         at = stop
-    return list(np.concatenate(blocks, axis=1)) if blocks else None
+    return dict(zip(needed, np.concatenate(blocks, axis=1), strict=True)) if blocks else None
 
 
-def _pattern(columns: list[int], needed: list[int], formats: list[str]) -> re.Pattern[bytes]:
-    """Pattern of a row of these columns: a needed cell is a number without a type or a formula, or empty."""
-    styles = "|".join(str(i) for i, kind in enumerate(formats) if not kind)
-    style = f'(?: s="(?:{styles})")?'
-    number = rf"{style}(?: t=\"n\")?><v>([-+.0-9eE]+)</v></c>|{style}/>"
+def _pattern(columns: Sequence[int], needed: Mapping[int, str], formats: list[str]) -> re.Pattern[bytes]:
+    """Pattern of a row of these columns: a needed cell is a number of its kind, or empty."""
     anything = "[^<>]*/>|[^<>]*(?<!/)>[^<]*(?:<(?!/c>)[^<]*)*</c>"
     cells = "".join(
-        f'(?:<c r="{column_name(n)}[0-9]+"(?:{number if n in needed else anything}))?' for n in columns
+        f'(?:<c r="{column_name(n)}[0-9]+"(?:{_number(needed[n], formats) if n in needed else anything}))?'
+        for n in columns
     )
     return re.compile(rf"(<row [^<>]*>{cells}</row>\s*)".encode())
+
+
+def _number(kind: str, formats: list[str]) -> str:
+    """Pattern of a cell from its style on: a number of this kind, perhaps by a formula; or nothing at all."""
+    styles = "|".join(str(i) for i, known in enumerate(formats) if known == kind)
+    styled = f' s="(?:{styles})"' + ("" if kind else "|")
+    formula = "(?:<f[^<>]*/>|<f[^<>]*(?<!/)>[^<>]*</f>)?"
+    return rf'(?:{styled})(?: t="n")?>{formula}<v>([-+.0-9eE]+)</v></c>|(?: s="[0-9]+")?/>'
 
 
 def _block(text: bytes, pattern: re.Pattern[bytes]) -> Array | None:

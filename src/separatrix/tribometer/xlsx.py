@@ -218,14 +218,13 @@ def _unit(sheet: _Sheet, column: int, kind: str, written: str) -> str:
 def _columns(
     sheet: _Sheet, rows: Iterator[Row], first: int, kinds: dict[int, str], needed: list[int]
 ) -> list[Array]:
-    """The columns of a table, at once if all its cells are plain; those that are not needed are NaN."""
+    """The columns of a table, at once if its cells are alike; those that are not needed are NaN."""
     if not needed:
         return [np.empty(0)] * len(kinds)
-    quick = plain_numbers(sheet.workbook, sheet.name, first, list(kinds), needed)
-    if quick is not None:
-        found = dict(zip(needed, quick, strict=True))
-    else:
-        found = _Columns(sheet, {n: kinds[n] for n in needed}).read(rows)
+    read = {n: kinds[n] for n in needed}
+    raw = plain_numbers(sheet.workbook, sheet.name, first, list(kinds), read)
+    found = _Columns(sheet, read).read(rows) if raw is None else raw
+    found = {n: _as_shown(values, kinds[n]) for n, values in found.items()}
     nothing = np.broadcast_to(np.float64(np.nan), (len(found[needed[0]]),))
     return [found.get(n, nothing) for n in kinds]
 
@@ -239,14 +238,14 @@ class _Columns:
         self._ended = 0
 
     def read(self, rows: Iterator[Row]) -> dict[int, Array]:
-        """Return the columns of the rows by their numbers; dates and times of day in seconds."""
+        """Return the columns of the rows by their numbers, as they are saved."""
         columns = {n: array("d") for n in self._kinds}
         for number, cells in rows:
             if self._goes_on(number, [cells[n] for n in columns if n in cells]):
                 for n, column in columns.items():
                     cell = cells.get(n)
                     column.append(np.nan if cell is None else self._value(number, n, cell))
-        return {n: _as_shown(np.array(column), self._kinds[n]) for n, column in columns.items()}
+        return {n: np.array(column) for n, column in columns.items()}
 
     def _goes_on(self, row: int, cells: Sequence[Cell]) -> bool:
         """Whether a row belongs to the table; below its end there may be texts, but no second table."""
