@@ -13,6 +13,8 @@ from separatrix.cage import (
     run_hard_ensemble,
     simulate,
 )
+from separatrix.cage.coefficients import time_unit
+from separatrix.cage.drive import drive_energy
 from separatrix.cage.ensemble import random_starts, run_limits
 from separatrix.cage.run import random_start
 from separatrix.errors import InputError
@@ -170,6 +172,25 @@ def test_a_centre_beyond_the_play_is_drift_unless_a_land_holds_it():
     assert (
         run_limits(held, 0.5).drift == run_limits(replace(CAGE, pocket_clearance=0.0), 0.5).drift == math.inf
     )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"cage_speed": 670.0, "guidance": Guidance.OUTER, "land_clearance": 4e-4},
+        {"gravity": 9.81, "guidance": Guidance.OUTER, "land_clearance": 4e-4},
+        {"gravity": 9.81},
+    ],
+)
+def test_what_the_drive_gives_is_no_early_end(change):
+    """However weak the kick: no growth is known from the drive's energy, no death above the kick's own."""
+    cage, kick = replace(CAGE, **change), 1e-3
+    joules = cage.mass / time_unit(cage) ** 2
+    for only in (False, True):
+        limits = run_limits(cage, kick, growth_only=only)
+        grows = (limits.grows_above, limits.mean_grows_above, limits.mean_grows_at_once)
+        assert min(grows) * joules > drive_energy(cage)
+        assert max(limits.dies_below, limits.mean_dies_below) * joules < 0.5 * cage.mass * kick**2
 
 
 @pytest.mark.parametrize("land", [{}, {"guidance": Guidance.OUTER, "land_clearance": 4e-4}])

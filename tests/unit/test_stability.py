@@ -18,6 +18,7 @@ from separatrix.stability import (
     GrowthCounter,
     Response,
     Side,
+    cage_at,
     closed_hard_limit,
     critical_friction,
     growth,
@@ -25,8 +26,9 @@ from separatrix.stability import (
     threshold_factors,
 )
 from separatrix.stability.curve import Tracer, bends
+from separatrix.stability.point import own_restitution_factor
 from separatrix.stability.pool import Stopped, work_out, work_through
-from separatrix.stability.response import LADDER, cell_of
+from separatrix.stability.response import LADDER, Crossing, cell_of
 from separatrix.stability.tracing import COARSE, FINEST, finer
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
@@ -106,6 +108,65 @@ def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
         assert mean == pytest.approx(at, rel=0.04)
 
 
+def at_three_kicks(*probabilities):
+    """Critical friction where the probability of each kick is known: 0.2, 0.5 and 1 m/s."""
+    cage, kicks = cage_state(read_study("cryogenic-turbopump")).cage, (0.2, 0.5, 1.0)
+    settings = StabilitySettings(kicks=kicks, runs=256)
+    counter, looks = GrowthCounter(cage, settings), [response(known) for known in probabilities]
+    counter.count = lambda _, f, kick, *, first_run, runs: looks[kicks.index(kick)]._look(f, first_run, runs)
+    return critical_friction(cage, 0.5, settings, counter=counter)
+
+
+def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
+    """Kicks a factor of two apart, logistic alike: intervals of both ends alike; 20 %, for runs on a ladder.
+
+    A third of the runs, of the first look, would make an interval 70 % wider.
+    """
+    point = at_three_kicks(*(logistic(middle, 8.0) for middle in (0.24, 0.12, 0.06)))
+    assert point.low_scatter_low < 0.06 / 9 ** (1 / 8) < point.low_scatter_high
+    assert point.high_scatter_low < 0.24 * 9 ** (1 / 8) < point.high_scatter_high
+    lower, upper = (
+        point.low_scatter_high / point.low_scatter_low,
+        point.high_scatter_high / point.high_scatter_low,
+    )
+    assert math.log(upper) == pytest.approx(math.log(lower), rel=0.2)
+    assert point.kick_critical_friction[1] == point.critical_friction
+
+
+def test_one_kick_that_grows_without_friction_leaves_the_band_without_a_lower_end():
+    """There is no friction below which nine in ten runs die from every kick, whatever the others do."""
+    usual = logistic(0.12, 8.0)
+    point = at_three_kicks(usual, usual, lambda f: max(0.3, usual(f)))
+    assert point.critical_friction is not None
+    assert (point.critical_friction_low, point.low_scatter_low, point.low_scatter_high) == (None, None, None)
+    assert point.reason == "from 1 m/s a share of 0.1 of the runs grows even without pocket friction"
+
+
+def test_one_kick_that_never_grows_leaves_the_band_without_an_upper_end():
+    """There is no friction above which nine in ten runs grow from every kick, whatever the others do."""
+    usual = logistic(0.12, 8.0)
+    point = at_three_kicks(lambda f: min(0.7, usual(f)), usual, usual)
+    assert point.critical_friction is not None
+    assert (point.critical_friction_high, point.high_scatter_low, point.high_scatter_high) == (
+        None,
+        None,
+        None,
+    )
+    assert point.reason == "from 0.2 m/s less than 0.9 of the runs grow up to friction 1"
+
+
+def test_an_end_of_the_ladder_that_is_not_clear_is_looked_at_again():
+    """Half of the first eight grow without friction, of all a sixteenth: P is below one half there."""
+    first = lambda f, number, runs: Count(4 if number == 0 else 0 if f < 0.1 else runs, runs)  # noqa: E731
+    assert isinstance(Response(first, 64).crossing(0.5, 96, 0.1), Crossing)
+
+
+def test_no_interval_ends_beyond_the_friction_that_is_searched():
+    """A crossing near friction 1 has its upper end there: nothing was counted beyond."""
+    found = response(logistic(0.95, 5.0)).crossing(0.5, 16, 0.5)
+    assert found.low < 0.95 < found.high == 1.0
+
+
 @pytest.mark.parametrize(("share", "side"), [(0.8, Side.ABOVE), (0.2, Side.BELOW)])
 def test_without_a_crossing_the_side_is_told(share, side):
     """P that never meets one half lies above or below it; nothing is extrapolated."""
@@ -159,6 +220,31 @@ def test_runs_that_stalled_are_told(monkeypatch):
     counter = GrowthCounter(cage, StabilitySettings())
     with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not growing"):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
+
+
+def test_counts_are_those_of_their_kick_and_restitution_factor(monkeypatch):
+    """Parts at one point add up; other kicks and restitution factors have their own."""
+    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4, growth_only=True)
+    found.outcome[0] = (RunOutcome.GROWS, *[RunOutcome.DIES] * 3)
+    monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
+    counter = GrowthCounter(cage, StabilitySettings())
+    for eta, friction, kick, first in (
+        (0.5, 0.1, 0.5, 0),
+        (0.5, 0.1, 0.5, 4),
+        (0.5, 0.2, 1.0, 0),
+        (0.6, 0.2, 0.5, 0),
+    ):
+        counter.count(eta, friction, kick, first_run=first, runs=4)
+    assert counter.counts(0.5, 0.5) == {0.1: Count(2, 8)}
+    assert counter.counts(0.5, 1.0) == counter.counts(0.6, 0.5) == {0.2: Count(1, 4)}
+
+
+@pytest.mark.parametrize("eta", [0.05, 0.5, 0.95, 1.0])
+def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
+    """The damping that is set for a factor is read back as that factor; rounding only."""
+    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    assert own_restitution_factor(cage_at(cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9)
 
 
 def test_24_that_agree_are_unanimous():

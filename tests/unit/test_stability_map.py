@@ -189,10 +189,11 @@ def test_six_of_sixteen_that_agree_are_rarely_outvoted():
     assert wrong_side_probability(6, 6) == other_decision_probability(6, 6) == 0.0
 
 
-@pytest.mark.parametrize("runs", [1, 3, 6, 12, 16, 32, 64, 500])
+@pytest.mark.parametrize("runs", [1, 3, 6, 8, 12, 16, 32, 64, 500])
 def test_the_first_look_is_as_early_as_its_error_allows(runs):
     """At most one in a thousand on the wrong side; one run fewer would be more, or too few to decide."""
     first = first_look(runs)
+    assert min(AGREEING, runs) <= first <= runs
     assert wrong_side_probability(runs, first) <= 1e-3
     assert first in (runs, AGREEING) or wrong_side_probability(runs, first - 1) > 1e-3
 
@@ -281,6 +282,7 @@ def test_bands_and_margins_of_a_column():
     assert changes(sides) == [(1, 3)]
     assert margins(values, sides) == [1.0, 0.0, 0.0, 0.0, -2.0]
     assert margins(values, (-1, 0, -1, -1, 0)) == [None] * 5
+    assert margins(values, (0, -1, 1, 1, 0)) == [None, 0.0, 0.0, -1.0, None]
     assert changes((1, -1, -1, 1, 0)) == [(0, 1), (2, 3)]
 
 
