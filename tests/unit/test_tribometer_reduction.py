@@ -82,6 +82,58 @@ def test_long_running_in_is_told():
     assert told(test, "Running-in takes ")
 
 
+def failed(share, ratio, **changes):
+    """A log whose friction of 0.08 is multiplied at a share of its length, and stays there."""
+    return log(
+        replace(QUIET, friction=0.08, **changes),
+        friction=lambda t: 0.08 * np.where(t > share * t[-1], ratio, 1.0) + 0.004 * _noise(t.size),
+    )
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.15])
+def test_a_film_that_fails_in_running_in_is_told_with_both_levels(share):
+    """Friction from 0.08 to 0.25 that is cut as running-in: the sentence has both, the place and the cure."""
+    test = reduce_log(failed(share, 3.125))
+    assert test.friction == pytest.approx(0.25, abs=0.002)  # 10 times its error: what is after the rise
+    flag = told(test, "Friction rises from 0.0")
+    low, high = (float(flag.split(word)[1].split()[0]) for word in ("from", "to"))
+    assert low == pytest.approx(0.08, abs=0.002)  # median of ten spans of 16 rows or more, four times over
+    assert high == pytest.approx(test.friction, rel=0.005)  # three digits
+    assert float(flag.split("near ")[1].split()[0]) == pytest.approx(400 * share, abs=2.1)  # a cycle
+    for words in ("a failed film, or a genuine rise", "Look at the plot", "run_in_end in the column map"):
+        assert words in flag
+
+
+def test_a_film_that_fails_after_a_fall_is_told_with_the_level_before_it():
+    """Running-in from 0.2 to 0.08, then 0.25: the level is that of the film, not of the start."""
+    test = reduce_log(
+        log(
+            friction=lambda t: (
+                np.where(t > 80.0, 0.25, 0.08 + 0.12 * np.exp(-t / 10.0)) + 0.004 * _noise(t.size)
+            )
+        )
+    )
+    flag = told(test, "Friction rises from 0.08")
+    assert "to 0.25 near" in flag
+
+
+def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one():
+    """An end given for a whole folder hides no failed film; whoever gave it needs no word of how."""
+    flag = told(
+        reduce_log(failed(0.1, 3.125), ReductionOptions(run_in_end="60 s")), "Friction rises from 0.0"
+    )
+    assert flag.endswith("Look at the plot; if the film failed, give the log only up to the rise.")
+    assert "run_in_end" not in flag
+
+
+@pytest.mark.parametrize("excess", [-0.048, -0.03, 0.12, 0.24])
+def test_ordinary_running_in_is_no_failed_film(excess):
+    """Friction that falls, or rises from six tenths of its end, is cut and not told."""
+    test = reduce_log(log(replace(QUIET, run_in=0.15, excess=excess)))
+    assert test.run_in_end > 10.0
+    assert told(test, "Friction rises from") == ""
+
+
 def test_modulation_within_a_cycle_does_not_shift_the_mean():
     """Half a turn too much shifts the mean of rows by 2 A/pi over the turns; whole cycles keep it."""
     recipe = Recipe(rows=250, noise=1e-4, modulation=0.05, rows_of_a_cycle=20.0)
@@ -219,6 +271,22 @@ def test_a_test_too_short_for_its_correlation_is_told():
     assert (
         sum(bool(told(test, "Friction stays alike over")) for test in tests) >= 3
     )  # or it looks like a fall
+
+
+def test_a_long_correlation_is_told_by_the_weight_of_all_spectra():
+    """Half the weight on long correlations is not more likely than not; a little more is."""
+    mean = steady.steady_mean(_noise(64))
+    assert not mean.is_long
+    assert not replace(mean, long_chance=0.5).is_long
+    assert replace(mean, long_chance=0.51).is_long
+
+
+def test_white_noise_of_few_spans_seldom_passes_for_a_long_correlation():
+    """In a short steady part the likeliest of all spectra often is a long one, most of the weight seldom."""
+    rng = np.random.default_rng(17)
+    means = [steady.steady_mean(rng.standard_normal(16)) for _ in range(400)]
+    assert sum(mean.corner < steady.LONG and mean.floor < steady.MIXED for mean in means) > 20
+    assert sum(mean.is_long for mean in means) < 12  # by chance 4; a Poisson count above 11 once in 4000
 
 
 def test_a_test_short_for_its_scatter_is_told():

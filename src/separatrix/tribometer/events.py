@@ -33,6 +33,9 @@ STEP_GAIN, STEP_SIZE = 0.4, 0.1
 """A step leaves less than this share of the scatter around a straight line, and is larger than this share
 of the mean."""
 
+RISE = 2.0
+"""Steady friction over that before a rise in running-in from which the rise is told."""
+
 JUMP = 10.0
 """A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
 
@@ -144,6 +147,32 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
     if small or level @ level - gain[best] > STEP_GAIN * straight:
         return None
     return spans.start + spans.width * k, size
+
+
+def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float] | None:
+    """Return place and level before a rise in running-in to far above it; else None.
+
+    The place is that of the rising step, at most at the end of running-in, that explains the means best. The
+    level is the lower of the medians of both halves before it: neither a fall that comes first nor a slow
+    rise lifts it.
+
+    Parameters
+    ----------
+    spans : Spans
+        Of the whole test.
+    end : float
+        Where running-in ends, on the ruler of the spans.
+    friction : float
+        Of the steady part.
+    """
+    y, n = spans.means, spans.means.size
+    split = np.arange(1, min(n - 1, round((end - spans.start) / spans.width)) + 1)
+    if not split.size:
+        return None
+    below = -np.cumsum(y - y.mean())[split - 1]
+    k = int(split[int(np.argmax(below / np.sqrt(split * (n - split))))])
+    before = float(min(np.median(y[: (k + 1) // 2]), np.median(y[k // 2 : k])))
+    return (spans.start + spans.width * k, before) if friction > max(0.0, RISE * before) else None
 
 
 def wear_step(spans: Spans) -> tuple[float, float] | None:

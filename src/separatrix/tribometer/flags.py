@@ -10,7 +10,7 @@ from separatrix.tribometer.cycles import Spans
 from separatrix.tribometer.events import Event
 from separatrix.tribometer.options import ReductionOptions
 from separatrix.tribometer.run_in import RunIn
-from separatrix.tribometer.steady import SteadyMean
+from separatrix.tribometer.steady import LONG, SteadyMean
 from separatrix.tribometer.stick_slip import Oscillation
 from separatrix.units import Array, format_number, format_quantity
 
@@ -52,6 +52,19 @@ def run_in_flags(found: RunIn | None, start: float, end: float, cut: float, axis
         )
     elif share > HALF:
         yield f"Running-in takes {100 * share:.0f} % of the test, up to {at(cut, axis)}."
+
+
+def rise_flag(rise: tuple[str, float] | None, friction: float, *, is_end_given: bool) -> Iterator[str]:
+    """Tell of running-in that ends far above where it began, with its place as text and the level before."""
+    if rise is None:
+        return
+    place, before = rise
+    low, high = format_number(before, 3), format_number(friction, 3)
+    end = "" if is_end_given else "if running-in ends elsewhere, give run_in_end in the column map; "
+    yield (
+        f"Friction rises from {low} to {high} near {place}, in what is cut as running-in: a failed film, or "
+        f"a genuine rise. Look at the plot; {end}if the film failed, give the log only up to the rise."
+    )
 
 
 def drift_flag(mean: SteadyMean, length: float, axis: str, options: ReductionOptions) -> Iterator[str]:
@@ -127,8 +140,8 @@ def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) 
     """Tell of a test too short for its correlation."""
     if mean.is_long:
         yield (
-            f"Friction stays alike over {100 * mean.correlation:.0f} % of the steady part or more: "
-            "the test is too short for its scatter, and the interval may be too narrow."
+            f"Friction stays alike over {100 / (np.pi * LONG):.0f} % of the steady part or more, more likely "
+            "than not: the test is too short for its scatter, and the interval may be too narrow."
         )
     elif effective < options.fewest_effective:
         yield (

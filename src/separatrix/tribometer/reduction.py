@@ -10,7 +10,14 @@ import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.tribometer import cycles, flags, steady
-from separatrix.tribometer.events import Event, friction_step, kept_rows, row_events, wear_step
+from separatrix.tribometer.events import (
+    Event,
+    friction_step,
+    kept_rows,
+    row_events,
+    run_in_rise,
+    wear_step,
+)
 from separatrix.tribometer.friction_test import TestFriction
 from separatrix.tribometer.log import RawLog
 from separatrix.tribometer.options import ReductionOptions
@@ -236,6 +243,8 @@ class _Parts:
             if event.kind != "spike":
                 yield flags.event_flag(event, self.told_row(event.row))
         yield from flags.run_in_flags(self.run_in, float(self.stretch.along[0]), high, low, self.axis)
+        rise = run_in_rise(self.stretch.spans(), self.spans.start, self.mean.mean)
+        yield from flags.rise_flag(self.told(rise), self.mean.mean, is_end_given=self.run_in is None)
         yield from flags.drift_flag(self.mean, high - low, self.axis, self.options)
         known = self.clock.cycle is not None
         yield from flags.oscillation_flag(self.oscillation, self.mean.mean, self.axis, known, self.options)

@@ -49,6 +49,9 @@ ROUNDING = 1e-12
 MIXED = 0.2
 """White part from which the correlated one is no more than a guess."""
 
+LIKELY = 0.5
+"""Weight of the spectra of a long correlation from which it counts as long: more likely than not."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SteadyMean:
@@ -65,6 +68,8 @@ class SteadyMean:
     """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
     floor: Ratio
     """White part of the spectrum at zero frequency."""
+    long_chance: Ratio
+    """Weight of all spectra whose correlation is too long for the stated interval."""
     power: Array
     """Squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]."""
     density: float
@@ -88,8 +93,8 @@ class SteadyMean:
 
     @property
     def is_long(self) -> bool:
-        """Whether the correlation is too long for the error to be trusted."""
-        return self.corner < LONG and self.floor < MIXED and self.density > 0.0
+        """Whether more likely than not the correlation is too long for the error to be trusted."""
+        return self.long_chance > LIKELY and self.density > 0.0
 
 
 def half_width(standard_error: float, degrees_of_freedom: int) -> float:
@@ -120,6 +125,7 @@ def steady_mean(values: Array) -> SteadyMean:
         change_error=float(np.sqrt(density / (x @ x))),
         corner=float(CORNERS[best[0]]),
         floor=float(FLOORS[best[1]]),
+        long_chance=float(weights[np.ix_(CORNERS < LONG, FLOORS < MIXED)].sum()),
         power=power,
         density=density,
     )
