@@ -52,6 +52,19 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
         assert found.land_impacts[0, run] == begun(ours.land_force > 0.0)
 
 
+def test_the_largest_offset_and_force_without_play_are_those_of_the_history():
+    """Dying down it is farthest off at its first turn, within a step: by parabolas, hence 5e-4."""
+    cage = replace(
+        CAGES["no land, at rest"], pocket_clearance=0.0, ball_cage_friction=0.0, race_damping=800.0
+    )
+    found = run_ensemble(cage, SETTINGS)
+    for run in range(SETTINGS.runs):
+        ours = simulate(cage, kick=0.5, run=run, seed=4, duration=0.02, samples=100_000)
+        farthest, force = np.hypot(*ours.position.T).max(), np.abs(ours.contact_force).max()
+        assert found.largest_offset[0, run] == pytest.approx(farthest, rel=5e-4)
+        assert found.largest_contact_force[0, run] == pytest.approx(force, rel=5e-4)
+
+
 def told(cage, ours):
     """Name, value and tolerance of what a history tells of its run.
 

@@ -103,6 +103,7 @@ CASES = {
         {"land_friction": 0.6},
         {"land_friction": 0.05},
     ),
+    "a land that holds on a ramp": (replace(SLOW, land_friction=0.6), RAMP, {}),
     "everything": (BALL, {name: getattr(EVERYTHING, name) for name in EVERYTHING.__dataclass_fields__}, {}),
 }
 
@@ -177,7 +178,7 @@ def test_a_drawn_cage_takes_the_second_road(case):
 
 
 @pytest.mark.parametrize(
-    "case", ["everything", "inner land", "ramp and orbital speeds", "no play, everything on"]
+    "case", ["everything", "inner land", "ramp", "ramp and orbital speeds", "no play, everything on"]
 )
 def test_every_source_does_the_work_that_it_does_on_the_second_road(case):
     """Energy and work, source by source; frame and unbalance together."""
