@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.special import ndtr
 
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.errors import InputError
+from separatrix.friction_fit import TestedFriction
 from separatrix.study import BallBearing, Candidate, Film, Friction, Operation, RankingQuestion, Study
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions
@@ -134,6 +136,42 @@ def test_a_friction_whose_scatter_reaches_zero_is_log_normal():
     assert draws.inputs[0].distribution.kind == "log-normal"
     assert draws.values.min() > 0.0
     assert draws.values.mean() == pytest.approx(0.05, rel=2e-3)  # 1024 points, 40 % wide, error near 1/n
+
+
+def of_tests(**known):
+    """A study with one candidate whose friction a fit to tests foretells."""
+    law = TestedFriction(material="Tested", environment="air", tests=(), default_scatter=0.09)
+    tested = Candidate(name="Tested", friction={"air": Friction(law=law, **known)})
+    return replace(BASE, ranking=RankingQuestion(environments=("air",), candidates=(tested,)))
+
+
+def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
+    """A fit says median and scatter of the logarithm: 0.3 and 0.4 in quadrature make 0.5."""
+    known = {"mean": 0.08, "standard_error": 0.3 * 0.08, "standard_deviation": 0.4 * 0.08}
+    (one,) = uncertain_inputs(of_tests(**known))
+    levels = ndtr(np.array([-2.0, -1.0, 0.0, 1.0, 2.0]))
+    found = np.log(one.distribution.quantile(levels) / 0.08)
+    assert found == pytest.approx([-1.0, -0.5, 0.0, 0.5, 1.0], abs=1e-5)  # the cut at 5 standard deviations
+    assert one.central == 0.08
+    assert one.deviation == pytest.approx(0.5 * 0.08, rel=1e-12)
+
+
+def test_tests_that_tell_nothing_are_refused():
+    """A friction known to ten powers of e is none: its mean would overflow."""
+    with pytest.raises(InputError, match="must not scatter by ten times its mean"):
+        uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9))
+
+
+def test_a_friction_of_zero_is_drawn_as_certain_only_where_it_is():
+    """Without a scatter it is no input; with one it is refused, not taken as certain."""
+    for friction in (Friction(mean=0.0), Friction(mean=0.0, standard_deviation=0.1)):
+        none = Candidate(name="None", friction={"air": friction})
+        study = replace(BASE, ranking=RankingQuestion(environments=("air",), candidates=(none,)))
+        if friction.standard_deviation is None:
+            assert uncertain_inputs(study) == ()
+        else:
+            with pytest.raises(InputError, match="mean must be > 0"):
+                uncertain_inputs(study)
 
 
 def test_what_cannot_be_drawn_is_refused():

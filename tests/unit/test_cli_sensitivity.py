@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from separatrix import results
 from separatrix.cli import main, sensitivity
 from separatrix.cli.sensitivity import STAGES, stages
 from separatrix.figures import figures
+from separatrix.figures.sensitivity import environments
 from separatrix.report.sensitivity import MARK
 from separatrix.uncertainty import training
 
@@ -197,6 +199,12 @@ def test_text_and_files(capsys):
         "film_thickness",
     )
     assert data["film_thickness"].attrs["units"] == "m"
+    data["material_extrapolation"] = data["material_extrapolation"].astype(object)
+    data["material_extrapolation"][0, 0] = "too fast"
+    drawn = dict(environments(data))
+    beside = [{text.get_text() for text in one.findobj(Text)} for one in drawn.values()]
+    assert ["friction: too fast" in texts for texts in beside] == [True, False]
+    assert [any(f"{MARK}  P(stable)" in text for text in texts) for texts in beside] == [True, False]
 
 
 def test_an_interrupt_of_the_last_stage_keeps_the_probabilities(capsys, monkeypatch):

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from scipy.special import ndtr
 from scipy.stats import beta
 
 from separatrix.ranking.lowest import lowest_of
+from separatrix.study import Candidate, Friction, RankingQuestion
+from separatrix.study_file import read_study
+from separatrix.uncertainty.answer import _lowest
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, Limits, own_draws
+from separatrix.uncertainty.model import Case
 from separatrix.uncertainty.probability import (
     best_credit,
     mixed_interval,
@@ -16,6 +24,9 @@ from separatrix.uncertainty.probability import (
     sizes,
     tie_groups,
 )
+from separatrix.uncertainty.sampling import sobol_points
+
+STUDY = read_study("cryogenic-turbopump")
 
 
 @pytest.mark.parametrize(("true", "of"), [(1, 64), (32, 64), (400, 1024), (1023, 1024)])
@@ -116,8 +127,41 @@ def test_limits_that_cross_are_unstable_first():
 
 
 def test_every_boundary_has_its_share_of_the_samples():
-    """In turn, so that the first so many samples hold all of them."""
-    assert own_draws(6, 4).tolist() == [0, 1, 2, 3, 0, 1]
+    """As often as any other, whatever the number of samples."""
+    assert sorted(np.bincount(own_draws(6, 4))) == [1, 1, 2, 2]
+    assert np.bincount(own_draws(4096, 64)).tolist() == [64] * 64
+
+
+def test_the_boundary_of_a_sample_tells_nothing_of_its_inputs():
+    """Sobol' points in turn have the same first digits every 64: the boundary would be the first input's."""
+    points, own = sobol_points(4096, 4, 0), own_draws(4096, 64)
+    within = np.array([points[own == draw].mean(axis=0) for draw in range(64)])
+    share = within.var(axis=0) / points.var(axis=0)
+    # by chance 63 of 4095 of the variance lie between the boundaries, give or take 2/4095 sqrt(63/2)
+    assert share == pytest.approx(63 / 4095, abs=5 * 2 / 4095 * (63 / 2) ** 0.5)
+
+
+def test_the_lowest_friction_over_all_environments_is_that_of_the_means():
+    """As `rank` has it: the standard errors of the means tell, not the scatter of single cages."""
+    mean, error = {"A": 0.1, "B": 0.12}, 0.01
+    candidates = tuple(
+        Candidate(
+            name=name,
+            friction=dict.fromkeys("gl", Friction(mean=f, standard_error=error, standard_deviation=0.05)),
+        )
+        for name, f in mean.items()
+    )
+    study = replace(STUDY, ranking=RankingQuestion(environments=("g", "l"), candidates=candidates))
+    cases = [
+        Case(candidate=name, environment=place, place=i, columns=(), certain=0.0, count=1)
+        for place in ("g", "")
+        for i, name in enumerate(mean)
+    ]
+    found = _lowest(SimpleNamespace(study=study, cases=cases), (2, 3))
+    log_error = np.hypot(error / 0.1, error / 0.12) / 2.0**0.5
+    assert found[2] == pytest.approx(ndtr(np.log(1.2) / log_error), abs=1e-9)  # rounding of the quadrature
+    assert found[2] + found[3] == pytest.approx(1.0, abs=1e-9)
+    assert _lowest(SimpleNamespace(study=study, cases=cases), (0, 1))[0] < found[2]
 
 
 def test_the_probability_of_the_lowest_friction_never_exceeds_one():

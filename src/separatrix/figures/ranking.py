@@ -125,13 +125,13 @@ def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
             [], [], marker, color=VERDICT_COLOURS[verdict], ms=5, label=f"{verdict} at this bearing's $\\eta$"
         )
     axes.plot([], [], "o", mfc="white", mec=GREY, ms=4.5, label="threshold with its 95 % interval")
-    _untested(axes, data["material_extrapolation"])
+    untested(axes, data["material_extrapolation"])
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
     statement = textwrap.fill(str(data["paper_statement"].values), 110)
     axes.text(0, 1.09, statement, transform=axes.transAxes, fontsize=6.5, color=GREY, va="bottom")
 
 
-def _untested(axes: Axes, sentences: xr.DataArray) -> None:
+def untested(axes: Axes, sentences: xr.DataArray) -> None:
     """Say in the legend what was not tested, each sentence once."""
     texts = (str(text).split("; ") for text in sentences.values.ravel())
     for text in dict.fromkeys(one for several in texts for one in several if one):
@@ -162,7 +162,7 @@ def overview(data: xr.Dataset) -> Figure:
     chain_lines(axes, data)
     _paper_line(axes, data)
     _rows(axes, data, places)
-    _untested(axes, data["overall_extrapolation"])
+    untested(axes, data["overall_extrapolation"])
     axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure

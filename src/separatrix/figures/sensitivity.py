@@ -11,13 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withTickedStroke
 
-from separatrix.figures.ranking import file_name
+from separatrix.figures.ranking import file_name, untested
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
 from separatrix.figures.style import (
     BLACK,
     BLUE,
     CYCLE,
     GREY,
+    MARK,
     MARKERS,
     ORANGE,
     PAGE,
@@ -65,6 +66,7 @@ def environment(data: xr.Dataset, top: float) -> Figure:
         labels += _cloud(axes, data.isel(material=i), CYCLE[i % len(CYCLE)], MARKERS[i % len(MARKERS)])
     label_lines(axes, [(1.0, y, text, colour) for y, text, colour in labels], gap=0.04)
     _missing(axes, data)
+    untested(axes, data["material_extrapolation"])
     name = str(data["environment"].values)
     axes.set_title(f"{name[:1].upper() + name[1:]}: where the next cage may lie")
     legend_below(figure)
@@ -103,7 +105,8 @@ def _cloud(axes: Axes, data: xr.Dataset, colour: str, marker: str) -> list[tuple
     axes.errorbar(*middle, xerr=bars[0], yerr=bars[1], elinewidth=1.2, zorder=4, **look)
     axes.plot([middle[0], 1.0], [middle[1]] * 2, color=colour, lw=0.3, alpha=0.5, zorder=1)
     share = float(data["material_probability_stable"])
-    text = f"{data['material'].values}  {middle[1]:.3f}  P(stable) {share:.2f}"
+    mark = MARK if str(data["material_extrapolation"].values) else ""
+    text = f"{data['material'].values}  {middle[1]:.3f}{mark}  P(stable) {share:.2f}"
     return [(middle[1], text, colour)]
 
 

@@ -152,7 +152,7 @@ def friction_seen(
     `scatter` is that of an unrepeated test; `media` are the names of the fluid, if there are several.
     """
     if friction.law is None:
-        return _with_scatter(friction, scatter)
+        return with_scatter(friction, scatter)
     found = friction.law.at(
         slip_speed=pocket.slip_speed or None,
         pressure=pocket.pressure,
@@ -169,7 +169,8 @@ def friction_seen(
     )
 
 
-def _with_scatter(friction: Friction, scatter: Ratio) -> Friction:
+def with_scatter(friction: Friction, scatter: Ratio) -> Friction:
+    """Return a friction with the scatter that it states; without any, with that of an unrepeated test."""
     known = measured(friction)
     if known.error is not None:
         deviation = known.error if known.deviation is None else known.deviation
@@ -180,4 +181,4 @@ def _with_scatter(friction: Friction, scatter: Ratio) -> Friction:
 
 def errors_of(frictions: Mapping[str, Friction | None], scatter: Ratio) -> dict[str, MeanFriction]:
     """Mean and standard error of those that were measured; without any scatter that of an unrepeated test."""
-    return {name: measured(_with_scatter(f, scatter)) for name, f in frictions.items() if f is not None}
+    return {name: measured(with_scatter(f, scatter)) for name, f in frictions.items() if f is not None}

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from separatrix.distribution import described
 from separatrix.errors import InputError
-from separatrix.ranking import probability_lowest, ranking_question
+from separatrix.ranking import ranking_question
+from separatrix.ranking.friction import MeanFriction, overall, with_scatter
+from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.reason import not_measured
 from separatrix.study import Study
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, VERDICTS, Boundary, own_draws
@@ -38,7 +40,7 @@ from separatrix.uncertainty.records import (
     UncertainRanking,
 )
 from separatrix.uncertainty.sampling import Draws, sample
-from separatrix.units import Array
+from separatrix.units import Array, Ratio
 
 BOUNDARIES = 64
 """Boundaries that the runs allow, behind every interval of a verdict's probability."""
@@ -221,9 +223,10 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
         counts = (found.verdicts == verdict).sum(axis=1)
         numbers |= _probability(f"probability_{name}", counts, samples)
     numbers |= _probability("probability_best", found.orders.sum(axis=1), samples)
-    lowest, groups = np.zeros(cases), np.zeros(cases, dtype=np.int_)
-    for environment, own in by_environment(model.cases).items():
-        lowest[own] = _lowest(model, environment, own, found.friction[:, own])
+    lowest: dict[int, Ratio] = {}
+    groups = np.zeros(cases, dtype=np.int_)
+    for own in by_environment(model.cases).values():
+        lowest |= _lowest(model, own)
         groups[own] = tie_groups(found.threshold[:, own], numbers["probability_best"][own])
     nominal = _nominal(model)
     rows = [
@@ -237,7 +240,7 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
             verdict=VERDICTS[int(nominal.verdict[0, i])],
             nominal_threshold=float(nominal.threshold[0, i]),
             nominal_margin=float(nominal.margin[0, i]),
-            probability_lowest_friction=float(lowest[i]),
+            probability_lowest_friction=lowest.get(i),
             tie_group=int(groups[i]),
         )
         for i, (row, nominal_friction) in enumerate(
@@ -250,7 +253,7 @@ def _rows(model: Model, found: Sampled) -> list[UncertainMaterial]:
 def _deviation(model: Model, place: int) -> float:
     """Standard deviation of the friction of a case, whose parts are independent [-]."""
     case = model.cases[place]
-    parts = [model.inputs[column].distribution.standard_deviation for column in case.columns]
+    parts = [model.inputs[column].deviation for column in case.columns]
     return math.hypot(*parts) / case.count
 
 
@@ -260,14 +263,21 @@ def _nominal(model: Model) -> Evaluated:
     return model.judge(model.central_values, factors)
 
 
-def _lowest(model: Model, environment: str, own: Sequence[int], friction: Array) -> Array:
-    """Probability of the lowest friction: in an environment as `rank` has it; over all, by the samples."""
+def _lowest(model: Model, own: Sequence[int]) -> dict[int, Ratio]:
+    """Probability of the lowest mean friction by case, as `rank` has it; empty if there is no other."""
+    means = {i: _mean_friction(model, model.cases[i]) for i in own}
+    known = {model.cases[i].candidate: mean for i, mean in means.items() if mean is not None}
+    found = lowest_among(known).probabilities
+    return {i: share for i in own if (share := found.get(model.cases[i].candidate)) is not None}
+
+
+def _mean_friction(model: Model, case: Case) -> MeanFriction | None:
+    """Mean friction of a case with its standard error."""
     asked = ranking_question(model.study)
-    if not environment:
-        return np.asarray(best_credit(-friction).mean(axis=0))
-    table = {candidate.name: candidate.friction.get(environment) for candidate in asked.candidates}
-    found = probability_lowest(table, asked.friction_scatter).probabilities
-    return np.array([found[model.cases[i].candidate] for i in own])
+    friction = asked.candidates[case.place].friction
+    places = (case.environment,) if case.environment else asked.environments
+    known = [one for place in places if (one := friction.get(place)) is not None]
+    return overall(with_scatter(one, asked.friction_scatter) for one in known)
 
 
 def _interval(name: str, values: Array) -> dict[str, Array]:

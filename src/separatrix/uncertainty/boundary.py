@@ -172,5 +172,8 @@ def first_fall(nodes: Array, curves: Array, friction: Array) -> Array:
 
 
 def own_draws(samples: int, draws: int) -> NDArray[np.int_]:
-    """Return the boundary of each sample, in turn, shape (sample,)."""
-    return np.arange(samples) % draws
+    """Return the boundary of each sample, all equally often, shape (sample,).
+
+    In a fixed random order: in turn, a boundary would tell the first digits of its Sobol' points.
+    """
+    return np.random.default_rng((samples, draws)).permutation(samples) % draws

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import exp, expm1, isclose, sqrt
 
 import numpy as np
 
 from separatrix.distribution import Distribution, LogNormal
 from separatrix.errors import InputError
+from separatrix.friction_fit import TestedFriction
 from separatrix.study import Candidate, Friction, Study
 from separatrix.study_numbers import Setter, setter, settled_in, study_numbers, value_of
 from separatrix.units import Array, Ratio
@@ -28,6 +29,8 @@ STREAM = 0x50B0
 """Sets the draws of the inputs apart from whatever else is drawn from a study's seed."""
 
 BITS = 30
+MOST_VARIANCE = 100.0
+"""Of the logarithm of a friction from tests: with more of it the tests tell nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +46,14 @@ class UncertainInput:
     distribution: Distribution
     central: float
     source: str = "study"
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation; of a friction from tests that of its logarithm, times the median."""
+        law = self.distribution
+        if isinstance(law, LogNormal) and isclose(self.central, law.median):
+            return self.central * law.log_deviation
+        return law.standard_deviation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -135,7 +146,7 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
             scatter = ranking.friction_scatter if ranking else 0.0
             deviation, source = next_cage_deviation(friction, scatter)
             if deviation > 0.0:
-                scattered = LogNormal(mean=friction.mean, standard_deviation=deviation)
+                scattered = _next_cage(friction, deviation)
                 yield UncertainInput(
                     key=key,
                     unit="-",
@@ -143,6 +154,19 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
                     central=friction.mean,
                     source=source,
                 )
+
+
+def _next_cage(friction: Friction, deviation: Ratio) -> LogNormal:
+    """Friction of the next cage; what a fit to tests foretells is the median, and the logarithm's scatter."""
+    if not isinstance(friction.law, TestedFriction):
+        return LogNormal(mean=friction.mean, standard_deviation=deviation)
+    variance = (deviation / friction.mean) ** 2
+    if variance > MOST_VARIANCE:
+        got = f"{friction.mean:.3g} with a standard deviation of {deviation:.3g}"
+        cure = "Test it nearer to how the pocket rubs, or state a friction."
+        raise InputError("A friction from tests", "must not scatter by ten times its mean", "-", got, cure)
+    mean = friction.mean * exp(0.5 * variance)
+    return LogNormal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
 
 
 def next_cage_deviation(friction: Friction, default_scatter: Ratio) -> tuple[Ratio, str]:
