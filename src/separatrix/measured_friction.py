@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from separatrix import _check
+from separatrix.errors import InputError
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
 
 FRICTION_LIMIT = 2.0
+LEAST_FRICTION = 1e-5
+"""The least that is a measurement: of frictions that scatter the logarithm is taken."""
 
 
 class PredictedFriction(Protocol):
@@ -76,3 +79,18 @@ class Friction:
             _check.not_negative(self, "standard_error", FRICTION_LIMIT),
             () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
         )
+
+
+def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
+    """Return the friction as it was read, unless it scatters about a mean that is none.
+
+    Raises
+    ------
+    InputError
+        It has a standard deviation, and a mean of 0 or nearly so.
+    """
+    if friction.standard_deviation and friction.mean < LEAST_FRICTION:
+        rule = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation"
+        cure = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
+        raise InputError(f"{where}.mean", rule, "-", f"{friction.mean:g}", cure)
+    return friction

@@ -68,6 +68,11 @@ class StudyNumber:
         """Whether it takes whole numbers only."""
         return self.unit == WHOLE
 
+    @property
+    def is_friction(self) -> bool:
+        """Whether it is the mean friction of a candidate."""
+        return self.path[-1] == "mean"
+
 
 @cache
 def numbers_of(record: type) -> dict[str, str]:
@@ -277,19 +282,24 @@ def settled_in(study: Study, key: str, distribution: Distribution) -> Distributi
     InputError
         It takes neither: which end, and why.
     """
-    unit = _known(study_numbers(study), key).unit
+    number = _known(study_numbers(study), key)
     other = positive_alternative(distribution)
-    refused = _refusal(study, key, unit, distribution)
+    refused = _refusal(study, number, distribution)
     if refused is None:
         return distribution
-    if other is not None and _refusal(study, key, unit, other) is None:
+    if other is not None and _refusal(study, number, other) is None:
         return other
     raise refused
 
 
-def _refusal(study: Study, key: str, unit: str, distribution: Distribution) -> InputError | None:
-    """Why the study does not take an end of the distribution; None if it takes both."""
-    put = setter(study, [key])
+def _refusal(study: Study, number: StudyNumber, distribution: Distribution) -> InputError | None:
+    """Why the study does not take an end of the distribution; None if it takes both.
+
+    Of a candidate's friction only the mean is stated: the tail of its log-normal scatter is taken as it is.
+    """
+    if number.is_friction and isinstance(distribution, LogNormal):
+        return None
+    key, unit, put = number.key, number.unit, setter(study, [number.key])
     for side, end in (("lower", distribution.low), ("upper", distribution.high)):
         try:
             put([end])

@@ -153,6 +153,22 @@ def test_wrong_usage_is_refused_in_one_line(case, capsys):
     assert said in refused(capsys, *arguments)
 
 
+@pytest.mark.parametrize(
+    ("verb", "option"),
+    [
+        *((verb, "--jobs") for verb in ("check", "rank", "map", "simulate", "sensitivity", "tribometer")),
+        *(("map", "--points"), ("map", "--runs"), ("simulate", "--run"), ("sensitivity", "--samples")),
+    ],
+)
+@pytest.mark.parametrize("value", ["two", "1.5", "", "9" * 5000])
+def test_an_option_that_is_no_whole_number_is_refused_in_our_words(verb, option, value, capsys):
+    """Where, rule, value and cure, whichever option takes the number."""
+    line = refused(capsys, verb, "le7", option, value)
+    shown = value if len(value) < 60 else "9" * 57 + "..."
+    cure = "Write it in digits, or leave it out."
+    assert line == f'separatrix: {option} must be a whole number; got "{shown}". {cure}\n'
+
+
 def test_out_that_is_a_file_is_refused_before_the_work(capsys):
     """`--out` names a file: refused, and the file is as it was."""
     Path("taken").write_text("mine")

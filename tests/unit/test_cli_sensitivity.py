@@ -101,6 +101,9 @@ def test_a_verdict_stands_with_its_evidence(capsys):
             assert known[key] == same[key]
         assert (known["runs"], known["duration"]) == (8, 0.01)
     assert row(found, "vacuum", "B")["verdict"] is None
+    for one in (found, ranked):
+        assert row(one, "vacuum", "A")["probability_lowest_friction"] is None
+        assert row(one, "air", "A")["probability_lowest_friction"] > 0.99
 
 
 def test_the_runs_are_one_of_the_drivers(capsys):

@@ -13,7 +13,7 @@ from separatrix.chain import cage_state
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall
-from separatrix.ranking.lowest import may_be_lower
+from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
 from separatrix.ranking.rank import _tied
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
@@ -237,9 +237,16 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
     for row, candidate in ((soft_one, candidates[0]), (stiff_one, candidates[1])):
         lonely = replace(question, candidates=(candidate,))
         (alone,) = rank(replace(study, cage=cage, ranking=lonely)).overall
-        assert repr(replace(row, rank=1, probability_lowest_friction=1.0)) == repr(
-            replace(alone, probability_lowest_friction=1.0)
-        )
+        assert repr(replace(row, rank=1, probability_lowest_friction=None)) == repr(alone)
+
+
+def test_one_measured_friction_alone_has_no_probability_of_being_the_lowest():
+    """There is nothing to compare it with; with another, the two add up to 1, however small the means."""
+    one = Friction(mean=0.2, standard_deviation=0.05)
+    assert probability_lowest({"A": one, "B": None}) == LowestFriction(probabilities={}, tied=("A",))
+    assert probability_lowest({"A": None}) == LowestFriction(probabilities={}, tied=())
+    found = probability_lowest({"A": one, "B": Friction(mean=1e-200, standard_deviation=0.1)})
+    assert sum(found.probabilities.values()) == pytest.approx(1.0, abs=1e-9)  # of the quadrature
 
 
 def test_a_study_without_candidates_is_refused():

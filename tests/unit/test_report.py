@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from separatrix.report import ranking, whereabouts
+from separatrix.report.sensitivity import _marks
 
 
 def row(name: str, rank: int | None, friction: float | None = 0.1, **other: object) -> dict:
@@ -73,6 +74,24 @@ def test_frictions_that_were_not_tested_are_marked_and_explained_once():
     (_, note) = ranking.footnotes(rows)
     assert note == "  * not tested as the pocket rubs: too fast. too hot (A)."
     assert ranking.footnotes([row("C", 3)]) == []
+
+
+def test_a_friction_alone_has_no_probability_of_being_the_lowest():
+    """The line says why; with another it has the numbers, and without any measurement there is none."""
+    alone = [row("A", 1, probability_lowest_friction=None), row("B", None, None)]
+    told = "  Probability of the lowest mean friction:"
+    assert ranking.lowest(alone) == ["", f"{told} none, for only A was measured here."]
+    assert ranking.lowest([row("A", 1), row("C", 1)]) == ["", f"{told} C 0.50, A 0.50."]
+    assert ranking.lowest([row("B", None, None)]) == []
+
+
+def test_the_mark_of_an_assumed_scatter_says_what_the_cell_shows():
+    """The guess is of the scatter between samples; the per cent in the cell is of more than that."""
+    known = {"friction_scatter_assumed": True, "extrapolation": []}
+    document = {"environments": [{"materials": [known]}], "default_scatter": 0.09}
+    (note,) = _marks(document)
+    assert "? its scatter from sample to sample was not measured: 9 % of the mean" in " ".join(note.split())
+    assert "The per cent beside a friction is the whole scatter" in " ".join(note.split())
 
 
 def test_the_evidence_stands_beside_each_candidate():

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from scipy.stats import lognorm
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.errors import InputError
@@ -23,6 +24,7 @@ from separatrix.study_numbers import (
     with_distributions,
     with_values,
 )
+from separatrix.uncertainty.sampling import sample, uncertain_inputs
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 
@@ -242,6 +244,20 @@ def test_distributions_are_given_in_python_too():
     assert isinstance(study.distributions["film.thickness"], LogNormal)
     with pytest.raises(InputError, match="is no number of this study"):
         with_distributions(base, {"film.colour": Uniform(low=0.0, high=1.0)})
+
+
+@pytest.mark.parametrize("text", ['"0.5 +- 180 %"', "{ mean = 0.5, standard_deviation = 0.45 }"])
+def test_a_friction_that_scatters_widely_is_read_and_drawn(study_of, text):
+    """Only a stated friction ends at 2: what is read is drawn, and the tail of its scatter as it is."""
+    study = study_of(f'[[ranking.candidates]]\nname = "One"\nfriction = {{ "air" = {text} }}\n')
+    (one,) = uncertain_inputs(study)
+    assert (one.central, one.distribution.mean, one.distribution.standard_deviation) == (0.5, 0.5, 0.45)
+    assert isinstance(one.distribution, LogNormal)
+    assert one.distribution.high > 10.0
+    shape = math.sqrt(math.log1p(0.9**2))
+    above = lognorm.sf(2.0, shape, scale=0.5 * math.exp(-0.5 * shape**2))
+    # the cut at 5 standard deviations takes 3e-7, and the points leave one part in 4096
+    assert (sample(study, 4096).values > 2.0).mean() == pytest.approx(above, abs=1 / 4096)
 
 
 def test_more_distributions_than_can_be_told_apart_are_refused():

@@ -289,6 +289,16 @@ def test_what_was_not_tested_stands_beside_the_friction(answer, tmp_path):
     assert row["probability of the lowest friction (-)"] == 0.7
 
 
+def test_a_friction_alone_has_a_word_for_the_probability_of_the_lowest(answer, tmp_path):
+    """No number and no empty cell; one that was not measured has an empty cell."""
+    lone = answer["overall"][0] | {"probability_lowest_friction": None}
+    absent = dict.fromkeys(lone) | {"name": "Not measured", "extrapolation": []}
+    results_workbook(answer | {"overall": [lone, absent]}, tmp_path / "a.xlsx")
+    headings, *rows = openpyxl.load_workbook(tmp_path / "a.xlsx")["overall"].values
+    place = headings.index("probability of the lowest friction (-)")
+    assert [row[place] for row in rows] == ["none: no other measured", None]
+
+
 def test_environments_take_no_name_of_ours_and_keep_theirs(answer, tmp_path):
     """A sheet's name may be cut or changed; the name itself stands in its rows."""
     names = ["Inputs", "gaseous nitrogen at 77 K, 440C, run in", "a/b"]

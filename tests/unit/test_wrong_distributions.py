@@ -127,6 +127,14 @@ WRONG = {
         ("[bearing] ball_material.poisson_ratio leaves", "must be >= 0 and < 0.5"),
     ),
     "a friction below zero": (friction("{ between = [-0.1, 0.1] }"), ("One.air, leaves", "-0.1")),
+    "a friction around zero": (
+        friction('"0 +- 0.1"'),
+        ('friction."air".mean must be >= 1e-05 where there is a standard deviation [-]; got 0.',),
+    ),
+    "a friction of zero that scatters": (
+        friction("{ mean = 0, standard_deviation = 0.1 }"),
+        ('friction."air".mean must be >= 1e-05 where there is a standard deviation [-]; got 0.',),
+    ),
     "a friction of zero width": (friction('"0.1 +- 0 %"'), ('friction."air"', "a width > 0")),
     "a friction of text": (friction('["low", "high"]'), ('friction."air", item 1, must be a plain number',)),
     "a friction's deviation": (friction('{ mean = 0.1, standard_deviation = "-9 %" }'), ("a width > 0",)),

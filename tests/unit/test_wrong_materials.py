@@ -164,6 +164,10 @@ WRONG = {
     "a table without friction": (TABLE.partition('[friction_table."rig".f')[0], "lacks: friction"),
     "a table without source": (changed(TABLE, 'source = "Report 5"\n', ""), "lacks: source"),
     "a friction of zero": (changed(TABLE, "0.2", "0.0"), "left out, never given as 0"),
+    "a friction of nearly zero that scatters": (
+        changed(TABLE, "0.2", "{ mean = 1e-200, standard_deviation = 0.1 }"),
+        "mean must be >= 1e-05 where there is a standard deviation [-]; got 1e-200.",
+    ),
     "a negative friction": (changed(TABLE, "0.2", "-0.2"), "must lie between 0 and 2"),
     "a friction with a unit": (changed(TABLE, "0.2", '"0.2 N"'), "must be a plain number"),
     "a friction of 5": (changed(TABLE, "0.2", "5"), "must lie between 0 and 2"),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -21,6 +21,7 @@ from separatrix.cli.sensitivity import SAMPLES, SensitivityOptions
 from separatrix.cli.simulating import SimulateOptions
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.units import shown
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
@@ -28,7 +29,27 @@ Json = Annotated[bool, typer.Option("--json", help="One JSON document on standar
 OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
 Out = Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
-Jobs = Annotated[int | None, typer.Option(metavar="N", help="Threads [default: one for each processor].")]
+
+
+def whole(option: typer.CallbackParam, value: str | None) -> int | None:
+    """Return the whole number that an option gives; None if it is left out without a default.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    try:
+        return None if value is None else int(value)
+    except ValueError:
+        cure = "Write it in digits, or leave it out."
+        raise InputError(option.opts[0], "must be a whole number", "", shown(value), cure) from None
+
+
+WHOLE: dict[str, Any] = {"metavar": "N", "parser": str, "callback": whole}
+"""Of every option that takes a whole number: typer leaves it as text, `whole` reads it."""
+
+Jobs = Annotated[int | None, typer.Option(**WHOLE, help="Threads [default: one for each processor].")]
 StudyArgument = Annotated[
     str, typer.Argument(metavar="STUDY", help="A study file or workbook, or the name of a shipped study.")
 ]
@@ -122,8 +143,8 @@ def _map(
     study: StudyArgument,
     x: Annotated[str, typer.Option("--x", metavar="AXIS", help=f"PARAM={AXIS}.")] = DEFAULT_X,
     y: Annotated[str, typer.Option("--y", metavar="AXIS", help="The same, upward.")] = DEFAULT_Y,
-    points: Annotated[int, typer.Option(metavar="N", help="Values of an axis that says no number.")] = 100,
-    runs: Annotated[int, typer.Option(metavar="N", help="Most runs of a point.")] = 16,
+    points: Annotated[int, typer.Option(**WHOLE, help="Values of an axis that says no number.")] = 100,
+    runs: Annotated[int, typer.Option(**WHOLE, help="Most runs of a point.")] = 16,
     kick: Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)] = None,
     adaptive: Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)] = False,
     fresh: Annotated[
@@ -142,7 +163,7 @@ def _map(
 def _simulate(
     study: StudyArgument,
     kick: Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)] = None,
-    number: Annotated[int, typer.Option("--run", metavar="N", help="Which run of the ensemble.")] = 0,
+    number: Annotated[int, typer.Option("--run", **WHOLE, help="Which run of the ensemble.")] = 0,
     animate: Annotated[str | None, typer.Option(metavar="gif|mp4", help="Also write an animation.")] = None,
     json: Json = False,
     out: Out = None,
@@ -157,7 +178,7 @@ def _simulate(
 
 def _sensitivity(
     study: StudyArgument,
-    samples: Annotated[int, typer.Option(metavar="N", help="Samples, a power of two.")] = SAMPLES,
+    samples: Annotated[int, typer.Option(**WHOLE, help="Samples, a power of two.")] = SAMPLES,
     json: Json = False,
     out: Out = None,
     quiet: Quiet = False,

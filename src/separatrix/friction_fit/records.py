@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.study import FRICTION_LIMIT
+from separatrix.measured_friction import FRICTION_LIMIT, LEAST_FRICTION
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity, shown
 
-LEAST_FRICTION = 1e-5
 CONDITIONS = {"temperature": "K", "slip_speed": "m/s", "pressure": "Pa"}
 """What friction may depend on, and the SI unit."""
 

@@ -8,6 +8,7 @@ from typing import Any
 from separatrix.errors import InputError
 from separatrix.library.records import CONDITION_UNITS, FrictionTable
 from separatrix.library.words import BLANK, confidence_of, long_text, raw, span, yes_or_no
+from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import Friction
 from separatrix.toml_values import Reader, build, nearest, ratio, table, text, whole
 from separatrix.units import printable, shown
@@ -68,7 +69,8 @@ def _friction(value: Any, where: str, words: Mapping[str, str]) -> Friction:
     )
     if given["mean"] == 0.0:
         raise InputError(where, "must be above 0", "", "0", BLANK)
-    return build(Friction, {**given, "source": words["source"], "confidence": words["confidence"]}, where)
+    known = {**given, "source": words["source"], "confidence": words["confidence"]}
+    return refuse_scatter_about_zero(build(Friction, known, where), where)
 
 
 def _environments(value: Any, rows: Mapping[str, Mapping[str, Friction]], where: str) -> tuple[str, ...]:

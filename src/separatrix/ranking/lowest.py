@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import log, sqrt
+from math import hypot, log, sqrt
 
 import numpy as np
 
@@ -28,7 +28,8 @@ _STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
 class LowestFriction:
     """Probability of having the lowest mean friction, by candidate, and who cannot be told from the first.
 
-    `tied` begins with the leader, the most probable one; without a tie it stands alone.
+    `tied` begins with the leader, the most probable one; without a tie it stands alone. One friction alone
+    has no probability of being the lowest: there is nothing to compare it with.
     """
 
     probabilities: Mapping[str, Ratio]
@@ -54,10 +55,10 @@ def probability_lowest(frictions: Mapping[str, Friction | None], scatter: Ratio 
 def lowest_among(known: Mapping[str, MeanFriction]) -> LowestFriction:
     """The same of mean frictions with their standard errors, 0 where there is none."""
     names = list(known)
-    logs, errors = [list(column) for column in zip(*map(_log, known.values()), strict=True)] or [[], []]
+    if len(names) < 2:
+        return LowestFriction(probabilities={}, tied=tuple(names))
+    logs, errors = [list(column) for column in zip(*map(_log, known.values()), strict=True)]
     found = lowest_of(logs, errors)
-    if not names:
-        return LowestFriction(probabilities={}, tied=())
     leader = int(np.argmax(found))
     tied = [leader, *(j for j in range(len(names)) if j != leader and _reaches(logs, errors, j, leader))]
     return LowestFriction(
@@ -103,5 +104,5 @@ def _log(friction: MeanFriction) -> tuple[float, float]:
 def _reaches(means: Sequence[float], deviations: Sequence[float], j: int, leader: int) -> bool:
     from scipy.special import ndtr
 
-    distance = (means[leader] - means[j]) / sqrt(deviations[leader] ** 2 + deviations[j] ** 2)
+    distance = (means[leader] - means[j]) / hypot(deviations[leader], deviations[j])
     return bool(ndtr(distance) >= TIED_FROM)

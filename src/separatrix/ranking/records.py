@@ -23,7 +23,8 @@ class RankedMaterial:
         Of a new sample about that mean, a standard deviation, widened where nothing was tested; not
         overall [-].
     probability_lowest_friction : float or None
-        That no other candidate's mean friction is lower there, by their standard errors [-].
+        That no other candidate's mean friction is lower there, by their standard errors; None if no other
+        was measured there [-].
     friction_scatter_assumed : bool or None
         Whether the scatter is that of an unrepeated test, which nobody measured.
     extrapolation : tuple of str

@@ -109,11 +109,13 @@ def _row(row: Document, *, tied: bool) -> list[str]:
 
 def lowest(rows: Sequence[Document]) -> list[str]:
     """Return who has the lowest mean friction, with what probability; nothing if none was measured."""
-    known = [(row["probability_lowest_friction"] or 0.0, row["name"]) for row in rows]
+    measured = [row for row in rows if row["friction"] is not None]
+    known = [(row["probability_lowest_friction"] or 0.0, row["name"]) for row in measured]
     likely = [f"{name} {share:.2f}" for share, name in sorted(known, reverse=True) if share >= 0.005]
-    if not likely:
+    if not measured:
         return []
-    return ["", paragraph(f"Probability of the lowest mean friction: {', '.join(likely)}.")]
+    told = ", ".join(likely) or f"none, for only {measured[0]['name']} was measured here"
+    return ["", paragraph(f"Probability of the lowest mean friction: {told}.")]
 
 
 MARK = "*"

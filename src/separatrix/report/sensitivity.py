@@ -125,7 +125,10 @@ def _marks(document: Document) -> Iterator[str]:
     if any(row["friction_scatter_assumed"] for row in rows):
         share = f"{100.0 * document['default_scatter']:.3g} % of the mean"
         yield paragraph(
-            f"{GUESS} its scatter was not measured: {share} is taken, a guess ([ranking] friction_scatter)."
+            f"{GUESS} its scatter from sample to sample was not measured: {share} is taken for that, a guess "
+            "([ranking] friction_scatter). The per cent beside a friction is the whole scatter of the next "
+            "cage: this, how well the mean is known, and what was not tested; over all environments, that of "
+            "their mean."
         )
     words = dict.fromkeys(text for row in rows for text in row["extrapolation"])
     if words:

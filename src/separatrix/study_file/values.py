@@ -8,8 +8,10 @@ from contextvars import ContextVar
 from typing import Any
 
 from separatrix import study
+from separatrix.distribution import Normal
 from separatrix.errors import InputError
 from separatrix.library import Library
+from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import Friction, Material
 from separatrix.study_file.distributions import Uncertain, friction_deviation, gathered, number, unwrapped
 from separatrix.toml_values import (
@@ -166,9 +168,13 @@ def friction(value: Any, where: str) -> Friction | Uncertain:
         }
         given = {**value, "standard_deviation": friction_deviation(value, where)}
         kept = {key: item for key, item in given.items() if key in value}
-        return build(Friction, table(kept, where, readers, ("mean",)), where)
+        stated = build(Friction, table(kept, where, readers, ("mean",)), where)
+        return refuse_scatter_about_zero(stated, where)
     mean, found = unwrapped(number(ratio, "-")(value, where))
     if not found:
         return build(Friction, {"mean": mean}, where)
     deviation = found[""].standard_deviation
-    return Uncertain(build(Friction, {"mean": mean, "standard_deviation": deviation}, where), found)
+    known = build(Friction, {"mean": mean, "standard_deviation": deviation}, where)
+    if isinstance(found[""], Normal):
+        refuse_scatter_about_zero(known, where)
+    return Uncertain(known, found)

@@ -54,7 +54,7 @@ class UncertainMaterial:
     probability_unstable, probability_unstable_low, probability_unstable_high : float or None
         The same of UNSTABLE [-].
     probability_lowest_friction : float or None
-        Probability that no other candidate has a lower friction [-].
+        Probability that no other candidate has a lower friction; None if no other was measured [-].
     probability_best, probability_best_low, probability_best_high : float or None
         Probability of the largest threshold, and its 95 % interval [-].
     tie_group : int or None

@@ -119,7 +119,7 @@ def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
     Raises
     ------
     InputError
-        The scatter of a friction reaches values that no friction has.
+        A friction of 0 has a scatter.
     """
     known = study_numbers(study)
     found = [
@@ -141,7 +141,7 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
     for candidate in ranking.candidates if ranking else ():
         for environment, friction in candidate.friction.items():
             key = f"ranking.{candidate.name}.{environment}"
-            if friction is None or key in study.distributions or friction.mean == 0.0:
+            if friction is None or key in study.distributions:
                 continue
             scatter = ranking.friction_scatter if ranking else 0.0
             deviation, source = next_cage_deviation(friction, scatter)

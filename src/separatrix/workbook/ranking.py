@@ -21,6 +21,7 @@ VERDICT_FILLS = {"STABLE": "CCE3F0", "UNSTABLE": "F7DFCC", "UNDECIDED": "FAECCC"
 
 
 SIGNED = "+0.000;-0.000;0.000"
+LOWEST = "probability_lowest_friction"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +44,7 @@ COLUMNS = (
     Column(key="friction", heading="friction (-)"),
     Column(key="friction_error", heading="standard error of the friction (-)", width=13),
     Column(key="friction_scatter_assumed", heading="scatter of the friction assumed", width=13),
-    Column(key="probability_lowest_friction", heading="probability of the lowest friction (-)", width=13),
+    Column(key=LOWEST, heading="probability of the lowest friction (-)", width=13),
     Column(key="restitution_threshold", heading="restitution threshold (-)", width=13),
     Column(key="restitution_threshold_low", heading="threshold, low end of 95 % (-)", width=13),
     Column(key="restitution_threshold_high", heading="threshold, high end of 95 % (-)", width=13),
@@ -102,7 +103,7 @@ def add_evidence(book: Workbook, document: Mapping[str, Any]) -> None:
 
 def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]) -> None:
     """Write one line for each candidate, and the columns in which any has a value."""
-    rows = [{**row, **_margin_ends(row)} for row in rows]
+    rows = [{**row, **_margin_ends(row), **_alone(row)} for row in rows]
     given = [column for column in columns if column.key in ALWAYS or _is_given(rows, column.key)]
     headings(sheet, [column.heading for column in given], keep_columns=2)
     for number, row in enumerate(rows, 2):
@@ -120,6 +121,12 @@ def _margin_ends(row: Row) -> Row:
     away = row["margin"] - row["restitution_threshold"]
     ends = {end: row[f"restitution_threshold_{end}"] for end in ("low", "high")}
     return {f"margin_{end}": value + away for end, value in ends.items() if value is not None}
+
+
+def _alone(row: Row) -> Row:
+    """Return the word for the probability of the lowest friction that one measured friction does not have."""
+    known = row.get("friction") is None or row.get(LOWEST) is not None
+    return {} if known else {LOWEST: "none: no other measured"}
 
 
 def _cell(sheet: Worksheet, row: int, column: int, record: Row, shown: Column) -> None:
