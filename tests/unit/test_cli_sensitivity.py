@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from separatrix.cli.sensitivity import STAGES, stages
 from separatrix.figures import figures
 from separatrix.figures.sensitivity import environments
 from separatrix.report.sensitivity import MARK
+from separatrix.study_file import read_study
 from separatrix.uncertainty import training
 
 SMALL = """
@@ -236,6 +239,22 @@ def test_an_earlier_interrupt_writes_nothing(capsys, monkeypatch):
     out, err = capsys.readouterr()
     assert (out, err) == ("", "separatrix: interrupted; no file was written.\n")
     assert [path.name for path in Path().iterdir()] == ["small.toml"]
+
+
+def test_films_are_asked_of_a_cage_that_only_its_candidates_make(monkeypatch):
+    """A cage without stiffness and material of its own has the pocket of the first candidate."""
+    study = read_study("cryogenic-turbopump")
+    first = study.ranking.candidates[0]
+    wall = replace(first, material=replace(study.bearing.ball_material, elastic_modulus=5e9))
+    changed = replace(
+        study,
+        cage=replace(study.cage, ball_cage_stiffness=None, material=None),
+        ranking=replace(study.ranking, candidates=(wall, *study.ranking.candidates[1:])),
+    )
+    monkeypatch.setattr("separatrix.sensitivity.stable_regions", lambda *asked: asked[2:])
+    (grid,), _ = sensitivity._films(SimpleNamespace(study=changed), None, None)
+    assert grid.x.own == study.film.thickness
+    assert grid.restitution_factor.max() > 0.0
 
 
 def test_stages_fill_one_progress():

@@ -178,8 +178,10 @@ def _films(model: Model, question: Question, values: Array) -> tuple[tuple[Stabl
     """Which films keep each case stable; the reason if there is no film to choose."""
     from separatrix import sensitivity as doubts
     from separatrix.chain import restitution_state
+    from separatrix.ranking import ranking_question
 
     if model.study.film.material is None:
         return (), "The races are bare: there is no film to choose."
-    grid = doubts.friction_grid(model.study, restitution_state(model.study))
+    first = ranking_question(model.study).candidates[0]
+    grid = doubts.friction_grid(model.study, restitution_state(model.study, material=first.material))
     return doubts.stable_regions(question, values, grid), ""
