@@ -106,14 +106,9 @@ def test_a_film_that_fails_in_running_in_is_told_with_both_levels(share):
 
 def test_a_film_that_fails_after_a_fall_is_told_with_the_level_before_it():
     """Running-in from 0.2 to 0.08, then 0.25: the level is that of the film, not of the start."""
-    test = reduce_log(
-        log(
-            friction=lambda t: (
-                np.where(t > 80.0, 0.25, 0.08 + 0.12 * np.exp(-t / 10.0)) + 0.004 * _noise(t.size)
-            )
-        )
-    )
-    flag = told(test, "Friction rises from 0.08")
+    fall = 0.08 + 0.12 * np.exp(-np.arange(4000) / 100.0)
+    one = log(friction=lambda t: np.where(t > 80.0, 0.25, fall) + 0.004 * _noise(t.size))
+    flag = told(reduce_log(one), "Friction rises from 0.08")
     assert "to 0.25 near" in flag
 
 
@@ -124,6 +119,13 @@ def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one
     )
     assert flag.endswith("Look at the plot; if the film failed, give the log only up to the rise.")
     assert "run_in_end" not in flag
+
+
+def test_a_film_that_fails_behind_the_cut_is_told_as_a_step_where_it_fails():
+    """A rise in the steady part is none in running-in, and is not told at the cut."""
+    test = reduce_log(failed(0.3, 2.5), ReductionOptions(run_in_end="60 s"))
+    assert "at 119." in told(test, "Friction rises in one step by 0.12")  # at 120 s, in spans of 2.03 s
+    assert told(test, "Friction rises from") == ""
 
 
 @pytest.mark.parametrize("excess", [-0.048, -0.03, 0.12, 0.24])

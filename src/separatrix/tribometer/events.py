@@ -33,6 +33,9 @@ STEP_GAIN, STEP_SIZE = 0.4, 0.1
 """A step leaves less than this share of the scatter around a straight line, and is larger than this share
 of the mean."""
 
+EDGE = 0.05
+"""Share of the steady part at its ends, or three spans, within which no step is told."""
+
 RISE = 2.0
 """Steady friction over that before a rise in running-in from which the rise is told."""
 
@@ -137,7 +140,8 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
     x = np.arange(n) - (n - 1) / 2
     level = y - y.mean()
     straight = float(level @ level - (x @ level) ** 2 / (x @ x))
-    split = np.arange(max(3, n // 20), n - max(3, n // 20))
+    edge = max(3, int(EDGE * n))
+    split = np.arange(edge, n - edge)
     left = np.cumsum(level)[split - 1]
     gain = left**2 * n / (split * (n - split))
     best = int(np.argmax(gain))
@@ -152,9 +156,9 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
 def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float] | None:
     """Return place and level before a rise in running-in to far above it; else None.
 
-    The place is that of the rising step, at most at the end of running-in, that explains the means best. The
-    level is the lower of the medians of both halves before it: neither a fall that comes first nor a slow
-    rise lifts it.
+    The place is that of the rising step that explains the means best; it must lie in what is cut, or so
+    near behind that `friction_step` does not look there. The level is the lower of the medians of both
+    halves before it: neither a fall that comes first nor a slow rise lifts it.
 
     Parameters
     ----------
@@ -166,13 +170,14 @@ def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float
         Of the steady part.
     """
     y, n = spans.means, spans.means.size
-    split = np.arange(1, min(n - 1, round((end - spans.start) / spans.width)) + 1)
-    if not split.size:
-        return None
-    below = -np.cumsum(y - y.mean())[split - 1]
+    split = np.arange(1, n)
+    below = -np.cumsum(y - y.mean())[:-1]
     k = int(split[int(np.argmax(below / np.sqrt(split * (n - split))))])
+    place = spans.start + spans.width * k
     before = float(min(np.median(y[: (k + 1) // 2]), np.median(y[k // 2 : k])))
-    return (spans.start + spans.width * k, before) if friction > max(0.0, RISE * before) else None
+    reach = end + max(3.0 * spans.width, EDGE * (spans.end - end))
+    is_cut = spans.start < end and place <= reach
+    return (place, before) if is_cut and friction > max(0.0, RISE * before) else None
 
 
 def wear_step(spans: Spans) -> tuple[float, float] | None:

@@ -60,10 +60,11 @@ def rise_flag(rise: tuple[str, float] | None, friction: float, *, is_end_given: 
         return
     place, before = rise
     low, high = format_number(before, 3), format_number(friction, 3)
-    end = "" if is_end_given else "if running-in ends elsewhere, give run_in_end in the column map; "
+    cut = "" if is_end_given else "if running-in ends elsewhere, give run_in_end in the column map; "
     yield (
-        f"Friction rises from {low} to {high} near {place}, in what is cut as running-in: a failed film, or "
-        f"a genuine rise. Look at the plot; {end}if the film failed, give the log only up to the rise."
+        f"Friction rises from {low} to {high} near {place}, in or next to what is cut as running-in: "
+        f"a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
+        "give the log only up to the rise."
     )
 
 
