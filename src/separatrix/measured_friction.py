@@ -35,6 +35,10 @@ class PredictedFriction(Protocol):
         """In what respect the conditions were not tested, in words."""
 
     @property
+    def widening(self) -> Ratio:
+        """What of it comes from conditions that were not tested, in quadrature."""
+
+    @property
     def assumed_scatter(self) -> bool:
         """Whether no repeated test tells the scatter."""
 
@@ -59,7 +63,8 @@ class Friction:
 
     `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
     not the former over the root of `count`. `law` is what knows more: friction over the conditions.
-    `extrapolation` says in words in what respect a friction was asked for where nothing was tested.
+    `extrapolation` says in words in what respect a friction was asked for where nothing was tested;
+    `widening` is the part of the standard deviation that stands for it.
     """
 
     mean: Ratio
@@ -68,6 +73,7 @@ class Friction:
     standard_error: Ratio | None = None
     assumed_scatter: bool = False
     extrapolation: tuple[str, ...] = ()
+    widening: Ratio = 0.0
     law: FrictionLaw | None = field(default=None, compare=False, repr=False)
     source: str = "given in the study"
     confidence: str = "given in the study"

@@ -778,3 +778,9 @@ def test_a_fitted_friction_can_be_learned_by_its_standard_error():
     """e^2 / (s^2 + e^2), whatever the number of tests behind the fit."""
     known = {"standard_deviation": 0.008, "standard_error": 0.006, "count": 9}
     assert stated(0.01, "measured", **known) == pytest.approx(0.36)  # rounding
+
+
+def test_conditions_that_were_not_tested_can_be_learned():
+    """(e^2 + w^2) / (s^2 + e^2): what s was widened by is no scatter from cage to cage."""
+    known = {"standard_deviation": 0.008, "standard_error": 0.006, "widening": 0.0064}
+    assert stated(0.01, "measured", **known) == pytest.approx(0.36 + 0.4096)  # rounding

@@ -166,6 +166,7 @@ def friction_seen(
         standard_deviation=found.standard_deviation,
         assumed_scatter=found.assumed_scatter,
         extrapolation=found.extrapolation,
+        widening=found.widening,
     )
 
 

@@ -158,7 +158,8 @@ def reducible_shares(model: Model) -> dict[int, Ratio]:
     """For each friction, the share of its variance that more tests of the material could take away.
 
     The friction of the next cage scatters as single tests do, and their mean is known with an error of its
-    own: that part, e^2 of s^2 + e^2, is lack of knowledge, 1/(n + 1) after n tests. A scatter without a count
+    own: that part, e^2 of s^2 + e^2, is lack of knowledge, 1/(n + 1) after n tests. So is what s holds for
+    conditions that were not tested: a test under those of the pocket takes it away. A scatter without a count
     comes with a mean taken as exact. Where the tests are not told it is what lies beyond the default scatter
     of single tests, and a half at least, as after one test.
     """
@@ -180,4 +181,4 @@ def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Rat
         return max(LEAST_UNKNOWN, 1.0 - (single / known.distribution.standard_deviation) ** 2)
     if error is None:
         return 1.0 / (friction.count + 1) if friction.count else 0.0
-    return error**2 / (error**2 + deviation**2)
+    return (error**2 + friction.widening**2) / (error**2 + deviation**2)
