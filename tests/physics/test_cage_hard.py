@@ -84,6 +84,9 @@ def test_free_impacts_without_friction_or_loss_keep_the_energy():
     """Restitution 1 and no friction: the energy is the kick's for ever."""
     cage = replace(CAGE, ball_cage_friction=0.0)
     runs = run_hard_ensemble(cage, replace(EVEN, duration=0.5, ball_scatter=0.3), restitution=1.0)
+    tenth = run_hard_ensemble(replace(cage, cage_speed=1.0), replace(EVEN, duration=0.5), restitution=0.99)
+    # From the start to the middle of the last fifth, 0.45 s; rounding.
+    np.testing.assert_allclose(tenth.growth_rate, 0.5 * np.log(tenth.energy_growth) / 0.45, rtol=1e-12)
     np.testing.assert_allclose(runs.energy_growth, 1.0, rtol=1e-10)  # rounding of some thousand blows
     assert np.all(runs.largest_offset < 6e-4)
 
@@ -106,17 +109,18 @@ def test_a_collapse_of_impacts_is_ended_as_stalled():
     assert np.all(np.isfinite(runs.energy_growth))
 
 
-def test_no_wall_is_passed_before_the_next_blow():
-    """In a fast frame the flight up to the time that `next_blow` gives stays between the pockets' walls."""
-    cage = replace(CAGE, cage_speed=2000.0)
+@pytest.mark.parametrize(("turning", "fastest", "longest"), [(2000.0, 0.3, 1e-3), (300.0, 3.0, 3e-4)])
+def test_no_wall_is_passed_before_the_next_blow(turning, fastest, longest):
+    """Flight up to the time of `next_blow` stays between the walls, bent by a fast frame or by its speed."""
+    cage = replace(CAGE, cage_speed=turning)
     p, angles = hard._walls(cage, may_turn=True), np.array(cage.ball_angles)
     cos, sin = np.cos(angles), np.sin(angles)
     generator = np.random.default_rng(1)
     for _ in range(200):
         s = np.zeros(6)
         s[[hard.X, hard.Y]] = generator.uniform(-1e-4, 1e-4, 2)
-        s[[hard.VX, hard.VY]] = generator.uniform(-0.3, 0.3, 2)
-        dt, _, _ = next_blow(p, cos, sin, np.zeros(11), s, 1e-3)
+        s[[hard.VX, hard.VY]] = generator.uniform(-fastest, fastest, 2)
+        dt, _, _ = next_blow(p, cos, sin, np.zeros(11), s, longest)
         for _ in range(20):
             hard.fly(p, s, dt / 20)
             # rounding of the flight, relative to the play

@@ -241,9 +241,27 @@ def test_a_run_ended_in_a_steady_whirl_keeps_the_rate_of_a_whole_run():
     )
     steady = early.cut & (whole.energy_growth > 2e-3)
     assert 3 <= np.count_nonzero(steady) < 12
+    assert np.all(whole.drift_rate[steady] != 0.0)  # followed to their end, for that is where drift shows
     # A level known to a factor of 2: looks are alike within 15 %, and wander afterwards.
     known = 0.5 * math.log(2.0) / (0.9 * settings.duration)
     np.testing.assert_allclose(early.growth_rate[steady], whole.growth_rate[steady], rtol=0.0, atol=known)
+
+
+def test_a_land_that_has_let_go_presses_again_before_it_is_left():
+    """Its weight turns a rebound within the land; the force is the larger of 0 and K d + C d' throughout.
+
+    1e-6 N: rounding of 1e-16 m times K.
+    """
+    cage = far_land(guidance=Guidance.OUTER, land_clearance=2e-4, gravity=50.0, land_restitution=0.05)
+    run = follow(cage, kick=0.332, direction=0.0, ball_lead=np.zeros(1), duration=3e-3, samples=20_000)
+    distance = np.hypot(*run.position.T)
+    depth = distance - cage.land_gap
+    rate = np.sum(run.position * run.velocity, axis=1) / np.maximum(distance, 1e-9)
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * M)
+    force = np.where(depth > 0.0, np.maximum(0.0, cage.land_stiffness * depth + damping * rate), 0.0)
+    np.testing.assert_allclose(run.land_force, force, atol=1e-6)
+    pressed = run.land_force > 0.0
+    assert np.any(~pressed[:-1] & pressed[1:] & (depth[:-1] > 1e-6))
 
 
 @pytest.mark.parametrize("run", range(3))

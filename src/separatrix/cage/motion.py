@@ -164,7 +164,7 @@ def rescale(p, w, balls, count, h, pressed):  # type: ignore[no-untyped-def]
 def settle_stick(p, pockets, touch, w, count, now, sums):  # type: ignore[no-untyped-def]
     """Mode of a land on which nothing slides: it sticks if its friction can hold, else it starts to slide."""
     expand(p, pockets, touch, w, count, STICK, now, sums)
-    if abs(w[0, TANGENT]) <= p.land_friction * w[0, NORMAL] * (1.0 + HOLD):
+    if abs(w[0, TANGENT]) <= p.land_friction * max(0.0, w[0, NORMAL]) * (1.0 + HOLD):
         return STICK
     return BACKWARD if w[0, TANGENT] > 0.0 else FORWARD
 
