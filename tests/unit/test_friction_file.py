@@ -212,10 +212,10 @@ def test_figures_name_in_their_legend_what_was_not_tested():
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from separatrix.figures.ranking import _untested
+    from separatrix.figures.ranking import untested
 
     axes = Figure().subplots()
-    _untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
+    untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
     assert axes.get_legend_handles_labels()[1] == ["friction: too fast", "friction: too hot"]
 
 

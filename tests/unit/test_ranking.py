@@ -12,7 +12,7 @@ from separatrix.cage import CageMotion, Judgement, Verdict, judge
 from separatrix.chain import cage_state
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
-from separatrix.ranking.friction import MeanFriction, measured, overall
+from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
 from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
 from separatrix.ranking.rank import _tied
 from separatrix.ranking.reason import disagreement, reason
@@ -108,6 +108,19 @@ def test_scatter_of_the_friction_becomes_a_standard_error():
     assert measured(Friction(mean=0.12, standard_deviation=0.02)).error == pytest.approx(0.02)
     low, high = measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).interval()
     assert (low, high) == pytest.approx((0.12 - 0.0196, 0.12 + 0.0196))
+
+
+def test_outside_the_tests_a_mean_is_known_less_well():
+    """The widening is part of the error of the mean, once, and so of probabilities and tie groups."""
+    inside = Friction(mean=0.12, standard_deviation=0.02, standard_error=0.003)
+    outside = replace(inside, standard_deviation=math.hypot(0.02, 0.04), widening=0.04)
+    assert measured(inside).error == 0.003
+    assert measured(outside).error == pytest.approx(math.hypot(0.003, 0.04))
+    assert with_scatter(outside, 0.09) == outside
+    other = Friction(mean=0.15, standard_error=0.003)
+    sure, open_ = (probability_lowest({"a": one, "b": other}) for one in (inside, outside))
+    assert sure.tied == ("a",)
+    assert open_.tied == ("a", "b")
 
 
 def test_the_papers_word_is_printed_where_it_differs():

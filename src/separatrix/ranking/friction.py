@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import hypot, sqrt
 
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import ValidityWarning
@@ -18,7 +18,8 @@ from separatrix.units import Ratio
 class MeanFriction:
     """Mean friction, its standard error (None if no scatter is known), and what is to be said of it.
 
-    `deviation` is the standard deviation of a new sample; `assumed` tells a scatter that nobody measured.
+    The error holds what was not tested: outside the tests the mean is known less well. `deviation` is the
+    standard deviation of a new sample; `assumed` tells a scatter that nobody measured.
     """
 
     mean: Ratio
@@ -34,11 +35,21 @@ class MeanFriction:
 
 
 def measured(friction: Friction) -> MeanFriction:
-    """Mean and standard error of one measurement; without a count the scatter is taken as it is."""
+    """Mean and standard error of one measurement, with the widening for what was not tested."""
+    error = _standard_error(friction)
+    return MeanFriction(
+        friction.mean,
+        None if error is None else hypot(error, friction.widening),
+        friction.standard_deviation,
+        friction.assumed_scatter,
+        friction.extrapolation,
+    )
+
+
+def _standard_error(friction: Friction) -> Ratio | None:
+    """Of the mean under the conditions tested; without a count the scatter is taken as it is."""
     error, deviation = friction.standard_error, friction.standard_deviation
-    if error is None and deviation is not None:
-        error = deviation / sqrt(friction.count or 1)
-    return MeanFriction(friction.mean, error, deviation, friction.assumed_scatter, friction.extrapolation)
+    return deviation / sqrt(friction.count or 1) if error is None and deviation is not None else error
 
 
 def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
@@ -172,10 +183,10 @@ def friction_seen(
 
 def with_scatter(friction: Friction, scatter: Ratio) -> Friction:
     """Return a friction with the scatter that it states; without any, with that of an unrepeated test."""
-    known = measured(friction)
-    if known.error is not None:
-        deviation = known.error if known.deviation is None else known.deviation
-        return replace(friction, standard_error=known.error, standard_deviation=deviation)
+    error, deviation = _standard_error(friction), friction.standard_deviation
+    if error is not None:
+        deviation = error if deviation is None else deviation
+        return replace(friction, standard_error=error, standard_deviation=deviation)
     assumed = scatter * friction.mean
     return replace(friction, standard_error=assumed, standard_deviation=assumed, assumed_scatter=True)
 
