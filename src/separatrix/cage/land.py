@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +57,7 @@ def rebound(damping_ratio: Ratio) -> Ratio:
     return math.exp(-zeta / root * 2.0 * math.log(zeta + root))
 
 
+@lru_cache(maxsize=64)
 def rebound_damping(restitution: Ratio) -> Ratio:
     """Damping ratio of the land whose `rebound` is this [-]; below 1e-4 that of 1e-4, hardly other than 0."""
     if restitution >= 1.0:

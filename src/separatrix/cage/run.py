@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -266,13 +267,14 @@ def run_chunk(p, drive, starts, kick, w, fifth, limits, sense, rows, books, out,
         run_one(p, pockets, start[0], kick, w, fifth, limits, sense, rows, books, out[i], hits[i])
 
 
+@lru_cache(maxsize=512)
 def random_start(seed: int, run: int, ball_count: int) -> Array:
     """Numbers drawn for a run, shape (4, ball).
 
     First the direction of the kick [rad] (repeated) and the lead of each ball (share of the scatter, -1 to
     1), then normal deviations of ball diameters and of pocket positions, cut at 3, then displacements of
     pockets with their balls (-1 to 1). They depend on the seed and the number of the run only: the same for
-    any cage, kick and number of workers.
+    any cage, kick and number of workers, so they are kept, read-only.
     """
     stream = Generator(Philox(key=np.array([seed, run], dtype=np.uint64)))
     numbers = stream.random(1 + ball_count)
@@ -282,6 +284,7 @@ def random_start(seed: int, run: int, ball_count: int) -> Array:
     for row in (2, 3):
         rows[row] = _cut_normal(stream, ball_count)
     rows[4] = 2.0 * stream.random(ball_count) - 1.0
+    rows.flags.writeable = False
     return rows
 
 
