@@ -53,7 +53,7 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
 
 
 def test_the_largest_offset_and_force_without_play_are_those_of_the_history():
-    """Dying down it is farthest off at its first turn, within a step: by parabolas, hence 5e-4."""
+    """Dying down it is farthest off at its first turn, within a step: by parabolas, hence 5e-4 (1e-4 seen)."""
     cage = replace(
         CAGES["no land, at rest"], pocket_clearance=0.0, ball_cage_friction=0.0, race_damping=800.0
     )
@@ -62,7 +62,7 @@ def test_the_largest_offset_and_force_without_play_are_those_of_the_history():
         ours = simulate(cage, kick=0.5, run=run, seed=4, duration=0.02, samples=100_000)
         farthest, force = np.hypot(*ours.position.T).max(), np.abs(ours.contact_force).max()
         assert found.largest_offset[0, run] == pytest.approx(farthest, rel=5e-4)
-        assert found.largest_contact_force[0, run] == pytest.approx(force, rel=5e-4)
+        assert found.largest_contact_force[0, run] == pytest.approx(force, rel=1e-5)  # the history's rows
 
 
 def told(cage, ours):
