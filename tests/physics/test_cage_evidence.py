@@ -53,7 +53,7 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
 
 
 def test_the_largest_offset_and_force_without_play_are_those_of_the_history():
-    """Dying down it is farthest off at its first turn, within a step: by parabolas, hence 5e-4 (1e-4 seen)."""
+    """Dying down it is farthest off at its first turn, within a step: by parabolas, 5e-4 (1e-4 seen)."""
     cage = replace(
         CAGES["no land, at rest"], pocket_clearance=0.0, ball_cage_friction=0.0, race_damping=800.0
     )
