@@ -9,8 +9,8 @@ from separatrix.cage.series import (
     EARLY,
     FALLS,
     LATE,
+    ORDER,
     ROUNDING,
-    SPARE,
     STAYS,
     THIRD,
     copy_column,
@@ -66,8 +66,7 @@ CHANGE, BALL, EARLY_HALF, LATE_HALF, GUESS, NOISE, START, RISE, MIDDLE, TURN, LA
 """Columns of a queue: what may happen (0 the ball is left, 1 and -1 met on that side), to which ball, what is
 known of each half of the step, about when, and the knots."""
 
-QUEUE, PATHS = 12, 7
-"""Columns of a queue; rows of the places: their six knots, and by how much they may pass their play."""
+QUEUE = 12  # columns
 
 
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
@@ -76,11 +75,10 @@ NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP
 @inner_kernel
 def penetration(p, pockets, w, j, c):  # type: ignore[no-untyped-def]
     """Series of the penetration of a pocket in touch."""
-    order = w.shape[0] - SPARE
     if p.hertz != 0.0:
         copy_column(w, BALLS + j, c)
         return
-    for n in range(1, order + 1):
+    for n in range(1, ORDER + 1):
         c[n] = (
             pockets[PENETRATION, j] * w[n, KEPT]
             + pockets[COSINE, j] * w[n, EY]
@@ -88,7 +86,7 @@ def penetration(p, pockets, w, j, c):  # type: ignore[no-untyped-def]
             + w[n, ES]
         )
     for k in range(2 * p.harmonics):
-        for n in range(1, order + 1):
+        for n in range(1, ORDER + 1):
             c[n] -= pockets[DRIVE + k, j] * w[n, FELT + k]
     c[0] = pockets[PENETRATION, j]
 
@@ -117,9 +115,8 @@ def fourths(w, a, b, c, most):  # type: ignore[no-untyped-def]
 
     With `most` times the column of what is kept of a penetration.
     """
-    order = w.shape[0] - SPARE
     early = late = 0.0
-    for n in range(4, order + 1):
+    for n in range(4, ORDER + 1):
         size = abs(w[n, a]) + abs(w[n, b]) + abs(w[n, c])
         if most > 0.0:
             size += most * abs(w[n, KEPT])
@@ -179,56 +176,80 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignor
 
 
 @inlined_kernel
-def follow_places(pockets, w, gx, gy, knot, off, paths):  # type: ignore[no-untyped-def]
-    """Place of every pocket against its ball at the knots, and by how much it may pass its play."""
-    x0, y0, s0 = w[0, gx], w[0, gy], w[0, S]
-    x1, y1, s1 = knot[0, gx], knot[0, gy], knot[0, S]
-    x2, y2, s2 = knot[1, gx], knot[1, gy], knot[1, S]
-    x3, y3, s3 = knot[2, gx], knot[2, gy], knot[2, S]
-    x4, y4, s4 = knot[3, gx], knot[3, gy], knot[3, S]
-    x5, y5, s5 = knot[4, gx], knot[4, gy], knot[4, S]
+def knots_of(w, gx, gy, knot):  # type: ignore[no-untyped-def]
+    """Centre and slip at the knots: their values at the start, then slope, value, slope, value, slope."""
+    return (
+        (w[0, gx], w[0, gy], w[0, S]),
+        (knot[0, gx], knot[0, gy], knot[0, S]),
+        (knot[1, gx], knot[1, gy], knot[1, S]),
+        (knot[2, gx], knot[2, gy], knot[2, S]),
+        (knot[3, gx], knot[3, gy], knot[3, S]),
+        (knot[4, gx], knot[4, gy], knot[4, S]),
+    )
+
+
+@inlined_kernel
+def place_at(cos, sin, moved):  # type: ignore[no-untyped-def]
+    """How far a pocket lies along the circumference by centre and slip, or how fast it moves."""
+    x, y, s = moved
+    return cos * y - sin * x + s
+
+
+@inlined_kernel
+def places_of(cos, sin, lead, at):  # type: ignore[no-untyped-def]
+    """Place of a pocket against its ball at the knots."""
+    return (
+        place_at(cos, sin, at[0]) - lead,
+        place_at(cos, sin, at[1]),
+        place_at(cos, sin, at[2]) - lead,
+        place_at(cos, sin, at[3]),
+        place_at(cos, sin, at[4]) - lead,
+        place_at(cos, sin, at[5]),
+    )
+
+
+@inlined_kernel
+def reach_balls(pockets, at, off, beyond):  # type: ignore[no-untyped-def]
+    """By how much every pocket may pass its play at most, by its cubics and what lies `off` them."""
     for j in range(pockets.shape[1]):
-        cos, sin, lead = pockets[COSINE, j], pockets[SINE, j], pockets[LEAD, j]
-        start, rise = cos * y0 - sin * x0 + s0 - lead, cos * y1 - sin * x1 + s1
-        middle, turn = cos * y2 - sin * x2 + s2 - lead, cos * y3 - sin * x3 + s3
-        last, fall = cos * y4 - sin * x4 + s4 - lead, cos * y5 - sin * x5 + s5
-        paths[0, j], paths[1, j], paths[2, j] = start, rise, middle
-        paths[3, j], paths[4, j], paths[5, j] = turn, last, fall
+        start, rise, middle, turn, last, fall = places_of(
+            pockets[COSINE, j], pockets[SINE, j], pockets[LEAD, j], at
+        )
         one, two = start + THIRD * rise, middle - THIRD * turn
         three, four = middle + THIRD * turn, last - THIRD * fall
         high = larger(larger(larger(start, one), larger(two, three)), larger(four, last))
         low = smaller(smaller(smaller(start, one), smaller(two, three)), smaller(four, last))
-        paths[6, j] = larger(high, -low) + off - pockets[PLAY, j]
+        beyond[j] = larger(high, -low) + off - pockets[PLAY, j]
 
 
 @inlined_kernel
-def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, paths, queue, filled):  # type: ignore[no-untyped-def]
+def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled):  # type: ignore[no-untyped-def]
     """Queue the pockets that may meet their balls; return how many are queued."""
-    follow_places(pockets, w, gx, gy, knot, larger(off, late_off) / 384.0 if alike else np.inf, paths)
+    at = knots_of(w, gx, gy, knot)
+    reach_balls(pockets, at, larger(off, late_off) / 384.0 if alike else np.inf, beyond)
     size = abs(w[0, S]) + abs(w[0, gx]) + abs(w[0, gy])
     for j in range(pockets.shape[1]):
-        if touch[SIDE, j] != 0 or paths[6, j] < p.onset:
+        if touch[SIDE, j] != 0 or beyond[j] < p.onset:
             continue
-        noise, play = size + abs(pockets[LEAD, j]), pockets[PLAY, j] + p.onset
+        lead, play = pockets[LEAD, j], pockets[PLAY, j] + p.onset
+        noise = size + abs(lead)
+        a, b, c, d, e, f = places_of(pockets[COSINE, j], pockets[SINE, j], lead, at)
         for sign in (1.0, -1.0):
-            start, rise, middle = play - sign * paths[0, j], -sign * paths[1, j], play - sign * paths[2, j]
-            turn, last, fall = -sign * paths[3, j], play - sign * paths[4, j], -sign * paths[5, j]
-            at = (start, rise, middle, turn, last, fall)
+            gap = (play - sign * a, -sign * b, play - sign * c, -sign * d, play - sign * e, -sign * f)
             if alike:
-                filled = enqueue(queue, filled, sign, j, at, off, late_off, noise)
+                filled = enqueue(queue, filled, sign, j, gap, off, late_off, noise)
             else:
-                filled = enqueue(queue, filled, sign, j, at, np.inf, np.inf, noise)
+                filled = enqueue(queue, filled, sign, j, gap, np.inf, np.inf, noise)
     return filled
 
 
 @inner_kernel
 def way(p, pockets, w, gx, gy, j, c):  # type: ignore[no-untyped-def]
     """Series of the way of a pocket against its ball, which it does not touch."""
-    order = w.shape[0] - SPARE
-    for n in range(1, order + 1):
+    for n in range(1, ORDER + 1):
         c[n] = w[n, gy] * pockets[COSINE, j] - w[n, gx] * pockets[SINE, j] + w[n, S]
     for k in range(2 * p.harmonics):
-        for n in range(1, order + 1):
+        for n in range(1, ORDER + 1):
             c[n] -= pockets[DRIVE + k, j] * w[n, GONE + k]
 
 
@@ -275,7 +296,7 @@ def first_change(p, pockets, touch, w, gx, gy, queue, filled, c):  # type: ignor
 
 
 @inlined_kernel
-def pocket_change(p, pockets, touch, w, count, knot, off, late_off, paths, queue, c):  # type: ignore[no-untyped-def]
+def pocket_change(p, pockets, touch, w, count, knot, off, late_off, beyond, queue, c):  # type: ignore[no-untyped-def]
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
         return 1.0, NOTHING, -1, np.inf
@@ -285,7 +306,7 @@ def pocket_change(p, pockets, touch, w, count, knot, off, late_off, paths, queue
     if count > 0:
         filled, deepest = leave_balls(p, pockets, touch, w, count, alike, knot, queue)
     if count < pockets.shape[1]:
-        filled = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, paths, queue, filled)
+        filled = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled)
     if filled == 0:
         return 1.0, NOTHING, -1, deepest
     end, kind, ball = first_change(p, pockets, touch, w, gx, gy, queue, filled, c)
@@ -295,7 +316,6 @@ def pocket_change(p, pockets, touch, w, count, knot, off, late_off, paths, queue
 @inner_kernel
 def land_change(p, w, land, h, end, kind, knot, off, c):  # type: ignore[no-untyped-def]
     """Earliest change up to a time, if the land's comes first, and what it is."""
-    order = w.shape[0] - SPARE
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
     if land == CLEAR:
         return meet_land(p, w, gx, gy, end, kind, knot, off, c)
@@ -307,7 +327,7 @@ def land_change(p, w, land, h, end, kind, knot, off, c):  # type: ignore[no-unty
         end, kind = t, LAND_LEAVE
     if land == STICK:
         sign = 1.0 if w[0, TANGENT] >= 0.0 else -1.0
-        for n in range(order + 1):
+        for n in range(ORDER + 1):
             c[n] = p.land_friction * w[n, NORMAL] - sign * w[n, TANGENT]
         t = first_zero(c, max(0.0, c[0]), 1.0, end, p.land_stiffness * p.land_gap)
         return (t, SLIDE_START) if t < end else (end, kind)
@@ -336,16 +356,15 @@ def farthest(w, gx, gy, knot):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def meet_land(p, w, gx, gy, end, kind, knot, off, c):  # type: ignore[no-untyped-def]
     """Earliest change up to a time, if the cage meets its land before, and what it is."""
-    order = w.shape[0] - SPARE
     near = np.sqrt(w[0, gx] ** 2 + w[0, gy] ** 2)
     if farthest(w, gx, gy, knot) < (p.land_gap - abs(p.roundness) - off / 384.0):
         return end, kind
     if p.roundness == 0.0:
-        for n in range(order + 1):
+        for n in range(ORDER + 1):
             c[n] = product(w, gx, gx, n) + product(w, gy, gy, n)
         t = first_zero(c, (p.land_gap - near) * (p.land_gap + near), -1.0, end, p.land_gap**2)
     else:
-        for n in range(order + 1):
+        for n in range(ORDER + 1):
             land_geometry(p, w, gx, gy, n)
         copy_column(w, DEPTH, c)
         t = first_zero(c, -c[0], -1.0, end, p.land_gap)
@@ -355,15 +374,14 @@ def meet_land(p, w, gx, gy, end, kind, knot, off, c):  # type: ignore[no-untyped
 @inner_kernel
 def return_land(p, w, gx, gy, h, end, kind, c):  # type: ignore[no-untyped-def]
     """Earliest change up to a time, if a cage pushed off leaves its land, or is pressed again, before."""
-    order = w.shape[0] - SPARE
-    for n in range(order + 1):
+    for n in range(ORDER + 1):
         land_geometry(p, w, gx, gy, n)
     copy_column(w, DEPTH, c)
     t = first_zero(c, c[0], 1.0, end, p.land_gap)
     if t < end:
         end, kind = t, LAND_CLEAR
-    for n in range(order):
+    for n in range(ORDER):
         c[n] = p.land_stiffness * w[n, DEPTH] + p.land_damping / h * (n + 1) * w[n + 1, DEPTH]
-    c[order] = 0.0
+    c[ORDER] = 0.0
     t = first_zero(c, max(0.0, -c[0]), -1.0, end, p.land_stiffness * p.land_gap)
     return (t, LAND_PRESS) if t < end else (end, kind)

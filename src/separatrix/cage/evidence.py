@@ -84,7 +84,10 @@ def enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tal
     length = end * h
     ux, uy = w[0, VX], w[0, VY]
     gx, gy = (w[0, GX], w[0, GY]) if p.eccentricity != 0.0 else (w[0, X], w[0, Y])
-    late, was_far, leaving = 0.0, gx * gx + gy * gy, gx * ux + gy * uy
+    late, was_far, leaving, farthest = 0.0, gx * gx + gy * gy, gx * ux + gy * uy, tally[OFFSET_MAX]
+    twice, squared, turned = 2.0 * tally[KINETIC], tally[SPEED_SQUARED], tally[TURNING]
+    offset, offset_squared, swept = tally[OFFSET], tally[OFFSET_SQUARED], tally[SWEPT]
+    mean_x, mean_y = tally[MEAN_X], tally[MEAN_Y]
     for i in range(5):
         t = end * FEW_NODES[i] if i < 4 else end
         x, y, vx, vy, _, spin = motion_at(w, t) if i < 4 else after
@@ -96,23 +99,27 @@ def enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tal
             # The largest lies between: by parabolas from both sides.
             at, gap = leaving / (leaving - going), (t - late) * h
             between = 0.5 * (was_far + far + gap * (leaving * at - going * (1.0 - at)))
-            tally[OFFSET_MAX] = max(tally[OFFSET_MAX], between)
-        tally[OFFSET_MAX] = max(tally[OFFSET_MAX], far)
+            farthest = max(farthest, between)
+        farthest = max(farthest, far)
         late, was_far, leaving = t, far, going
         cross, dot = ux * vy - uy * vx, ux * vx + uy * vy
         size = np.sqrt(cross * cross + dot * dot)
         # An angle over its sine, to its 6th power: (14 + cos) / (9 + 6 cos).
-        tally[TURNING] += cross * (14.0 * size + dot) / (9.0 * size + 6.0 * dot) if size > 0.0 else 0.0
+        turned += cross * (14.0 * size + dot) / (9.0 * size + 6.0 * dot) if size > 0.0 else 0.0
         ux, uy = vx, vy
         if i < 4:
             weight = FEW_WEIGHTS[i] * length
-            tally[KINETIC] += weight * 0.5 * (vx * vx + vy * vy + p.inertia * spin * spin)
-            tally[SPEED_SQUARED] += weight * (vx * vx + vy * vy)
-            tally[OFFSET] += weight * np.sqrt(far)
-            tally[OFFSET_SQUARED] += weight * far
-            tally[SWEPT] += weight * (x * vy - y * vx)
-            tally[MEAN_X] += weight * x
-            tally[MEAN_Y] += weight * y
+            speed_squared = vx * vx + vy * vy
+            twice += weight * (speed_squared + p.inertia * spin * spin)
+            squared += weight * speed_squared
+            offset += weight * np.sqrt(far)
+            offset_squared += weight * far
+            swept += weight * (x * vy - y * vx)
+            mean_x += weight * x
+            mean_y += weight * y
+    tally[KINETIC], tally[SPEED_SQUARED], tally[TURNING] = 0.5 * twice, squared, turned
+    tally[OFFSET], tally[OFFSET_SQUARED], tally[SWEPT] = offset, offset_squared, swept
+    tally[MEAN_X], tally[MEAN_Y], tally[OFFSET_MAX] = mean_x, mean_y, farthest
     if p.hertz != 0.0 or p.stiffness * deepest > tally[FORCE_MAX]:
         enter_force(p, pockets, touch, w, count, end, tally, c)
     if pressed:

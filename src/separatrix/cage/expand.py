@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
-from separatrix.cage.series import POWERS, SPARE, product
+from separatrix.cage.series import ORDER, POWERS, product
 from separatrix.cage.slots import (
     BALLS,
     CLEAR,
@@ -112,7 +112,6 @@ def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-unt
     sums : ndarray
         Room for `gather`.
     """
-    order = w.shape[0] - SPARE
     share, rise = now
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
@@ -133,7 +132,7 @@ def expand(p, pockets, touch, w, count, land, now, sums):  # type: ignore[no-unt
         w[0, FELT + k] = w[0, GONE + k] = 0.0
     if pressed:
         land_geometry(p, w, gx, gy, 0)
-    for n in range(order + 1):
+    for n in range(ORDER + 1):
         after = AFTER[n]
         dx, dy, ds = vx * after, vy * after, vs * after
         w[n + 1, X], w[n + 1, Y], w[n + 1, S] = dx, dy, ds

@@ -11,7 +11,6 @@ from separatrix.cage.events import (
     LAND_TOUCH,
     NOTHING,
     PART,
-    PATHS,
     QUEUE,
     SLIDE_START,
     TOUCH,
@@ -26,7 +25,6 @@ from separatrix.cage.series import (
     KNOT_ROWS,
     ORDER,
     ROUNDING,
-    SPARE,
     grip_at,
     knots,
     motion_at,
@@ -130,15 +128,14 @@ def load_state(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def step_length(p, w):  # type: ignore[no-untyped-def]
     """Time for which the last terms of the series stay below `PRECISION` of the speeds."""
-    order = w.shape[0] - SPARE
     scale = PRECISION * (abs(w[0, VX]) + abs(w[0, VY]) + abs(w[0, W]) + p.slowest)
-    last = max(abs(w[order, VX]), abs(w[order, VY]), abs(w[order, W]))
-    before = max(abs(w[order - 1, VX]), abs(w[order - 1, VY]), abs(w[order - 1, W]))
+    last = max(abs(w[ORDER, VX]), abs(w[ORDER, VY]), abs(w[ORDER, W]))
+    before = max(abs(w[ORDER - 1, VX]), abs(w[ORDER - 1, VY]), abs(w[ORDER - 1, W]))
     h = LONGEST
     if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / order))
+        h = min(h, (scale / last) ** (1.0 / ORDER))
     if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (order - 1)))
+        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
     return h
 
 
@@ -295,7 +292,7 @@ def make_room(balls):  # type: ignore[no-untyped-def]
         np.zeros(ORDER + 1),
         np.zeros(WORKS),
         np.zeros((KNOT_ROWS, BODY)),
-        np.zeros((PATHS, balls)),
+        np.zeros(balls),
         np.zeros((2 * balls, QUEUE)),
     )
 
@@ -330,7 +327,7 @@ def advance(  # type: ignore[no-untyped-def]
     """
     done, taken = 0.0, 0
     most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if p.hertz != 0.0 else 1.0)
-    sums, c, work, knot, paths, queue = room
+    sums, c, work, knot, beyond, queue = room
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
     while done < length and kinetic(p, s) < ceiling:
         taken += 1
@@ -342,16 +339,17 @@ def advance(  # type: ignore[no-untyped-def]
         load_state(p, pockets, touch, s, w, count)
         expand(p, pockets, touch, w, count, land, now, sums)
         if pressed and land != STICK:
-            for n in range(w.shape[0] - 2):
+            for n in range(ORDER + 1):
                 w[n, SLIDING] = slide_speed(p, w, gx, gy, now, n)
         h = longest_step(p, w, s, land, length - done)
         rescale(p, w, pockets.shape[1], count, h, pressed)
-        knots(w, X, S + 1, knot)
+        knots(w, X, Y + 1, knot)
+        knots(w, S, S + 1, knot)
         if p.eccentricity != 0.0:
             knots(w, GX, GY + 1, knot)
         off, late_off = fourths(w, gx, gy, S, 0.0)
         end, kind, ball, deepest = pocket_change(
-            p, pockets, touch, w, count, knot, off, late_off, paths, queue, c
+            p, pockets, touch, w, count, knot, off, late_off, beyond, queue, c
         )
         if p.land_side != 0.0:
             end, kind = land_change(p, w, land, h, end, kind, knot, max(off, late_off), c)

@@ -10,10 +10,9 @@ from separatrix.compiled import inlined_kernel, inner_kernel
 ORDER = 14
 """Terms of a series beyond the first; the step is so long that the last ones are small beside the speeds."""
 
-SPARE = 3
-"""Rows of a series of order n are n + 3: the first, n terms, and two that a mode in between needs."""
+POWERS = ORDER + 3
+"""Rows of a series: the first, its terms, and two that a mode in between needs."""
 
-POWERS = ORDER + SPARE
 NEVER = 2.0
 """Time of what does not happen within a step; a step lasts from 0 to 1."""
 
@@ -21,6 +20,9 @@ ROUNDING = 4.0 * 2.0**-52
 MOST_MARCHES = 500
 NEAR = 1e-8
 """Last step of Newton's in units of a step in time: what is left is of its square."""
+
+LAST_TURN = 1e-2
+"""Last step towards a peak in units of a step in time: what is left of its height is of the cube."""
 
 MOST_ZEROS = 3
 
@@ -48,9 +50,8 @@ def product(w, a, b, n):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def value(w, column, t):  # type: ignore[no-untyped-def]
     """Value of a column at a time."""
-    order = w.shape[0] - SPARE
-    total = w[order, column]
-    for n in range(order - 1, -1, -1):
+    total = w[ORDER, column]
+    for n in range(ORDER - 1, -1, -1):
         total = total * t + w[n, column]
     return total
 
@@ -58,9 +59,8 @@ def value(w, column, t):  # type: ignore[no-untyped-def]
 @inner_kernel
 def slope(w, column, t):  # type: ignore[no-untyped-def]
     """Derivative of a column at a time."""
-    order = w.shape[0] - SPARE
-    total = order * w[order, column]
-    for n in range(order - 1, 0, -1):
+    total = ORDER * w[ORDER, column]
+    for n in range(ORDER - 1, 0, -1):
         total = total * t + n * w[n, column]
     return total
 
@@ -68,9 +68,8 @@ def slope(w, column, t):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def motion_at(w, t):  # type: ignore[no-untyped-def]
     """Centre of mass and its velocity, rotation slip and its rate at a time."""
-    order = w.shape[0] - SPARE
     x = y = vx = vy = s = spin = 0.0
-    for n in range(order, -1, -1):
+    for n in range(ORDER, -1, -1):
         x, y, vx = x * t + w[n, X], y * t + w[n, Y], vx * t + w[n, VX]
         vy, s, spin = vy * t + w[n, VY], s * t + w[n, S], spin * t + w[n, W]
     return x, y, vx, vy, s, spin
@@ -79,9 +78,8 @@ def motion_at(w, t):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def grip_at(w, t):  # type: ignore[no-untyped-def]
     """What linear pockets in touch follow, at a time: see `expand`."""
-    order = w.shape[0] - SPARE
     ex = ey = es = kept = 0.0
-    for n in range(order, -1, -1):
+    for n in range(ORDER, -1, -1):
         ex, ey = ex * t + w[n, EX], ey * t + w[n, EY]
         es, kept = es * t + w[n, ES], kept * t + w[n, KEPT]
     return ex, ey, es, kept
@@ -90,9 +88,8 @@ def grip_at(w, t):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def stretch(w, first, last, factor):  # type: ignore[no-untyped-def]
     """Change the unit of time of some columns: one new unit is `factor` old ones."""
-    order = w.shape[0] - SPARE
     power = factor
-    for n in range(1, order + 1):
+    for n in range(1, ORDER + 1):
         for k in range(first, last):
             w[n, k] *= power
         power *= factor
@@ -101,7 +98,7 @@ def stretch(w, first, last, factor):  # type: ignore[no-untyped-def]
 @inlined_kernel
 def tail_at(c, first, t):  # type: ignore[no-untyped-def]
     r"""Value and slope at a time of :math:`\sum_m c_{first + m} t^m`; even and odd powers side by side."""
-    m = c.size - 1 - first
+    m = ORDER - first
     square = t * t
     even = odd = even_slope = odd_slope = 0.0
     if m % 2 == 0:
@@ -142,9 +139,8 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
     float
         The time, or `NEVER`.
     """
-    order = c.size - 1
     scale = abs(start) + noise
-    for n in range(1, order + 1):
+    for n in range(1, ORDER + 1):
         scale += abs(c[n])
     tiny = ROUNDING * scale
     out = 0
@@ -158,7 +154,7 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
         lead = sign * c[out]
     bend = 0.0
     power = 1.0
-    for n in range(out + 2, order + 1):
+    for n in range(out + 2, ORDER + 1):
         bend += (n - out) * (n - out - 1) * abs(c[n]) * power
         power *= end
     t = 0.0
@@ -183,19 +179,15 @@ def knots(w, first, last, knot):  # type: ignore[no-untyped-def]
 
     The slopes are times half the step.
     """
-    order = w.shape[0] - SPARE
     for k in range(first, last):
-        knot[0, k] = 0.5 * w[1, k]
-        knot[1, k] = knot[3, k] = w[0, k]
-        knot[2, k] = knot[4, k] = 0.0
-    for n in range(1, order + 1):
-        half, half_slope, whole_slope = HALVES[n], HALF_SLOPES[n], 0.5 * n
-        for k in range(first, last):
+        middle = end = w[0, k]
+        middle_slope = end_slope = 0.0
+        for n in range(1, ORDER + 1):
             c = w[n, k]
-            knot[1, k] += half * c
-            knot[2, k] += half_slope * c
-            knot[3, k] += c
-            knot[4, k] += whole_slope * c
+            middle, end = middle + HALVES[n] * c, end + c
+            middle_slope, end_slope = middle_slope + HALF_SLOPES[n] * c, end_slope + 0.5 * n * c
+        knot[0, k], knot[1, k], knot[2, k] = 0.5 * w[1, k], middle, middle_slope
+        knot[3, k], knot[4, k] = end, end_slope
 
 
 @inlined_kernel
@@ -266,9 +258,8 @@ def earliest_zero(c, knots, sign, early, late, end, noise):  # type: ignore[no-u
 @inner_kernel
 def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-untyped-def]
     r"""Zero of :math:`start + sign \sum_{n \ge 1} c_n t^n` up to `high`, if its only one is before."""
-    order = c.size - 1
     tiny = ROUNDING * (abs(start) + noise)
-    for n in range(1, order + 1):
+    for n in range(1, ORDER + 1):
         tiny += ROUNDING * abs(c[n])
     limit = high
     t = min(guess, limit)
@@ -299,32 +290,40 @@ def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-unt
 @inner_kernel
 def copy_column(w, column, c):  # type: ignore[no-untyped-def]
     """Copy a column into one series."""
-    order = w.shape[0] - SPARE
-    for n in range(order + 1):
+    for n in range(ORDER + 1):
         c[n] = w[n, column]
 
 
 @inner_kernel
 def peak(c, sign, end):  # type: ignore[no-untyped-def]
-    """Largest value of a series times `sign` up to a time: at its ends, or where it turns once between."""
-    order = c.size - 1
-    last, last_slope = c[order], 0.0
-    for n in range(order - 1, -1, -1):
+    """Largest value of a series times `sign` up to a time: at its ends, or where it turns once between.
+
+    Where it turns is found by Newton's steps, the last of which is followed by its parabola.
+    """
+    last, last_slope = c[ORDER], 0.0
+    for n in range(ORDER - 1, -1, -1):
         last_slope = last_slope * end + last
         last = last * end + c[n]
     largest = max(sign * c[0], sign * last)
     if sign * c[1] <= 0.0 or sign * last_slope >= 0.0:
         return largest
-    low, high = 0.0, end
-    g = 0.0
-    while high - low > 1e-3:
-        middle = 0.5 * (low + high)
-        g, d = c[order], 0.0
-        for n in range(order - 1, -1, -1):
-            d = d * middle + g
-            g = g * middle + c[n]
+    low, high, step = 0.0, end, 0.0
+    t = end * c[1] / (c[1] - last_slope)
+    g = d = 0.0
+    for _ in range(MOST_MARCHES):
+        g, d, bend = c[ORDER], 0.0, 0.0
+        for n in range(ORDER - 1, -1, -1):
+            bend = bend * t + d
+            d = d * t + g
+            g = g * t + c[n]
         if sign * d > 0.0:
-            low = middle
+            low = t
         else:
-            high = middle
-    return max(largest, sign * g)
+            high = t
+        step = -0.5 * d / bend if bend != 0.0 else NEVER
+        if not low <= t + step <= high:
+            step = 0.5 * (low + high) - t
+        if abs(step) < LAST_TURN:
+            break
+        t += step
+    return max(largest, sign * (g + 0.5 * d * step))
