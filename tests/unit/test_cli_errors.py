@@ -154,6 +154,19 @@ def test_wrong_usage_is_refused_in_one_line(case, capsys):
 
 
 @pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["chek"], "No such command 'chek'. Did you mean 'check'?"),
+        (["materials", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["xyzzy"], "No such command 'xyzzy'."),
+    ],
+)
+def test_an_unknown_verb_is_answered_in_whole_sentences(arguments, said, capsys):
+    """A question ends with its own mark, all else with a full stop."""
+    assert refused(capsys, *arguments) == f'separatrix: {said} Try "separatrix --help".\n'
+
+
+@pytest.mark.parametrize(
     ("verb", "option"),
     [
         *((verb, "--jobs") for verb in ("check", "rank", "map", "simulate", "sensitivity", "tribometer")),

@@ -322,4 +322,5 @@ def run_command_line(arguments: Sequence[str] | None) -> int:
 
 
 def _usage(message: str) -> str:
-    return f'{message.rstrip(". ")}. Try "separatrix --help".'
+    text = message.rstrip(". ")
+    return f'{text}{"" if text.endswith("?") else "."} Try "separatrix --help".'
