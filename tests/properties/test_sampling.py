@@ -158,7 +158,7 @@ def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
 
 def test_tests_that_tell_nothing_are_refused():
     """A friction known to ten powers of e is none: its mean would overflow."""
-    with pytest.raises(InputError, match="must not scatter by ten times its mean"):
+    with pytest.raises(InputError, match=r"tests of Tested in air must not scatter by ten times"):
         uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9))
 
 

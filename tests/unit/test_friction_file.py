@@ -9,6 +9,7 @@ from subprocess import run
 import pytest
 
 from separatrix.chain import known_friction
+from separatrix.cli import main
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.friction_file import friction_text, read_friction, write_friction
 from separatrix.friction_fit import FrictionTest, TestedFriction
@@ -246,3 +247,18 @@ def test_a_result_holds_the_tests_of_materials_that_are_not_ranked(tmp_path):
 
     found = resolved(read_study(study(tmp_path, ranking='materials = ["My compound"]')))["ranking"]
     assert [test["material"] for test in found["other_tests"]] == ["Armalon"]
+
+
+def test_check_warns_of_tests_that_sensitivity_refuses(tmp_path, capsys):
+    """A mean that is known to ten times itself: the same line from both, and nothing of tests that tell."""
+    for friction in ("0.001\nstandard_error = 0.5", "0.08"):
+        path = study(tmp_path, SMALL.replace("0.08", friction, 1))
+        assert main(["check", str(path), "--json"]) == 0
+        warned = json.loads(capsys.readouterr().out)["warnings"]
+        if friction == "0.08":
+            assert warned == []
+            continue
+        assert main(["sensitivity", str(path), "--json", "--samples", "64"]) == 2
+        line = capsys.readouterr().err.removeprefix("separatrix: ").rstrip()
+        assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
+        assert warned == [f"`sensitivity` refuses this study: {line}"]

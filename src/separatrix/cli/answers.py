@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from separatrix.errors import SeparatrixError, ValidityWarning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -89,8 +92,28 @@ class RankingAnswer:
     ranking: Ranking
 
 
-def nothing(study: Study, work: Work) -> None:
-    """Compute nothing: the answer is the study itself."""
+def check(study: Study, work: Work) -> None:  # noqa: ARG001
+    """Compute nothing: the answer is the study itself.
+
+    Warns
+    -----
+    ValidityWarning
+        `sensitivity` refuses the friction that tests foretell in the pocket: its line.
+    """
+    from separatrix.friction_fit import TestedFriction
+
+    candidates = study.ranking.candidates if study.ranking and study.cage else ()
+    if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
+        return
+    from separatrix.uncertainty.pocket_friction import as_pockets_see
+    from separatrix.uncertainty.sampling import uncertain_inputs
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)  # the chain is not what was asked for
+            uncertain_inputs(as_pockets_see(study))
+    except SeparatrixError as error:
+        warnings.warn(f"`sensitivity` refuses this study: {error}", ValidityWarning, stacklevel=2)
 
 
 def bearing(study: Study, work: Work) -> BearingState:  # noqa: ARG001

@@ -47,7 +47,7 @@ VERBS: tuple[Verb, ...] = (
     Verb(
         name="check",
         help="Read a study; show what was understood and from where.",
-        compute=answers.nothing,
+        compute=answers.check,
         writes_files=False,
     ),
     Verb(

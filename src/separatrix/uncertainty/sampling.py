@@ -119,7 +119,7 @@ def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
     Raises
     ------
     InputError
-        A friction of 0 has a scatter.
+        A friction of 0 has a scatter, or one from tests scatters by ten times its mean.
     """
     known = study_numbers(study)
     found = [
@@ -146,7 +146,8 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
             scatter = ranking.friction_scatter if ranking else 0.0
             deviation, source = next_cage_deviation(friction, scatter)
             if deviation > 0.0:
-                scattered = _next_cage(friction, deviation)
+                where = f"Friction from tests of {candidate.name} in {environment}"
+                scattered = _next_cage(friction, deviation, where)
                 yield UncertainInput(
                     key=key,
                     unit="-",
@@ -156,7 +157,7 @@ def _frictions(study: Study) -> Iterator[UncertainInput]:
                 )
 
 
-def _next_cage(friction: Friction, deviation: Ratio) -> LogNormal:
+def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
     """Friction of the next cage; what a fit to tests foretells is the median, and the logarithm's scatter."""
     if not isinstance(friction.law, TestedFriction):
         return LogNormal(mean=friction.mean, standard_deviation=deviation)
@@ -164,7 +165,7 @@ def _next_cage(friction: Friction, deviation: Ratio) -> LogNormal:
     if variance > MOST_VARIANCE:
         got = f"{friction.mean:.3g} with a standard deviation of {deviation:.3g}"
         cure = "Test it nearer to how the pocket rubs, or state a friction."
-        raise InputError("A friction from tests", "must not scatter by ten times its mean", "-", got, cure)
+        raise InputError(where, "must not scatter by ten times its mean", "-", got, cure)
     mean = friction.mean * exp(0.5 * variance)
     return LogNormal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
 
