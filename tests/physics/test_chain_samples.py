@@ -10,6 +10,7 @@ from separatrix import chain
 from separatrix.distribution import Normal, Samples
 from separatrix.errors import InputError
 from separatrix.orbit import HIGHEST
+from separatrix.ranking.friction import conditions_of
 from separatrix.study_file import read_study
 from separatrix.study_numbers import study_numbers, value_of, with_distributions, with_values
 from separatrix.uncertainty import chain_samples as module
@@ -72,6 +73,8 @@ def test_a_sample_at_the_means_is_the_chain_to_the_last_bit(change):
         assert found.restitution_factor[0, place] == blow.restitution_factor
         assert found.restitution_factor_free_spin[0, place] == blow.restitution_factor_free_spin
         assert found.restitution_factor_hertz[0, place] == blow.restitution_factor_hertz
+        pocket = conditions_of(study, state)
+        assert (found.slip_speed[0], found.pocket_pressure[0, place]) == (pocket.slip_speed, pocket.pressure)
         waves = len(cage.orbital_cosines)
         assert found.orbital_cosines[0].tolist() == [*cage.orbital_cosines, *[0.0] * (HIGHEST - waves)]
         assert found.orbital_sines[0].tolist() == [*cage.orbital_sines, *[0.0] * (HIGHEST - waves)]

@@ -119,8 +119,8 @@ def test_the_runs_are_one_of_the_drivers(capsys):
 
 def test_fewer_samples_than_a_fit_needs_are_answered(capsys, monkeypatch):
     """Here 80 for a line in one input, as 64 are too few for 16: more are drawn, after all the work."""
-    for module in ("fit", "of_model"):
-        monkeypatch.setattr(f"separatrix.sensitivity.{module}.LEAST_FOR_A_TERM", 40)
+    for module in ("uncertainty.polynomial", "sensitivity.of_model"):
+        monkeypatch.setattr(f"separatrix.{module}.LEAST_FOR_A_TERM", 40)
     assert asked(capsys)["sobol"]["fit_error"] < 1e-3  # a line in the thickness between 0.4 and 0.6 um
 
 
@@ -149,7 +149,7 @@ def test_inputs_say_where_they_come_from(capsys):
     assert inputs["film.thickness"]["source"] == "study"
     assert inputs["ranking.A.air"]["source"] == "measured"
     assert inputs["ranking.A.vacuum"]["source"] == "assumed"
-    assert not any(one["moves_boundary"] for one in inputs.values())
+    assert not any(one["moves_boundary"] or one["moves_friction"] for one in inputs.values())
 
 
 def test_any_number_of_threads_gives_the_same_answer(capsys):

@@ -666,7 +666,12 @@ def test_samples_that_do_not_share_out_evenly_are_all_counted():
     assert less.most.value == pytest.approx(whole.most.value, abs=1e-3)  # one sample of the 5 %
 
 
-def of_the_chain():
+def as_drawn(values):
+    """Frictions that do not move."""
+    return values
+
+
+def of_the_chain(in_pockets=as_drawn):
     """Stands for the chain's model: two candidates, one of them in two environments, and a film."""
     measured, unrepeated = STUDY.ranking.candidates[:2]
     known = [
@@ -712,6 +717,7 @@ def of_the_chain():
         cases=cases,
         judge=judge,
         factors=lambda values: SimpleNamespace(restitution_factor=1e6 * values[:, :1] * chain),
+        in_pockets=in_pockets,
         kinds=[SimpleNamespace(runs=1000), SimpleNamespace(runs=234)],
         study=SimpleNamespace(ranking=SimpleNamespace(candidates=candidates, friction_scatter=0.09)),
     )
@@ -730,6 +736,29 @@ def test_the_chains_model_is_asked_of_each_environment():
     found = evaluated(asked, values)
     again = asked.judge(values, found.threshold - found.margin)
     np.testing.assert_allclose(again.margin, found.margin, atol=1e-12)  # rounding
+
+
+def test_frictions_move_with_the_inputs_where_they_are_drawn_and_not_where_they_are_given():
+    """The pocket's friction of Mat. A in gas goes with the film: `evaluate` knows it, `judge` is told."""
+
+    def in_pockets(values):
+        moved = values.copy()
+        moved[:, 1] *= 1.0 + 1e5 * values[:, 0]
+        return moved
+
+    asked = question_of(of_the_chain(in_pockets))
+    plain = question_of(of_the_chain())
+    values = sampled_values(asked, 1024)
+    moved, still = asked.evaluate(values), plain.evaluate(values)
+    rise = 1e5 * values[:, 0] * values[:, 1]
+    np.testing.assert_allclose(still.threshold[:, 0] - moved.threshold[:, 0], rise, atol=1e-12)  # rounding
+    np.testing.assert_array_equal(still.threshold[:, 1:], moved.threshold[:, 1:])
+    factor = still.threshold - still.margin
+    np.testing.assert_array_equal(
+        asked.judge(values, factor).threshold, plain.judge(values, factor).threshold
+    )
+    fitted, _ = fitted_question(asked, values, moved)
+    np.testing.assert_allclose(fitted.evaluate(values).threshold, moved.threshold, atol=1e-12)  # rounding
 
 
 def test_candidates_whose_names_hold_dots_keep_them():

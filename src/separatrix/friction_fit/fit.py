@@ -12,6 +12,7 @@ from functools import lru_cache
 from math import exp, hypot, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
 from separatrix.errors import InputError
 from separatrix.friction_fit.components import LinearModel, VarianceComponents, variance_components
@@ -22,7 +23,7 @@ from separatrix.friction_fit.covariates import (
     tested_range,
     values_of,
 )
-from separatrix.friction_fit.extrapolation import held, other_medium
+from separatrix.friction_fit.extrapolation import SLACK, held, other_medium
 from separatrix.friction_fit.posterior import Posterior, posteriors
 from separatrix.friction_fit.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
 from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
@@ -92,6 +93,35 @@ class MaterialFit:
             widening=mean * within.widening,
             assumed_scatter=self.scatter_source != OWN,
         )
+
+    def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
+        """Logarithm of the mean that `at` foretells, for many conditions; held within the tests as there.
+
+        Parameters
+        ----------
+        slip_speed, pressure : ndarray
+            Shape (sample,) [m/s, Pa].
+        """
+        known = {"slip_speed": slip_speed, "pressure": pressure}
+        known = {name: np.clip(x, *r) for name, x in known.items() if (r := self.ranges[name]) is not None}
+        if (both := self.ranges[PRODUCT]) is not None and len(known) == len((slip_speed, pressure)):
+            known[PRODUCT] = np.clip(known["slip_speed"] * known["pressure"], *both)
+        coefficients = self.posterior.weight @ self.posterior.fit.mean
+        mean = np.full(slip_speed.shape, coefficients[0])
+        chosen = self.covariates
+        for name, centre, slope in zip(chosen.names, chosen.centres, coefficients[1:], strict=True):
+            mean += slope * (np.log(known[name]) - centre)
+        return mean
+
+    def tested_at(self, *, slip_speed: Array, pressure: Array) -> NDArray[np.bool_]:
+        """Whether conditions count as tested in speed and in pressure, as for `at`; shape (sample,)."""
+        asked = (("slip_speed", slip_speed), ("pressure", pressure))
+        inside = np.ones(slip_speed.shape, dtype=np.bool_)
+        for name, values in asked:
+            limits = self.ranges[name]
+            if limits is not None:
+                inside &= (values >= limits[0] / SLACK) & (values <= limits[1] * SLACK)
+        return inside
 
     def _contrast(self, values: Mapping[str, float]) -> Array:
         """Row of the design for held conditions; those not asked about stay at their centre."""

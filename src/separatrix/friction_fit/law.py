@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import sqrt
+from typing import TYPE_CHECKING
 
 from separatrix.friction_fit.covariates import at_temperature
 from separatrix.friction_fit.extrapolation import held, other_medium
 from separatrix.friction_fit.records import FrictionTest, Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio
+
+if TYPE_CHECKING:
+    from separatrix.friction_fit.fit import MaterialFit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +41,13 @@ class TestedFriction:
         """Those of its own tests that serve at a temperature."""
         return at_temperature(self.own, temperature)
 
+    def fitted(self, temperature: Kelvin | None) -> MaterialFit:
+        """Fit of its own tests that serve at a temperature, with the scatter pooled over all materials."""
+        from separatrix.friction_fit.fit import fit_friction
+
+        tests = at_temperature(self.tests, temperature)
+        return fit_friction(tests, self.default_scatter).of(self.material, self.environment)
+
     def at(
         self,
         *,
@@ -46,10 +57,7 @@ class TestedFriction:
         medium: str | Sequence[str] | None = None,
     ) -> Prediction:
         """Friction foretold for these conditions, as `MaterialFit.at`."""
-        from separatrix.friction_fit.fit import fit_friction
-
-        tests = at_temperature(self.tests, temperature)
-        fitted = fit_friction(tests, self.default_scatter).of(self.material, self.environment)
+        fitted = self.fitted(temperature)
         return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
 
 

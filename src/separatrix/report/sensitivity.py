@@ -138,6 +138,12 @@ def _marks(document: Document) -> Iterator[str]:
         )
 
 
+def _moves(row: Document) -> str:
+    """What an input moves beside the restitution factor, in brackets."""
+    moved = [words for key, words in MOVES.items() if row[key]]
+    return f" (moves {' and '.join(moved)})" if moved else ""
+
+
 def _inputs(document: Document) -> list[str]:
     """Return the inputs that are no frictions one by one, and how many frictions there are of what origin."""
     rows = document["inputs"]
@@ -145,10 +151,7 @@ def _inputs(document: Document) -> list[str]:
     others = [row for row in rows if not _is_friction(row)]
     origins = Counter(row["source"] for row in frictions)
     told = ", ".join(f"{count} {SOURCES[source]}" for source, count in origins.items())
-    shown = [
-        (row["name"], row["distribution"] + (" (moves the boundary)" if row["moves_boundary"] else ""))
-        for row in others
-    ]
+    shown = [(row["name"], row["distribution"] + _moves(row)) for row in others]
     shown += [("frictions", f"{len(frictions)}: {told}")] if frictions else []
     failed = document["failed"]
     shown.append(
@@ -156,6 +159,8 @@ def _inputs(document: Document) -> list[str]:
     )
     return [facts(shown), *(paragraph(note) for note in document["notes"])]
 
+
+MOVES = {"moves_boundary": "the boundary", "moves_friction": "frictions from tests"}
 
 SOURCES = {
     "study": "from the study",

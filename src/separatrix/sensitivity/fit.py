@@ -15,23 +15,16 @@ for first-order and total indices alike. That is a bound, not a guess.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations_with_replacement
-from math import comb
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.sensitivity.design import is_stable
 from separatrix.sensitivity.question import Evaluated, Question
 from separatrix.sensitivity.records import CaseSobol, Estimate, SobolAnswer, SobolIndex
 from separatrix.sensitivity.region import damping_ratios, restitution_factors
+from separatrix.uncertainty.polynomial import Basis, best_basis
 from separatrix.units import Array, Ratio
-
-DEGREES = (1, 2, 3, 4)
-LEAST_FOR_A_TERM = 4
-"""Samples that a term of the polynomial needs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,26 +58,6 @@ class FitError:
     samples: int
 
 
-@dataclass(frozen=True, slots=True)
-class _Basis:
-    """Polynomials of standardised inputs up to a total degree."""
-
-    columns: tuple[int, ...]
-    logarithmic: tuple[bool, ...]
-    middle: Array
-    width: Array
-    degree: int
-
-    def of(self, values: Array) -> Array:
-        """Terms, shape (sample, term)."""
-        x = (_maybe_log(values, self.columns, self.logarithmic) - self.middle) / self.width
-        terms: dict[tuple[int, ...], Array] = {(): np.ones(len(x))}
-        for degree in range(1, self.degree + 1):
-            for places in combinations_with_replacement(range(x.shape[1]), degree):
-                terms[places] = terms[places[:-1]] * x[:, places[-1]]
-        return np.column_stack(list(terms.values()))
-
-
 def fitted_question(question: Question, values: Array, answers: Evaluated) -> tuple[Question, FitError]:
     """The question with a fitted restitution factor in the place of the chain's.
 
@@ -109,17 +82,18 @@ def fitted_question(question: Question, values: Array, answers: Evaluated) -> tu
     """
     judge, factor = question.judged(), answers.threshold - answers.margin
     target = np.log(damping_ratios(factor))
-    basis, unseen = _best(question, values, target)
-    weights = np.linalg.lstsq(basis.of(values), target, rcond=None)[0]
+    basis, unseen = best_basis(values, _shared(question, values), target)
+    weights = basis.fitted(values, target)
 
     def evaluate(asked: Array) -> Evaluated:
-        return judge(asked, restitution_factors(np.exp(basis.of(asked) @ weights)))
+        factors = restitution_factors(np.exp(basis.of(asked) @ weights))
+        return judge(question.in_pockets(asked), factors)
 
-    told = judge(values, restitution_factors(np.exp(unseen)))
+    told = judge(question.in_pockets(values), restitution_factors(np.exp(unseen)))
     return replace(question, evaluate=evaluate), _error(basis, answers, told)
 
 
-def _error(basis: _Basis, true: Evaluated, told: Evaluated) -> FitError:
+def _error(basis: Basis, true: Evaluated, told: Evaluated) -> FitError:
     factor = true.threshold - true.margin
     squares = np.mean((factor - (told.threshold - told.margin)) ** 2, axis=0)
     spread = np.var(factor, axis=0)
@@ -136,47 +110,10 @@ def _error(basis: _Basis, true: Evaluated, told: Evaluated) -> FitError:
     )
 
 
-def _best(question: Question, values: Array, target: Array) -> tuple[_Basis, Array]:
-    """Basis of the least error in samples it has not seen, and what it says of each of them."""
-    found = [(basis, _unseen(basis.of(values), target)) for basis in _bases(question, values)]
-    if not found:
-        rule = "must be enough for a straight line in every input"
-        raise InputError("samples", rule, "", str(len(values)), "Take more samples.")
-    return min(found, key=lambda one: float(np.mean((one[1] - target) ** 2)))
-
-
-def _bases(question: Question, values: Array) -> Iterator[_Basis]:
-    columns = _shared(question, values)
-    positive = tuple(bool((values[:, i] > 0.0).all()) for i in columns)
-    for logarithmic in dict.fromkeys(((False,) * len(columns), positive)):
-        x = _maybe_log(values, columns, logarithmic)
-        for degree in DEGREES:
-            if comb(len(columns) + degree, degree) * LEAST_FOR_A_TERM <= len(values):
-                yield _Basis(columns, logarithmic, x.mean(axis=0), x.std(axis=0), degree)
-
-
 def _shared(question: Question, values: Array) -> tuple[int, ...]:
     """Inputs that vary and on which the restitution factor may depend: no pocket friction, no boundary."""
     others = {question.boundary, *(case.friction for case in question.cases)}
     return tuple(i for i in range(values.shape[1]) if i not in others and np.ptp(values[:, i]) > 0.0)
-
-
-def _maybe_log(values: Array, columns: Iterable[int], logarithmic: Iterable[bool]) -> Array:
-    found = [
-        np.log(values[:, i]) if log else values[:, i] for i, log in zip(columns, logarithmic, strict=True)
-    ]
-    return np.column_stack(found) if found else np.empty((len(values), 0))
-
-
-def _unseen(terms: Array, target: Array) -> Array:
-    """What a fit to all other samples says of each.
-
-    The residual over one less the leverage: D. M. Allen's prediction sum of squares, Technometrics 16, 1974,
-    125-127.
-    """
-    q = np.linalg.qr(terms)[0]
-    leverage = np.minimum(np.sum(q * q, axis=1), 1.0 - 1e-9)
-    return np.asarray(target - (target - q @ (q.T @ target)) / (1.0 - leverage)[:, None])
 
 
 def with_fit_error(answer: SobolAnswer, error: FitError) -> SobolAnswer:

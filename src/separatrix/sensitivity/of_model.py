@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from separatrix.distribution import Samples
-from separatrix.sensitivity.fit import LEAST_FOR_A_TERM, FitError, fitted_question
+from separatrix.sensitivity.fit import FitError, fitted_question
 from separatrix.sensitivity.question import Case, Evaluated, Input, Question, Verdicts
 from separatrix.sensitivity.words import case_name, input_words
 from separatrix.study import Candidate, Friction
 from separatrix.uncertainty.model import Case as ModelCase
 from separatrix.uncertainty.model import Model
+from separatrix.uncertainty.polynomial import LEAST_FOR_A_TERM
 from separatrix.uncertainty.sampling import UncertainInput, sample
 from separatrix.units import Array, Ratio
 
@@ -56,7 +57,10 @@ def question_of(model: Model) -> Question:
 
     def evaluate(values: Array) -> Evaluated:
         factors = model.factors(values[:, :count]).restitution_factor
-        return judge(values, factors[:, [model.cases[c].place for c in chosen]])
+        return judge(in_pockets(values), factors[:, [model.cases[c].place for c in chosen]])
+
+    def in_pockets(values: Array) -> Array:
+        return np.column_stack((model.in_pockets(values[:, :count]), values[:, count:]))
 
     def judge(values: Array, restitution_factor: Array) -> Evaluated:
         every = np.empty((len(values), len(model.cases)))
@@ -72,6 +76,7 @@ def question_of(model: Model) -> Question:
         cases=tuple(_case(model.cases[c], shared) for c in chosen),
         evaluate=evaluate,
         judge=judge,
+        in_pockets=in_pockets,
         boundary=count,
     )
 
@@ -108,7 +113,8 @@ def fitted_to(model: Model, values: Array, factors: Array) -> tuple[Question, Fi
         found = model.factors(values)
         values, factors = values[found.solved], found.restitution_factor[found.solved][:, places]
     known = np.column_stack((values, np.full(len(values), AS_THE_RUNS_SAY)))
-    return fitted_question(question, known, question.judged()(known, factors[:, _asked(model)]))
+    answers = question.judged()(question.in_pockets(known), factors[:, _asked(model)])
+    return fitted_question(question, known, answers)
 
 
 def _boundary(model: Model) -> Input:

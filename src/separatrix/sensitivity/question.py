@@ -95,6 +95,10 @@ Evaluate = Callable[[Array], Evaluated]
 Judge = Callable[[Array, Array], Evaluated]
 
 
+def _as_drawn(values: Array) -> Array:
+    return values
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Question:
     """A model, its uncertain inputs (independent of each other), and its cases.
@@ -110,7 +114,10 @@ class Question:
     judge : callable, optional
         judge(values (sample, input), restitution_factor (sample, case)) -> Evaluated: the same with the
         restitution factor given. Cheap: the dear part of `evaluate` is not asked again for another friction
-        or film. Without it there are no answers to inverse questions.
+        or film. Without it there are no answers to inverse questions. A friction is that in the pocket.
+    in_pockets : callable
+        in_pockets(values (sample, input)) -> the same with each drawn friction as the pocket of the sample
+        sees it: `evaluate` does this, `judge` does not.
     boundary : int, optional
         Place of the input that says which of the boundaries that a finite number of runs allow a sample has:
         nothing that is measured, and the restitution factor does not depend on it.
@@ -120,6 +127,7 @@ class Question:
     cases: tuple[Case, ...]
     evaluate: Evaluate
     judge: Judge | None = None
+    in_pockets: Callable[[Array], Array] = _as_drawn
     boundary: int | None = None
 
     def __post_init__(self) -> None:

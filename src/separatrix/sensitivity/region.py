@@ -121,6 +121,7 @@ def stable_regions(
 def _shares(question: Question, values: Array, grid: RestitutionGrid, zeta: Array) -> Array:
     """Share of the samples that are STABLE at damping ratios of shape (y, x), shape (y, x, case)."""
     found, judge = evaluated(question, values), question.judged()
+    values = question.in_pockets(values)
     ratio = damping_ratios(found.threshold - found.margin) / _of_the_grid(question, grid, values)[:, None]
     rows = []
     for row in zeta:

@@ -132,7 +132,7 @@ def uncertain_ranking(
 
 def _sampled(model: Model, values: Array, factors: Factors, stage: Stage) -> Sampled:
     """Frictions, thresholds and verdicts of the samples that the chain solved."""
-    friction = model.frictions(values)
+    friction = model.frictions(model.in_pockets(values))
     places = [case.place for case in model.cases]
     factor = factors.restitution_factor[factors.solved][:, places]
     progress = stage("verdicts")
@@ -182,7 +182,7 @@ def _answer(model: Model, draws: Draws, factors: Factors, found: Sampled) -> Unc
     return UncertainRanking(
         samples=total,
         failed=total - int(factors.solved.sum()),
-        notes=factors.notes,
+        notes=(*factors.notes, *(model.pockets.notes(found.values) if model.pockets else ())),
         default_scatter=asked.friction_scatter,
         inputs=tuple(_input_rows(model)),
         environments=environments,
@@ -208,8 +208,9 @@ def _input_rows(model: Model) -> list[InputRow]:
             mean=one.distribution.mean,
             standard_deviation=one.distribution.standard_deviation,
             moves_boundary=one.key in moving,
+            moves_friction=model.pockets is not None and model.pockets.move_with(i, model.inputs),
         )
-        for one in model.inputs
+        for i, one in enumerate(model.inputs)
     ]
 
 

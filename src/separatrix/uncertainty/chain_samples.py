@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain import BearingState, bearing_state, cage_design, pocket_stiffness, require_rolling
+from separatrix.equilibrium import Equilibrium
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.orbit import HIGHEST, mean_speed, orbital_waves
+from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.restitution import Restitution, contact_damping, restitution
 from separatrix.stability.pool import work_through
 from separatrix.study import Candidate, KinematicModel, Study
@@ -82,6 +84,10 @@ class ChainSamples:
         Mean orbital speed of the balls, shape (sample,) [rad/s].
     film_over_semi_minor : ndarray
         Thickness of the film over the smaller of the two semi-minor axes, shape (sample,) [-].
+    slip_speed : ndarray
+        Mean sliding speed of balls on pockets, shape (sample,) [m/s].
+    pocket_pressure : ndarray
+        Mean contact pressure in the pocket at a blow of the middle kick, shape (sample, candidate) [Pa].
     ball_cage_stiffness : ndarray
         k_BC, shape (sample, candidate) [N/m].
     restitution_factor, restitution_factor_hertz, restitution_factor_free_spin : ndarray
@@ -104,6 +110,8 @@ class ChainSamples:
     restitution_factor: Array
     restitution_factor_hertz: Array
     restitution_factor_free_spin: Array
+    slip_speed: Array
+    pocket_pressure: Array
     orbital_cosines: Array
     orbital_sines: Array
     failures: tuple[Failure, ...] = ()
@@ -148,6 +156,7 @@ class _Answer(NamedTuple):
     """What one sample gives."""
 
     blows: tuple[Restitution, ...]
+    pockets: tuple[PocketConditions, ...]
     cage_speed: float
     film_over_semi_minor: float
     cosines: tuple[float, ...]
@@ -299,8 +308,10 @@ def _traction(study: Study, state: BearingState) -> _Traction:
 def _answer(study: Study, state: BearingState, traction: _Traction) -> _Answer:
     found = state.equilibrium
     waves = orbital_waves(found.orbital_speed, found.azimuth, study.bearing.pitch_diameter / 2.0)
+    blows = _blows(study, traction)
     return _Answer(
-        blows=_blows(study, traction),
+        blows=blows,
+        pockets=_pockets(study, found, blows),
         cage_speed=mean_speed(found.orbital_speed),
         film_over_semi_minor=traction.thin,
         cosines=waves.cosines,
@@ -322,10 +333,27 @@ def _blows(study: Study, traction: _Traction) -> tuple[Restitution, ...]:
     return tuple(blows)
 
 
+def _pockets(study: Study, found: Equilibrium, blows: Sequence[Restitution]) -> tuple[PocketConditions, ...]:
+    """What rubs in the pocket of each candidate; those of the same stiffness share it."""
+    known = {
+        blow.ball_cage_stiffness: pocket_conditions(
+            found,
+            ball_diameter=study.bearing.ball_diameter,
+            ball_cage_stiffness=blow.ball_cage_stiffness,
+            cage_mass=cage_design(study).mass,
+            damping_ratio=blow.damping_ratio,
+            impact_speed=study.stability.middle_kick,
+        )
+        for blow in dict.fromkeys(blows)
+    }
+    return tuple(known[blow.ball_cage_stiffness] for blow in blows)
+
+
 def _collected(study: Study, answers: Sequence[_Answer | Failure]) -> ChainSamples:
     """Columns of the answers; NaN where there is none."""
     names = tuple(_name(candidate) for candidate in candidates_of(study))
     n = len(answers)
+    slip_speed, pressure = np.full(n, np.nan), np.full((n, len(names)), np.nan)
     one = {name: np.full(n, np.nan) for name in _PER_SAMPLE}
     each = {name: np.full((n, len(names)), np.nan) for name in _PER_CANDIDATE}
     waves = {name: np.full((n, HIGHEST), np.nan) for name in ("orbital_cosines", "orbital_sines")}
@@ -337,11 +365,22 @@ def _collected(study: Study, answers: Sequence[_Answer | Failure]) -> ChainSampl
             one[name][i] = getattr(first if hasattr(first, name) else answer, name)
         for name in _PER_CANDIDATE:
             each[name][i] = [getattr(blow, name) for blow in answer.blows]
+        slip_speed[i] = answer.pockets[0].slip_speed
+        pressure[i] = [pocket.pressure for pocket in answer.pockets]
         for name, held in (("orbital_cosines", answer.cosines), ("orbital_sines", answer.sines)):
             waves[name][i] = [*held, *[0.0] * (HIGHEST - len(held))]
     failures = tuple(answer for answer in answers if isinstance(answer, Failure))
     solved = np.array([isinstance(answer, _Answer) for answer in answers], dtype=bool)
-    return ChainSamples(candidates=names, solved=solved, failures=failures, **one, **each, **waves)
+    return ChainSamples(
+        candidates=names,
+        solved=solved,
+        slip_speed=slip_speed,
+        pocket_pressure=pressure,
+        failures=failures,
+        **one,
+        **each,
+        **waves,
+    )
 
 
 def _name(candidate: Candidate | None) -> str:

@@ -16,6 +16,7 @@ from separatrix.stability.pool import Progress
 from separatrix.study import Candidate, Study
 from separatrix.uncertainty.boundary import Boundary, Verdicts
 from separatrix.uncertainty.chain_samples import chain_samples
+from separatrix.uncertainty.pocket_friction import PocketFrictions, pocket_frictions
 from separatrix.uncertainty.records import SurrogateError
 from separatrix.uncertainty.regime import play_of
 from separatrix.uncertainty.sampling import UncertainInput, sample, uncertain_inputs
@@ -112,6 +113,8 @@ class Model:
         A cage for each pocket stiffness, and set of inputs that move it.
     central : ndarray
         Restitution factor of each candidate with every input at its centre, shape (candidate,) [-].
+    pockets : PocketFrictions, optional
+        How frictions from tests move with the inputs.
     jobs : int
         Threads.
     """
@@ -121,7 +124,12 @@ class Model:
     cases: tuple[Case, ...]
     kinds: tuple[Kind, ...]
     central: Array
+    pockets: PocketFrictions | None = None
     jobs: int = 1
+
+    def in_pockets(self, values: Array) -> Array:
+        """Return the inputs with frictions from tests as the pockets of each sample see them."""
+        return values if self.pockets is None else self.pockets.moved(values)
 
     @property
     def central_values(self) -> Array:
@@ -129,7 +137,7 @@ class Model:
         return np.array([[one.central for one in self.inputs]])
 
     def frictions(self, values: Array) -> Array:
-        """Friction of every case, shape (sample, case) [-]."""
+        """Friction of every case by inputs as `in_pockets` leaves them, shape (sample, case) [-]."""
         parts = [(values[:, list(c.columns)].sum(axis=1) + c.certain) / c.count for c in self.cases]
         return np.stack(parts, axis=1)
 
@@ -153,13 +161,12 @@ class Model:
     @property
     def chain_varies(self) -> bool:
         """Whether any input beside the frictions is uncertain."""
-        places = range(self.central.size)
-        return any(enters(self.study, one.key, place) for one in self.inputs for place in places)
+        return bool(_of_the_chain(self.study, self.inputs))
 
     def evaluate(self, values: Array) -> Evaluated:
         """Answer for samples of the inputs, shape (sample, input), by the whole chain."""
         factors = self.factors(values).restitution_factor
-        return self.judge(values, factors[:, [case.place for case in self.cases]])
+        return self.judge(self.in_pockets(values), factors[:, [case.place for case in self.cases]])
 
     def judge(
         self, values: Array, restitution_factor: Array, draws: NDArray[np.int_] | None = None
@@ -169,7 +176,7 @@ class Model:
         Parameters
         ----------
         values : ndarray
-            Shape (sample, input).
+            With frictions as the pockets see them, shape (sample, input).
         restitution_factor : ndarray
             Shape (sample, case) [-].
         draws : ndarray, optional
@@ -267,14 +274,22 @@ def uncertain_model(
     halt, told = stop or Event(), stage or (lambda _: None)
     kinds = [_kind(study, inputs, names[g[0]], g, jobs, told, halt) for g in groups.values()]
     factors = [state.restitution.restitution.restitution_factor for state in states]
+    pockets = pocket_frictions(study, inputs, _of_the_chain(study, inputs), jobs=jobs, stop=halt)
     return Model(
         study=study,
         inputs=inputs,
         cases=tuple(cases_of(study, inputs)),
         kinds=tuple(kinds),
         central=np.array(factors),
+        pockets=pockets,
         jobs=jobs,
     )
+
+
+def _of_the_chain(study: Study, inputs: Sequence[UncertainInput]) -> tuple[int, ...]:
+    """Inputs beside the frictions."""
+    places = range(len(ranking_question(study).candidates))
+    return tuple(i for i, one in enumerate(inputs) if any(enters(study, one.key, place) for place in places))
 
 
 def _kind(

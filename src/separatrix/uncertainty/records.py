@@ -13,7 +13,8 @@ class InputRow:
 
     `source` is "study" where the study gives it, "measured" for the scatter of a measured friction, "assumed"
     for the default one, a guess; `moves_boundary` marks a number that changes the cage itself, so that the
-    boundary moves with it. Mean and standard deviation are in SI.
+    boundary moves with it, `moves_friction` one with which frictions from tests move. Mean and standard
+    deviation are in SI.
     """
 
     name: str
@@ -23,6 +24,7 @@ class InputRow:
     mean: float
     standard_deviation: float
     moves_boundary: bool
+    moves_friction: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
