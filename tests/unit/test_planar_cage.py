@@ -146,5 +146,7 @@ def test_the_mirror_image_of_the_mirror_image_is_the_cage():
     ],
 )
 def test_a_bearing_turns_as_its_ball_set_does(cage, inner, outer, sense):
-    """At rest, as its rings do in the mean, or as the inner one."""
-    assert replace(CAGE, cage_speed=cage, inner_speed=inner, outer_speed=outer).rotation_sense == sense
+    """At rest, as its rings do in the mean, or as the inner one; what is run always turns forward."""
+    found = replace(CAGE, cage_speed=cage, inner_speed=inner, outer_speed=outer)
+    assert found.rotation_sense == sense
+    assert turned_forward(found).rotation_sense == 1

@@ -201,8 +201,8 @@ def run_rows(
     limits = run_limits(cage, kick, growth_only=growth_only)
     fifth = duration / FIFTHS / unit
     series = series_of(series_columns(cage))
-    run_chunk(p, drive, starts, kick * unit, series, fifth, limits, cage.rotation_sense, history,
-              ledger and not growth_only, evidence, hits)  # fmt: skip
+    run_chunk(p, drive, starts, kick * unit, series, fifth, limits, history, ledger and not growth_only,
+              evidence, hits)  # fmt: skip
     evidence[:, [slots.FORCE, slots.LAND_FORCE]] *= cage.mass
 
 

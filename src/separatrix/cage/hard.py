@@ -195,7 +195,7 @@ def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # typ
 
 
 @kernel
-def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
+def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, out):  # type: ignore[no-untyped-def]
     """Run from one kick, blow by blow; outcome and evidence into `out`, shape (evidence,)."""
     s, note = np.zeros(6), np.zeros(NOTES)
     s[VX], s[VY] = kick * np.cos(direction), kick * np.sin(direction)
@@ -210,17 +210,17 @@ def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, se
     whirl = note[SWEPT] / note[AREA] if note[AREA] > 0.0 else 0.0
     out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
-    out[DIRECTION] = np.sign(whirl) * sense
+    out[DIRECTION] = np.sign(whirl)
     out[FORCE] = note[PEAK]
     out[IMBALANCE] = abs(energy_of(p, s) - start - note[WORK]) / (note[DONE] + start)
 
 
 @kernel
-def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, sense, out):  # type: ignore[no-untyped-def]
+def hard_chunk(p, cos, sin, starts, kick, eta, mass, duration, limits, out):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`, as in `run_chunk`; evidence into `out`, shape (run, evidence)."""
     for i in range(starts.shape[0]):
         lead = starts[i, 1 : 1 + cos.size]
-        hard_run(p, cos, sin, starts[i, 0], kick, lead, eta, mass, duration, limits, sense, out[i])
+        hard_run(p, cos, sin, starts[i, 0], kick, lead, eta, mass, duration, limits, out[i])
 
 
 def run_hard_ensemble(
@@ -272,7 +272,7 @@ def run_hard_ensemble(
         drift = 2.0 * cage.half_play
         limits = (drift, GROWN * energy_scale(cage, speeds[i]))
         hard_chunk(p, *directions, starts[rows], speeds[i], eta, mass, settings.duration, limits,
-                   cage.rotation_sense, evidence[i, rows])  # fmt: skip
+                   evidence[i, rows])  # fmt: skip
 
     spread(work, speeds.size, runs, CHUNK_RUNS, jobs)
     hits = np.zeros((speeds.size, runs, cage.ball_count), dtype=np.int64)

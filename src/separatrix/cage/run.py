@@ -190,7 +190,7 @@ def imbalance(p, pockets, touch, s, w, mode, ledger, start):  # type: ignore[no-
 
 
 @kernel
-def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_one(p, pockets, direction, kick, w, fifth, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
     `kick` and `fifth` are in units of the engine.
@@ -236,7 +236,7 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
     whirl = end[TURNING] / end[SPEED_SQUARED] / p.unit if end[SPEED_SQUARED] > 0.0 else 0.0
     out[OUTCOME] = outcome
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
-    out[DIRECTION] = np.sign(whirl) * sense
+    out[DIRECTION] = np.sign(whirl)
     force = 1.0 / p.unit**2
     out[FORCE] = np.max(tally[:, FORCE_MAX]) * force
     out[LAND_FORCE] = np.max(tally[:, LAND_MAX]) * force
@@ -250,7 +250,7 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, sense, rows, books, o
 
 
 @kernel
-def run_chunk(p, drive, starts, kick, w, fifth, limits, sense, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_chunk(p, drive, starts, kick, w, fifth, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
@@ -264,7 +264,7 @@ def run_chunk(p, drive, starts, kick, w, fifth, limits, sense, rows, books, out,
         angle = start[1 + 2 * balls :]
         pockets[COSINE], pockets[SINE], pockets[PENETRATION] = np.cos(angle), np.sin(angle), 0.0
         pockets[LEAD], pockets[PLAY] = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
-        run_one(p, pockets, start[0], kick, w, fifth, limits, sense, rows, books, out[i], hits[i])
+        run_one(p, pockets, start[0], kick, w, fifth, limits, rows, books, out[i], hits[i])
 
 
 @lru_cache(maxsize=512)
