@@ -6,6 +6,7 @@ import pytest
 from separatrix.friction_fit import FrictionTest
 from separatrix.friction_fit.fit import fit_friction
 from separatrix.study_file import read_study
+from separatrix.uncertainty import training
 from separatrix.uncertainty.answer import uncertain_ranking
 from separatrix.uncertainty.chain_samples import chain_samples
 from separatrix.uncertainty.pocket_friction import as_pockets_see, pocket_frictions
@@ -130,8 +131,9 @@ def test_frictions_that_depend_on_no_condition_do_not_move(tmp_path):
     assert fitted(asked(tmp_path, rows_of("Armalon", -0.5), speed='"15000 rpm"')) is None
 
 
-def test_a_faster_shaft_makes_a_cage_of_falling_friction_more_stable(tmp_path):
+def test_a_faster_shaft_makes_a_cage_of_falling_friction_more_stable(tmp_path, monkeypatch):
     """The model's threshold rises with speed by the law of the tests, and not by that of a flat one."""
+    monkeypatch.setattr(training, "RUNS", 2000)
     few = '[stability]\nkicks = ["1 m/s"]\nruns = 8\nduration = "0.05 s"'
     study = asked(tmp_path, rows_of("Armalon", -1.0), rows_of("Own"), speed='"15000 rpm +- 4 %"', more=few)
     _, model, found = uncertain_ranking(study, 64, jobs=2)

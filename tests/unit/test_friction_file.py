@@ -17,6 +17,7 @@ from separatrix.pocket_contact import PocketConditions
 from separatrix.ranking.friction import first_seen, friction_seen, frictions_seen
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
+from separatrix.uncertainty import training
 
 SMALL = """
 [[test]]
@@ -157,6 +158,24 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
     assert known_friction(seen) == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
     given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
     assert first_seen(given) is given
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # not tested as the pocket rubs
+@pytest.mark.parametrize("verb", [["stability"], ["simulate"], ["rank"], ["sensitivity", "--samples", "64"]])
+def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsys, monkeypatch, verb):
+    """That at 5 m/s, as above, in the cage that stands in its answer."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(training, "RUNS", 64)
+    first, second = (f'0.08\nslip_speed = "{v} m/s"' for v in (1, 5))
+    one = SMALL.split("[[test]]")[1]
+    text = f"[[test]]{one.replace('0.08', first)}" + 2 * f"[[test]]{one.replace('0.08', second)}".replace(
+        "0.08", "0.12"
+    )
+    few = '[stability]\nkicks = ["0.5 m/s"]\nruns = 2\nduration = "10 ms"\nrestitution_factors = [0.5]'
+    path = study(tmp_path, text, few)
+    assert main([verb[0], str(path), *verb[1:], "--json", "--jobs", "1"]) == 0
+    cage = json.loads(capsys.readouterr().out)["cage"]
+    assert cage["ball_cage_friction"] == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
 
 
 def test_the_cage_asks_for_what_its_pocket_rubs():

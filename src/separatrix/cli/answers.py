@@ -196,8 +196,10 @@ def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
 def stability(study: Study, work: Work) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.chain import cage_state, known_friction
+    from separatrix.ranking.friction import first_seen
     from separatrix.stability import stability_curve
 
+    study = first_seen(study)
     state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
     curve = stability_curve(state.cage, study.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
@@ -233,7 +235,8 @@ def rank(study: Study, work: Work) -> RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
     from separatrix.chain import cage_state
     from separatrix.ranking import rank, ranking_question
+    from separatrix.ranking.friction import first_seen
 
     first = ranking_question(study).candidates[0]
-    state = cage_state(study, material=first.material)
+    state = cage_state(first_seen(study, marked=True), material=first.material)
     return RankingAnswer(cage=state, ranking=rank(study, jobs=work.jobs, progress=work.progress))

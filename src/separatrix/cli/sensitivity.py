@@ -110,11 +110,12 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     """
     from separatrix.chain import cage_state
     from separatrix.ranking import ranking_question
+    from separatrix.ranking.friction import first_seen
     from separatrix.sensitivity import evidence_of
     from separatrix.uncertainty.answer import uncertain_ranking
 
     first = ranking_question(study).candidates[0]
-    state = cage_state(study, material=first.material, friction=0.0)
+    state = cage_state(first_seen(study, marked=True), material=first.material)
     stop = Event()
     stage = stages(work.progress)
     ranking, model, found = uncertain_ranking(study, samples, jobs=work.jobs, stage=stage, stop=stop)

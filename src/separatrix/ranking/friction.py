@@ -103,13 +103,13 @@ def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Cand
     return replace(candidate, friction=friction)
 
 
-def first_seen(study: Study) -> Study:
+def first_seen(study: Study, *, marked: bool = False) -> Study:
     """The study with its first candidate's frictions as the cage sees them, where it has no friction itself.
 
     Warns
     -----
     ValidityWarning
-        The friction is asked for where nothing was tested.
+        The friction is asked for where nothing was tested; not if that is `marked` in the answer.
     """
     if study.cage is None or study.cage.ball_cage_friction is not None or study.ranking is None:
         return study
@@ -118,7 +118,8 @@ def first_seen(study: Study) -> Study:
     if friction is None or friction.law is None:
         return study
     seen = candidate_seen(study, first, cage_state(study, friction=0.0))
-    _say_what_was_not_tested(first.name, name, seen.friction[name])
+    if not marked:
+        _say_what_was_not_tested(first.name, name, seen.friction[name])
     return replace(study, ranking=replace(study.ranking, candidates=(seen, *others)))
 
 
