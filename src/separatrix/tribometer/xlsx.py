@@ -222,7 +222,7 @@ def _columns(
     if not needed:
         return [np.empty(0)] * len(kinds)
     read = {n: kinds[n] for n in needed}
-    raw = plain_numbers(sheet.workbook, sheet.name, first, list(kinds), read)
+    raw = plain_numbers(sheet.workbook, sheet.name, first, list(kinds), read, sheet.form.missing)
     found = _Columns(sheet, read).read(rows) if raw is None else raw
     found = {n: _as_shown(values, kinds[n]) for n, values in found.items()}
     nothing = np.broadcast_to(np.float64(np.nan), (len(found[needed[0]]),))
