@@ -87,7 +87,9 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
     assert len(rows) == 5
     for one in rows:
         assert sum(one[f"probability_{part}"] for part in PARTS) == pytest.approx(1.0, abs=1e-12)
-        for part in (*PARTS, "best"):
+        alone = one is row(found, "vacuum", "A")
+        assert (one["probability_best"] is None) == alone
+        for part in PARTS if alone else (*PARTS, "best"):
             low, value, high = (one[f"probability_{part}{end}"] for end in ("_low", "", "_high"))
             assert 0.0 <= low <= value <= high <= 1.0
         assert one["restitution_threshold_low"] <= one["restitution_threshold"]
@@ -130,7 +132,37 @@ def test_what_was_not_measured_is_missing(capsys):
     missing = row(found, "vacuum", "B")
     assert missing["reason"] == "not measured in vacuum"
     assert missing["friction"] is missing["probability_stable"] is missing["tie_group"] is None
-    assert row(found, "vacuum", "A")["probability_best"] == 1.0
+
+
+def test_one_that_is_measured_alone_is_best_among_none(capsys):
+    """Null in row and convergence, missing in the dataset, said in text and picture."""
+    assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    (line,) = [line for line in text.split("Over all")[0].splitlines() if "0.150 (" in line]
+    assert line.split()[-1] == "none"
+    found = json.loads((Path("here") / "sensitivity.json").read_text())
+    for end in ("", "_low", "_high"):
+        assert row(found, "vacuum", "A")[f"probability_best{end}"] is None
+        assert row(found, "air", "A")[f"probability_best{end}"] > 0.9
+    alone = {one["environment"] for one in found["convergence"] if one["probability_best"] is None}
+    assert alone == {"vacuum"}
+    data = results.load(Path("here") / "sensitivity.nc")
+    assert np.isnan(data["convergence_probability_best"].sel(place="vacuum").values.astype(float)).all()
+    drawn = dict(figures("sensitivity", data))
+    words = {one.get_text() for one in drawn["sensitivity-probabilities"].findobj(Text)}
+    assert "none: no other measured" in words
+    labels = {one.get_text() for one in drawn["sensitivity-convergence"].findobj(Text)}
+    assert "stable: A, vacuum" in labels
+    assert not any(label.startswith("best") and label.endswith("vacuum") for label in labels)
+
+
+def test_a_study_with_one_candidate_has_nobody_to_be_best_among(capsys):
+    """The last sentence says that it is the only one; every picture is drawn."""
+    Path("small.toml").write_text(SMALL[: SMALL.rindex("[[ranking")])
+    assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "In short: A is the only one measured over all environments; it is stable with" in text
+    assert len(list(Path("here").glob("*.png"))) >= 5
 
 
 def test_each_friction_has_the_scatter_that_is_known_of_it(capsys):

@@ -188,6 +188,8 @@ def _best(axes: Axes, part: dict[str, Array]) -> None:
                   capsize=2.0)  # fmt: skip
     axes.set_xlim(0, 1)
     axes.set_yticks([])
+    for place in places[leading & ~np.isfinite(part["probability_best"])]:
+        axes.text(0.02, place, "none: no other measured", va="center", fontsize=6.5, color=GREY)
 
 
 def convergence(data: xr.Dataset) -> Figure:

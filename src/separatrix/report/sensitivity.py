@@ -38,7 +38,8 @@ LEGEND = paragraph(
     "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
     "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
     "samples lie. P(stable): at most one run in ten grows, from every kick; P(unstable): more than half "
-    "grow, from every kick; the rest is undecided. P(best): largest threshold of its environment."
+    "grow, from every kick; the rest is undecided. P(best): largest threshold of its environment; none where "
+    "no other was measured."
 )
 
 
@@ -111,7 +112,7 @@ def _row(row: Document, *, tied: bool) -> list[str]:
         f"{row['margin_low']:+.2f} to {row['margin_high']:+.2f}",
         _between(row, "probability_stable"),
         number(row["probability_unstable"], 2),
-        number(row["probability_best"], 2),
+        "none" if row["probability_best"] is None else number(row["probability_best"], 2),
     ]
 
 
@@ -357,9 +358,11 @@ def _in_short(document: Document) -> str:
         return "no candidate was measured."
     names = " and ".join(row["name"] for row in rows)
     first = rows[0]
-    tie = " cannot be told apart at the top" if len(rows) > 1 else " is best"
+    best = "is the only one measured" if first["probability_best"] is None else "is best"
+    tie = "cannot be told apart at the top" if len(rows) > 1 else best
     low, high = first["probability_stable_low"], first["probability_stable_high"]
+    who = "it" if first["probability_best"] is None else first["name"]
     return (
-        f"{names}{tie} over all environments; {first['name']} is stable with a probability of "
+        f"{names} {tie} over all environments; {who} is stable with a probability of "
         f"{number(first['probability_stable'], 2)} ({number(low, 2)} to {number(high, 2)})."
     )

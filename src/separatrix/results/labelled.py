@@ -45,7 +45,7 @@ def _arranged(arrays: Mapping[str, tuple[tuple[str, ...], Any, dict[str, str]]])
     """Return the variables that a verb arranges by itself, with their own units."""
     found = {}
     for name, (dims, values, attributes) in arrays.items():
-        found[name] = _variable(name, dims, values)
+        found[name] = _variable(name, dims, values, attributes.get("units"))
         found[name].attrs |= attributes
     return found
 
@@ -76,8 +76,8 @@ def _provenance(document: Mapping[str, Any]) -> dict[str, Any]:
     return {k: v if type(v) in (str, int) else json.dumps(v) for k, v in attributes.items()}
 
 
-def _variable(name: str, dims: tuple[str, ...], values: Any) -> xr.Variable:
-    unit = unit_of(name)
+def _variable(name: str, dims: tuple[str, ...], values: Any, unit: str | None = None) -> xr.Variable:
+    unit = unit or unit_of(name)
     return xr.Variable(dims, _array(values, is_text=unit is None), attrs={"units": unit} if unit else {})
 
 

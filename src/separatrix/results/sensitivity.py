@@ -135,9 +135,9 @@ def _table(
     key: str,
     count: int,
 ) -> Any:
-    """Return lists of numbers by place and material; None where a material was not measured."""
+    """Return lists of numbers by place and material; None where a material was not measured, or alone."""
     none = [None] * count
-    return [[rows.get((place, name), {}).get(key, none) for name in materials] for place in places]
+    return [[rows.get((place, name), {}).get(key) or none for name in materials] for place in places]
 
 
 def _lines(boundaries: Sequence[Document]) -> Arrays:

@@ -19,7 +19,16 @@ from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.reason import not_measured
 from separatrix.study import Study
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, VERDICTS, Boundary, own_draws
-from separatrix.uncertainty.model import Case, Evaluated, Factors, Model, Stage, uncertain_model
+from separatrix.uncertainty.model import (
+    Case,
+    Evaluated,
+    Factors,
+    Model,
+    Stage,
+    by_environment,
+    lacks_alone,
+    uncertain_model,
+)
 from separatrix.uncertainty.pocket_friction import as_pockets_see
 from separatrix.uncertainty.probability import (
     best_credit,
@@ -164,14 +173,6 @@ def _credit(cases: Sequence[Case], threshold: Array) -> Array:
     return found
 
 
-def by_environment(cases: Sequence[Case]) -> dict[str, list[int]]:
-    """Columns of the cases of each environment, "" for all of them together."""
-    groups: dict[str, list[int]] = {}
-    for i, case in enumerate(cases):
-        groups.setdefault(case.environment, []).append(i)
-    return groups
-
-
 def _answer(model: Model, draws: Draws, factors: Factors, found: Sampled) -> UncertainRanking:
     asked = ranking_question(model.study)
     rows = _rows(model, found)
@@ -301,7 +302,7 @@ def _row(model: Model, place: int, numbers: dict[str, Any]) -> UncertainMaterial
         name=case.candidate,
         friction_scatter_assumed=assumed,
         extrapolation=tuple(dict.fromkeys(words)),
-        **numbers,
+        **(numbers | lacks_alone(model.cases).get(place, {})),
     )
 
 
@@ -336,7 +337,7 @@ def _convergence(model: Model, found: Sampled) -> list[ConvergenceRow]:
     ends = sizes(len(found.values))
     stable = np.stack([prefix_counts(one == STABLE, ends) for one in found.verdicts])
     best = np.stack([prefix_counts(one, ends) for one in found.orders])
-    parts: dict[str, list[Array]] = {}
+    parts: dict[str, list[Any]] = {}
     for name, counts in (("probability_stable", stable), ("probability_best", best)):
         columns = [mixed_interval(counts[:, k], size) for k, size in enumerate(ends)]
         for suffix, place in (("", 0), ("_low", 1), ("_high", 2)):
@@ -346,7 +347,7 @@ def _convergence(model: Model, found: Sampled) -> list[ConvergenceRow]:
         ConvergenceRow(
             name=case.candidate,
             environment=case.environment,
-            **{key: value[i] for key, value in parts.items()},
+            **({key: value[i] for key, value in parts.items()} | lacks_alone(model.cases).get(i, {})),
         )
         for i, case in enumerate(model.cases)
     ]

@@ -335,6 +335,20 @@ def cases_of(study: Study, inputs: Sequence[UncertainInput]) -> Iterator[Case]:
             yield _case(candidate, "", place, measured, keys)
 
 
+def by_environment(cases: Sequence[Case]) -> dict[str, list[int]]:
+    """Columns of the cases of each environment, "" for all of them together."""
+    groups: dict[str, list[int]] = {}
+    for i, case in enumerate(cases):
+        groups.setdefault(case.environment, []).append(i)
+    return groups
+
+
+def lacks_alone(cases: Sequence[Case]) -> dict[int, dict[str, None]]:
+    """What a case lacks that is alone in its environment: it has nothing to be best among."""
+    keys = ("probability_best", "probability_best_low", "probability_best_high")
+    return {own[0]: dict.fromkeys(keys) for own in by_environment(cases).values() if len(own) == 1}
+
+
 def _case(
     candidate: Candidate, name: str, place: int, environments: Sequence[str], keys: Sequence[str]
 ) -> Case:

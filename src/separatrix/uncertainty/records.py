@@ -58,7 +58,7 @@ class UncertainMaterial:
     probability_lowest_friction : float or None
         Probability that no other candidate has a lower friction; None if no other was measured [-].
     probability_best, probability_best_low, probability_best_high : float or None
-        Probability of the largest threshold, and its 95 % interval [-].
+        Probability of the largest threshold, and its 95 % interval; None if no other was measured [-].
     tie_group : int or None
         1 for the leader and those that cannot be told from it.
     reason : str
@@ -117,8 +117,8 @@ class ConvergenceRow:
         Which one.
     probability_stable, probability_stable_low, probability_stable_high : ndarray
         With their 95 % interval, shape (size,) [-].
-    probability_best, probability_best_low, probability_best_high : ndarray
-        The same [-].
+    probability_best, probability_best_low, probability_best_high : ndarray or None
+        The same; None if no other was measured [-].
     """
 
     name: str
@@ -126,9 +126,9 @@ class ConvergenceRow:
     probability_stable: Array
     probability_stable_low: Array
     probability_stable_high: Array
-    probability_best: Array
-    probability_best_low: Array
-    probability_best_high: Array
+    probability_best: Array | None
+    probability_best_low: Array | None
+    probability_best_high: Array | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
