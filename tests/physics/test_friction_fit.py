@@ -289,6 +289,18 @@ def test_a_material_with_few_tests_borrows_scatter_from_the_others():
     assert not beside.of("B", ENVIRONMENT).at().assumed_scatter
 
 
+def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
+    """However well they agree the next cage scatters by a guess, and that is said; a second sample tells."""
+    one = [measured(x, sample="s1") for x in (0.1000, 0.1001, 0.1002)]
+    alone = fit_friction(one).of("A", ENVIRONMENT)
+    assert alone.scatter_source == "assumed"
+    assert alone.at().assumed_scatter
+    assert alone.scatter > 0.05  # 9 %, less what repeats on the sample tell
+    two = fit_friction([*one, measured(0.11, sample="s2")]).of("A", ENVIRONMENT)
+    assert two.scatter_source == "its own tests"
+    assert not two.at().assumed_scatter
+
+
 PAPER = {"gaseous nitrogen, Chromex 40": 0.667, "gaseous nitrogen, 440C": 0.99999,
          "liquid nitrogen, Chromex 40": 1.0, "liquid nitrogen, 440C": 0.9938}  # fmt: skip
 """Armalon's probability of lowest friction with 9 % scatter, by a trapezoid rule of 4001 points."""

@@ -35,6 +35,11 @@ class LinearModel:
         return int(len(self.y) - self.design.shape[1])
 
     @property
+    def tells_scatter(self) -> bool:
+        """Whether the tests tell how samples scatter: two samples, and a test beyond the coefficients."""
+        return self.freedom > 0 and bool(np.any(self.sample != self.sample[0]))
+
+    @property
     def has_repeats(self) -> bool:
         """Whether some sample was tested more than once."""
         return bool(np.bincount(self.sample).max() > 1)

@@ -195,7 +195,7 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     chosen = {key: covariates(group) for key, group in grouped.items()}
     models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
     found = posteriors(list(models.values()), default_scatter)
-    some = any(model.freedom > 0 for model in models.values())
+    some = any(model.tells_scatter for model in models.values())
     return FrictionFit(
         groups={
             key: _material_fit(grouped[key], chosen[key], posterior, _source(models[key], some))
@@ -218,7 +218,7 @@ def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearMod
 
 
 def _source(model: LinearModel, some: bool) -> str:
-    if model.freedom > 0:
+    if model.tells_scatter:
         return OWN
     return OTHERS if some else ASSUMED
 
