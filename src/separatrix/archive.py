@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.units import printable
 
 ZIP_MAGIC = b"PK\x03\x04"
@@ -88,8 +89,8 @@ def open_archive(path: Path, label: str | None = None) -> Archive:
         encrypted or nested members, two of one name, or a name that leads out of the container.
     """
     name = printable(path.name) if label is None else label
+    size = size_of(path, name)
     try:
-        size = path.stat().st_size
         with path.open("rb") as file:
             _check_ends(file.read(4), _tail(file, size), name)
         with zipfile.ZipFile(path) as container:
@@ -97,7 +98,7 @@ def open_archive(path: Path, label: str | None = None) -> Archive:
     except InputError:  # which is a ValueError, too
         raise
     except OSError as error:
-        raise InputError(name, f"cannot be read: {os.strerror(error.errno or 0)}") from None
+        raise unreadable(name, error) from None
     except (zipfile.BadZipFile, NotImplementedError, ValueError, struct.error) as error:
         raise _damaged(name, printable(str(error))) from None
     _check_directory(infos, size, name)

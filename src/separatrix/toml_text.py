@@ -5,15 +5,14 @@ Shared by the files that people write: studies, materials, friction.
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.units import printable, shown
 
 MOST_BYTES = 256 * 1024
@@ -108,17 +107,11 @@ def _plain(key: str) -> str:
 def read_text(path: Path, kind: Kind = STUDY) -> str:
     """Text of a file: a regular one, small enough for its kind, UTF-8, without NUL or endless lines."""
     label = label_of(path)
+    size_of(path, path_text(path))
     try:
-        mode = path.stat().st_mode
-        raw = (
-            _bytes(path, kind.most_bytes) if stat.S_ISREG(mode) else None
-        )  # a pipe or a device may never end
-    except (OSError, ValueError) as error:
-        reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
-        raise InputError(path_text(path), f"cannot be read: {reason[:1].lower()}{reason[1:]}") from None
-    if raw is None:
-        rule = "is a folder, not a file" if stat.S_ISDIR(mode) else "is not a regular file"
-        raise InputError(path_text(path), rule)
+        raw = _bytes(path, kind.most_bytes)
+    except OSError as error:
+        raise unreadable(path_text(path), error) from None
     if len(raw) > kind.most_bytes:
         raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
     return _decoded(raw, label)

@@ -146,8 +146,8 @@ def test_a_dataset_survives_its_file(tmp_path):
 def test_what_is_no_result_is_refused(tmp_path):
     """A missing file, and one that is something else."""
     (tmp_path / "b.nc").write_text("no")
-    for name in ("a.nc", "b.nc"):
-        with pytest.raises(InputError, match="is not a readable netCDF result"):
+    for name, rule in (("a.nc", "cannot be read: no such file"), ("b.nc", "is not a readable netCDF result")):
+        with pytest.raises(InputError, match=rule):
             results.load(tmp_path / name)
 
 

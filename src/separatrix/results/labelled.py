@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of
 from separatrix.results import maps, sensitivity
 from separatrix.results.labels import GROUPS, JOINED, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
@@ -63,6 +64,8 @@ def load(path: Path | str) -> xr.Dataset:
     InputError
         There is no such file, or it is not one of ours.
     """
+    path = Path(path)
+    size_of(path, str(path))
     try:
         with xr.open_dataset(path, engine="h5netcdf") as data:
             return data.load()

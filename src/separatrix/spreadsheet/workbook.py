@@ -9,6 +9,7 @@ from pathlib import Path
 
 from separatrix.archive import Archive, open_archive
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.spreadsheet.cells import Row, format_kind
 from separatrix.spreadsheet.parts import SAVE, Attributes, Guard, feed, local, parse, parser_of, relations
 from separatrix.spreadsheet.sheet import SheetReader, TextReader
@@ -108,13 +109,12 @@ def open_workbook(path: Path) -> Workbook:
 
 
 def _refuse_other_kinds(path: Path, label: str) -> None:
+    size_of(path, label)
     try:
-        if not path.is_file():  # a pipe may never end
-            raise InputError(label, "is not a regular file")
         with path.open("rb") as file:
             start = file.read(8)
     except OSError as error:
-        raise InputError(label, f"cannot be read: {error.strerror}") from None
+        raise unreadable(label, error) from None
     if start == _OLE_MAGIC:
         rule = "is an .xls workbook of the old kind, or has a password"
         raise InputError(label, rule, cure="Save it as .xlsx without a password.")

@@ -11,6 +11,7 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.tribometer.dialect import MISSING, SEPARATORS
 from separatrix.tribometer.encoding import ENCODINGS
 from separatrix.tribometer.log import MEANINGS
@@ -144,17 +145,17 @@ def _pattern(text: str, where: str) -> str:
 
 
 def _document(path: Path, name: str) -> dict[str, Any]:
+    size = size_of(path, name)
+    if size > LARGEST:
+        raise InputError(name, "is too large for a column map", "", f"{size} bytes")
     try:
-        if path.stat().st_size > LARGEST:
-            raise InputError(name, "is too large for a column map", "", f"{path.stat().st_size} bytes")
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise InputError(name, "must be UTF-8 text") from None
     except tomllib.TOMLDecodeError as problem:
         raise InputError(name, "is not valid TOML", "", printable(str(problem), 200)) from None
-    except OSError as problem:
-        reason = problem.strerror or type(problem).__name__
-        raise InputError(name, "cannot be read as a column map", "", reason) from None
+    except OSError as error:
+        raise unreadable(name, error) from None
 
 
 def _columns(given: Mapping[str, Any], where: str) -> dict[str, ColumnChoice]:

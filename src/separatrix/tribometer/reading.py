@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.tribometer.column_map import ColumnMap
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, ColumnRead, RawLog, RawTable, Wanted
@@ -95,17 +96,14 @@ def _range(log: RawLog, abscissa: str) -> str:
 
 
 def _content(path: Path, name: str) -> bytes:
+    size = size_of(path, name)
+    if size > LARGEST:
+        cure = "Split it, or log at a lower rate."
+        raise InputError(name, "is too large: at most 2 GB", "", f"{size / 1e9:.1f} GB", cure)
     try:
-        size = path.stat().st_size
-        if path.is_dir():
-            raise InputError(name, "is a folder", cure="Name the files in it.")
-        if size > LARGEST:
-            cure = "Split it, or log at a lower rate."
-            raise InputError(name, "is too large: at most 2 GB", "", f"{size / 1e9:.1f} GB", cure)
-        raw = path.read_bytes()
-    except OSError as problem:
-        raise InputError(name, "cannot be read", "", problem.strerror or type(problem).__name__) from None
-    return raw
+        return path.read_bytes()
+    except OSError as error:
+        raise unreadable(name, error) from None
 
 
 def _from_workbook(file: _File) -> tuple[RawLog, ...]:

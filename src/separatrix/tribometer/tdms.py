@@ -17,6 +17,7 @@ import numpy as np
 
 from separatrix.archive import MOST_BYTES
 from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
 from separatrix.tribometer.log import RawTable
 from separatrix.tribometer.names import header_parts, ranks
 from separatrix.units import Array, printable, shown
@@ -46,16 +47,16 @@ def read_tables(path: Path) -> list[RawTable]:
     """
     label = printable(path.name)
     tdms = _library(label)
+    size = size_of(path, label)
     try:
         with path.open("rb") as file:
-            size = path.stat().st_size
             _check_segments(file, size, label)
             with tdms.TdmsFile.open(file) as content:
                 _check_scales(content, label)
                 groups = content.groups()
                 tables = [table for group in groups for table in _tables(group, content, label, size)]
     except OSError as error:
-        raise InputError(label, f"cannot be read: {error.strerror}") from None
+        raise unreadable(label, error) from None
     except InputError:
         raise
     except _DAMAGED as error:
