@@ -14,6 +14,7 @@ from separatrix.cli import main
 from separatrix.cli.tribometer import file_name
 from separatrix.friction_file import read_friction
 from separatrix.study_file import read_study
+from separatrix.tribometer.column_map import column_map
 
 MAP = """
 [test]
@@ -149,7 +150,10 @@ WRONG = {
         ("cannot be written; got File name too long",),
     ),
     "a log of a name too long": (["x" * 300], ("cannot be read: file name too long",)),
-    "out in a file": (["a.csv", "--map", "map.toml", "--out", "a.csv/f.toml"], ("cannot be written",)),
+    "out in a file": (
+        ["a.csv", "b.csv", "--map", "map.toml", "--out", "a.csv/f.toml"],
+        ("cannot be written",),
+    ),
     "plots is a file": (["a.csv", "--plots", "b.csv"], ("b.csv cannot be written",)),
     "plots is empty": (["a.csv", "--plots", " "], ("--plots needs the name of a folder",)),
     "running-in in newtons": (["a.csv", "--run-in", "5 N"], ("--run-in must be a time", "got")),
@@ -185,7 +189,7 @@ def test_an_interrupt_leaves_no_friction_file(logs):
     """Ctrl-C while many logs are read: one line, status 130, nothing half written."""
     for i in range(60):
         log(logs / f"c{i}.csv", 0.1, i, rows=3000)
-    files = [f"c{i}.csv" for i in range(60)]
+    files = ["b.csv", *(f"c{i}.csv" for i in range(60))]
     call = [sys.executable, "-m", "separatrix", "tribometer", *files, "--map", "map.toml", "--out", "f.toml"]
     process = subprocess.Popen(call, cwd=logs, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60.0
@@ -235,3 +239,33 @@ def test_a_wrong_end_of_running_in_in_a_column_map_is_refused(logs, capsys, end,
         file.write(f"run_in_end = {end}\n")
     assert main(["tribometer", "a.csv", "b.csv", "--map", "map.toml"]) == 2
     assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("more", [[], ["--json"]], ids=["text", "json"])
+def test_a_pattern_that_fits_no_file_is_said_and_with_out_refused(logs, capsys, more):
+    """Mistyped, it would lose a sample in silence; who looks at one log of many is only told."""
+    with (logs / "map.toml").open("a") as file:
+        file.write('[files."zzz*.csv"]\nsample = "S1"\n')
+    rule = 'map.toml: [files."zzz*.csv"] must fit a file that is named; got a.csv, b.csv.'
+    command = ["tribometer", "a.csv", "b.csv", "--map", "map.toml", *more]
+    assert main(command) == 0
+    said = capsys.readouterr().out
+    notes = json.loads(said)["notes"] if more else [" ".join(said.split())]
+    assert rule in notes[0]
+    assert len(notes) == 1
+    (logs / "a.csv").write_text("no log")  # the map is refused before any log is read
+    assert main([*command, "--out", "friction.toml"]) == 2
+    line = f"separatrix: {rule} Mend it, or leave it out of this column map.\n"
+    assert capsys.readouterr().err == line
+    assert names(logs) == ["a.csv", "b.csv", "map.toml"]
+
+
+def test_a_pattern_that_fits_one_of_the_files_is_not_complained_of(logs, capsys):
+    """By its name or by its folder too; one that fits none of many names three of them."""
+    assert main(["tribometer", "a.csv", "b.csv", "--map", "map.toml", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["notes"] == []
+    chosen = column_map({"files": {"one/*.csv": {"sample": "A"}, "x*": {"sample": "B"}}}, "map.toml")
+    (wrong,) = chosen.unused([logs / "one" / f"{n}.csv" for n in range(5)])
+    assert 'map.toml: [files."x*"] must fit a file that is named; got 0.csv, 1.csv, 2.csv and 2 more' in str(
+        wrong
+    )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from separatrix.cli.console import answer, progress_bar
 from separatrix.cli.files import staged, writable_folder
-from separatrix.errors import InputError
+from separatrix.errors import InputError, together
 from separatrix.units import printable, shown
 
 if TYPE_CHECKING:
@@ -62,6 +62,9 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
     """
     _refuse(paths, options)
     chosen = _column_map(options.map)
+    idle = [] if chosen is None else chosen.unused(paths)
+    if idle and options.out is not None:
+        raise together(idle)
     with contextlib.ExitStack() as folders:
         if options.out is not None:
             folders.enter_context(writable_folder(options.out.parent))
@@ -69,7 +72,7 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
             folders.enter_context(writable_folder(options.plots_folder))
         reductions = _reductions(paths, chosen, _reduction_options(options), options)
         tests = _tests(reductions, required=options.out is not None)
-        _deliver(reductions, tests, options)
+        _deliver(reductions, tests, options, [f"{one} With --out this is refused." for one in idle])
     return 0
 
 
@@ -208,7 +211,10 @@ def _tests(reductions: Sequence[Reduction], *, required: bool) -> list[FrictionT
 
 
 def _deliver(
-    reductions: Sequence[Reduction], tests: list[FrictionTest] | None, options: TribometerOptions
+    reductions: Sequence[Reduction],
+    tests: list[FrictionTest] | None,
+    options: TribometerOptions,
+    notes: Sequence[str],
 ) -> None:
     """Write the files, then the answer."""
     from separatrix.friction_fit import fit_friction
@@ -217,7 +223,8 @@ def _deliver(
 
     fit: FrictionFit | None = None if tests is None else fit_friction(tests)
     written = None if options.out is None else str(options.out)
-    found = document([r.log for r in reductions], [r.test for r in reductions], fit, written=written)
+    logs, reduced = [r.log for r in reductions], [r.test for r in reductions]
+    found = document(logs, reduced, fit, written=written, notes=notes)
     if options.plots_folder is not None:
         _draw(reductions, options, options.plots_folder)
     if options.out is not None and tests is not None:

@@ -150,7 +150,8 @@ def _components(document: Document) -> list[str]:
 
 def _where(document: Document, plots: str | None) -> list[str]:
     written = document["friction_file"]
-    lines = [f"{written} is written; a study reads it with [ranking] friction."] if written else []
+    lines = [paragraph(note) for note in document["notes"]]
+    lines += [f"{written} is written; a study reads it with [ranking] friction."] if written else []
     lines += [f"A page of plots for each test is in {plots}/"] if plots else []
     if not written:
         lines.append("No friction file was asked for: --out friction.toml writes one.")

@@ -15,7 +15,12 @@ Document = dict[str, Any]
 
 
 def tribometer(
-    logs: Sequence[RawLog], tests: Sequence[TestFriction], fit: FrictionFit | None, *, written: str | None
+    logs: Sequence[RawLog],
+    tests: Sequence[TestFriction],
+    fit: FrictionFit | None,
+    *,
+    written: str | None,
+    notes: Sequence[str] = (),
 ) -> Document:
     """Return the answer as plain data: SI units, None where something is absent.
 
@@ -27,6 +32,8 @@ def tribometer(
         None where some test does not say what slid on what.
     written : str or None
         Path of the friction file, if one is written.
+    notes : sequence of str
+        What is to be said of all of them together.
     """
     from separatrix import __version__
 
@@ -34,6 +41,7 @@ def tribometer(
         "separatrix_version": __version__,
         "verb": "tribometer",
         "friction_file": written,
+        "notes": list(notes),
         "files": [_file(log) for log in logs],
         "tests": [_test(test) for test in tests],
         "fits": [] if fit is None else [_fit(*key, one) for key, one in fit.groups.items()],

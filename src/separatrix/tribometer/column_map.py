@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path, PurePosixPath
@@ -100,11 +100,17 @@ class ColumnMap:
         A pattern is one of the file's name, or of the names of its last folders, too: ``"run 1/*.csv"``.
         """
         found = dict(self.test)
-        place = PurePosixPath(path.absolute().as_posix())
         for pattern, given in self.files.items():
-            if place.match(pattern):
+            if _fits(path, pattern):
                 found |= given
         return found
+
+    def unused(self, paths: Iterable[Path]) -> list[InputError]:
+        """What is wrong with each pattern that fits none of the files."""
+        files = list(paths)
+        idle = [p for p in self.files if not any(_fits(path, p) for path in files)]
+        rule, cure = "must fit a file that is named", "Mend it, or leave it out of this column map."
+        return [InputError(_section(self.source, p), rule, "", _listed(files), cure) for p in idle]
 
 
 def read_column_map(path: str | Path) -> ColumnMap:
@@ -132,10 +138,24 @@ def column_map(document: Mapping[str, Any], source: str = "column map") -> Colum
         files={
             _pattern(pattern, where): _conditions(_table(given, where), where)
             for pattern, given in parts["files"].items()
-            for where in [f'{source}: [files."{printable(pattern)}"]']
+            for where in [_section(source, pattern)]
         },
         source=source,
     )
+
+
+def _fits(path: Path, pattern: str) -> bool:
+    return PurePosixPath(path.absolute().as_posix()).match(pattern)
+
+
+def _section(source: str, pattern: str) -> str:
+    return f'{source}: [files."{printable(pattern)}"]'
+
+
+def _listed(files: Sequence[Path]) -> str:
+    """Names of the first files, and how many more there are."""
+    more = f" and {len(files) - 3} more" if len(files) > 3 else ""
+    return ", ".join(printable(path.name, 60) for path in files[:3]) + more
 
 
 def _pattern(text: str, where: str) -> str:
