@@ -143,6 +143,10 @@ WRONG = {
     "a wrong map": (["a.csv", "--map", "wrong.toml"], ("wrong.toml", "materal")),
     "two wrong of three": (["x.csv", "a.csv", "y.csv"], ("x.csv", "1 other file is refused too")),
     "out exists": (["a.csv", "--map", "map.toml", "--out", "map.toml"], ("map.toml exists already",)),
+    "out exists, whatever the logs": (
+        ["no.csv", "--map", "no.toml", "--out", "map.toml"],
+        ("map.toml exists",),
+    ),
     "out is no toml": (["a.csv", "--out", "friction.csv"], ("--out must name a file that ends in .toml",)),
     "out is empty": (["a.csv", "--out", ""], ("--out needs the name of a file",)),
     "a name too long": (

@@ -127,6 +127,23 @@ def test_the_template_is_what_the_verb_new_writes(tmp_path, capsys):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]
 
 
+@pytest.mark.parametrize("name", ["n.xlsx", "link.xlsx", "n.toml"])
+def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monkeypatch, capsys, name):
+    """A workbook takes a while to build; a link that leads nowhere is a name that is taken, too."""
+    for taken in ("n.xlsx", "n.toml"):
+        (tmp_path / taken).write_text("mine")
+    (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
+    built = []
+    monkeypatch.setattr(run, "_new_study", lambda *, excel: built.append(excel) or b"")
+    path = tmp_path / name
+    assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
+    line = f"separatrix: {path} exists already. It was not touched; name a new file.\n"
+    assert capsys.readouterr().err == line
+    assert built == []
+    assert (tmp_path / "n.xlsx").read_text() == (tmp_path / "n.toml").read_text() == "mine"
+    assert not (tmp_path / "nowhere.xlsx").exists()
+
+
 def test_the_template_says_what_the_text_file_says(tmp_path):
     """Every key of the text is a row of its section's sheet, with a remark that is whole."""
     (tmp_path / "t.xlsx").write_bytes(template_workbook())

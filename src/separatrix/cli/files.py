@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import tempfile
 import uuid
 from collections.abc import Iterator
@@ -79,6 +80,16 @@ def _cannot_write(path: Path, error: OSError) -> InputError:
     return InputError(f"--out {path}", f"cannot be written ({where}: {reason})", cure=cure)
 
 
+def refuse_existing(path: Path) -> None:
+    """Refuse the name of a new file that is taken, be it by a link that leads nowhere."""
+    if os.path.lexists(path):
+        raise _exists_already(path)
+
+
+def _exists_already(path: Path) -> InputError:
+    return InputError(str(path), "exists already", cure="It was not touched; name a new file.")
+
+
 def write_new(path: Path, content: bytes) -> None:
     """Write a file that must not exist yet.
 
@@ -91,6 +102,6 @@ def write_new(path: Path, content: bytes) -> None:
         with path.open("xb") as file:
             file.write(content)
     except FileExistsError as error:
-        raise InputError(str(path), "exists already", cure="It was not touched; name a new file.") from error
+        raise _exists_already(path) from error
     except OSError as error:
         raise InputError(str(path), f"cannot be written ({error.strerror or error})") from error

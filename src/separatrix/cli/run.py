@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, interrupted, progress_bar
-from separatrix.cli.files import staged, writable_folder, write_new
+from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
@@ -147,6 +147,7 @@ def make_study(path: Path, *, excel: bool, as_json: bool, quiet: bool) -> int:
         There is something of that name already, it cannot be written, or its name says otherwise.
     """
     _check_name(path, excel=excel)
+    refuse_existing(path)
     write_new(path, _new_study(excel=excel))
     if as_json:
         answer(json.dumps({"path": str(path)}) + "\n")
