@@ -285,7 +285,42 @@ def test_without_friction_a_landless_cage_at_rest_only_loses_energy(cage, seed):
 def test_the_ledger_closes(cage, seed):
     """Every source and sink is entered: what is left of the work done is rounding and quadrature."""
     runs = run_ensemble(cage, StabilitySettings(kicks=(1.0,), runs=2, duration=0.02, seed=seed))
-    assert runs.energy_imbalance.max() < 1e-7  # seen: 1e-8, of Hertz contacts, which begin a little late
+    assert runs.energy_imbalance.max() < 1e-9  # what is asked of it; 160 other cages: below 1e-10
+
+
+SLOW = PlanarCage(
+    mass=0.0203, moment_of_inertia=5.91e-6, ball_count=7, pitch_radius=0.0166, cage_speed=138.0,
+    inner_speed=330.0, outer_speed=0.0, pocket_clearance=5.2e-4, ball_cage_stiffness=1.81e7,
+    race_damping=238.0, ball_cage_friction=0.15, guidance=Guidance.BALL, unbalance=3.5e-7, gravity=9.81,
+    pocket_position_scatter=2.5e-5,
+)  # fmt: skip
+BALANCED = PlanarCage(
+    mass=0.031, moment_of_inertia=3.5e-5, ball_count=5, pitch_radius=0.0357, cage_speed=600.0,
+    inner_speed=1434.0, outer_speed=0.0, pocket_clearance=1.25e-4, ball_cage_stiffness=1.84e7,
+    race_damping=100.0, ball_cage_friction=0.38, guidance=Guidance.OUTER, land_clearance=3e-4,
+    land_friction=0.17, land_stiffness=2.6e7, land_restitution=0.12, land_count=2, land_out_of_round=8.5e-6,
+    land_lobes=3, pocket_position_scatter=5.6e-6,
+)  # fmt: skip
+OVAL = PlanarCage(
+    mass=0.018, moment_of_inertia=6.4e-5, ball_count=24, pitch_radius=0.072, cage_speed=1079.0,
+    inner_speed=2589.0, outer_speed=0.0, pocket_clearance=2.4e-4, ball_cage_stiffness=1.3e7,
+    race_damping=15000.0, ball_cage_friction=0.23, guidance=Guidance.INNER, gravity=9.81,
+    land_clearance=1.7e-4, land_friction=0.28, land_stiffness=5.6e6, land_restitution=0.36, land_count=2,
+    land_out_of_round=7.3e-6,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kick", [0.07, 0.2])
+@pytest.mark.parametrize(
+    "cage",
+    [SLOW, BALANCED, OVAL, replace(OVAL, hertz_coefficient=1.7e8)],
+    ids=["pockets yield as the cage creeps", "forces of four pockets balance", "far way to an oval land",
+         "Hertz pockets"],
+)  # fmt: skip
+def test_the_ledger_closes_where_steps_are_long(cage, kick):
+    """Motion so slow that its own series would allow steps in which pockets relax, or the land is passed."""
+    runs = run_ensemble(cage, StabilitySettings(kicks=(kick,), runs=8, duration=0.1, seed=3), jobs=2)
+    assert runs.energy_imbalance.max() < 1e-9  # seen: 3e-11; without a bound on the step up to 8e-4
 
 
 @few

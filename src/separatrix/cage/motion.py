@@ -73,10 +73,9 @@ from separatrix.cage.slots import (
     X,
     Y,
 )
+from separatrix.cage.step import longest_step
 from separatrix.compiled import inlined_kernel, inner_kernel, kernel
 
-PRECISION = 2.0**-34
-LONGEST = 1e6
 HOLD = 1e-9
 """Share by which the friction asked of a sticking land may pass what it can hold, by rounding."""
 
@@ -123,20 +122,6 @@ def load_state(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
     if p.hertz != 0.0:
         for i in range(count):
             w[0, BALLS + touch[LIST, i]] = pockets[PENETRATION, touch[LIST, i]]
-
-
-@inlined_kernel
-def step_length(p, w):  # type: ignore[no-untyped-def]
-    """Time for which the last terms of the series stay below `PRECISION` of the speeds."""
-    scale = PRECISION * (abs(w[0, VX]) + abs(w[0, VY]) + abs(w[0, W]) + p.slowest)
-    last = max(abs(w[ORDER, VX]), abs(w[ORDER, VY]), abs(w[ORDER, W]))
-    before = max(abs(w[ORDER - 1, VX]), abs(w[ORDER - 1, VY]), abs(w[ORDER - 1, W]))
-    h = LONGEST
-    if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / ORDER))
-    if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
-    return h
 
 
 @inlined_kernel
@@ -272,18 +257,6 @@ def change_pocket(p, pockets, touch, s, mode, hits, kind, ball):  # type: ignore
     mode[0] = kept
 
 
-@inlined_kernel
-def longest_step(p, w, s, land, left):  # type: ignore[no-untyped-def]
-    """Time for which the series may be used: their own, and up to the next time at which something is due."""
-    h = min(step_length(p, w), left)
-    if s[CLOCK] < p.ramp_time:
-        h = min(h, p.ramp_time - s[CLOCK])
-    if land == RELEASED or (land == CLEAR and p.roundness != 0.0):
-        # The distance of the centre has a series only for ways shorter than itself.
-        h = min(h, 0.2 * p.land_gap / (abs(w[0, VX]) + abs(w[0, VY]) + p.slowest))
-    return h
-
-
 @kernel
 def make_room(balls):  # type: ignore[no-untyped-def]
     """Arrays that `advance` works in."""
@@ -341,7 +314,7 @@ def advance(  # type: ignore[no-untyped-def]
         if pressed and land != STICK:
             for n in range(ORDER + 1):
                 w[n, SLIDING] = slide_speed(p, w, gx, gy, now, n)
-        h = longest_step(p, w, s, land, length - done)
+        h = longest_step(p, pockets, touch, w, s, count, land, now, length - done)
         rescale(p, w, pockets.shape[1], count, h, pressed)
         knots(w, X, Y + 1, knot)
         knots(w, S, S + 1, knot)
