@@ -285,7 +285,7 @@ def test_without_friction_a_landless_cage_at_rest_only_loses_energy(cage, seed):
 def test_the_ledger_closes(cage, seed):
     """Every source and sink is entered: what is left of the work done is rounding and quadrature."""
     runs = run_ensemble(cage, StabilitySettings(kicks=(1.0,), runs=2, duration=0.02, seed=seed))
-    assert runs.energy_imbalance.max() < 1e-9  # what is asked of it; 160 other cages: below 1e-10
+    assert runs.energy_imbalance.max() < 1e-9  # what is asked of it; 220 other cages: 3e-10
 
 
 SLOW = PlanarCage(
