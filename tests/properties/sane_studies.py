@@ -1,0 +1,263 @@
+"""Random studies that an engineer could have written, each made by its seed: bearings of three classes.
+
+`sane_text` is a whole study with cage and two candidates, for `rank`; `bearing_text` is bearing, operation
+and film alone, under every kind of load and at any speed, for the equilibrium.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from separatrix.study import Study
+from separatrix.study_file import read_study
+
+LOADS = ("axial", "radial", "combined", "moment")
+MOST_SPEED = 60_000.0
+"""Of `bearing_text` [rpm]."""
+
+MOST_DN = 2.5e6
+"""Bore times speed of `bearing_text` [mm rpm]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Class:
+    """Ranges of a class of bearings: a pair is (low, high), a tuple of names is a choice."""
+
+    ball_diameter: tuple[float, float]
+    """[mm]."""
+
+    contact_angle: tuple[float, float]
+    """[deg]."""
+
+    conformity: tuple[float, float]
+    dn: tuple[float, float]
+    """Bore times speed [mm rpm]."""
+
+    stribeck: tuple[float, float]
+    """Load of a ball over its diameter squared [N/mm2]; 1 is about 0.9 GPa, 8 about 1.8 GPa."""
+
+    materials: tuple[tuple[str, str], ...]
+    """Of balls and rings."""
+
+    film: str
+    thickness: tuple[float, float]
+    """[um]."""
+
+    race_friction: tuple[float, float]
+    environment: str
+    """Lines of [operation]."""
+
+
+CLASSES = {
+    "turbopump": Class(
+        ball_diameter=(6.0, 14.0),
+        contact_angle=(15.0, 30.0),
+        conformity=(0.515, 0.535),
+        dn=(0.3e6, 2.0e6),
+        stribeck=(2.0, 8.0),
+        materials=(("440C", "440C"), ("Si3N4", "440C")),
+        film="PTFE transfer film",
+        thickness=(0.1, 1.0),
+        race_friction=(0.05, 0.2),
+        environment='temperature = "77 K"\nfluid = "liquid nitrogen"',
+    ),
+    "wheel": Class(
+        ball_diameter=(3.0, 8.0),
+        contact_angle=(12.0, 20.0),
+        conformity=(0.52, 0.57),
+        dn=(0.03e6, 0.25e6),
+        stribeck=(0.2, 1.5),
+        materials=(("52100", "52100"), ("440C", "440C")),
+        film="MoS2 sputtered dense",
+        thickness=(0.3, 1.5),
+        race_friction=(0.02, 0.1),
+        environment='temperature = "20 degC"',
+    ),
+    "gyro": Class(
+        ball_diameter=(1.0, 3.2),
+        contact_angle=(18.0, 35.0),
+        conformity=(0.515, 0.56),
+        dn=(0.05e6, 0.3e6),
+        stribeck=(0.5, 3.0),
+        materials=(("52100", "52100"), ("440C", "440C")),
+        film="MoS2 sputtered dense",
+        thickness=(0.3, 1.0),
+        race_friction=(0.02, 0.1),
+        environment='temperature = "60 degC"',
+    ),
+}
+
+
+def sane_study(seed: int, folder: Path, *, duration: str = "", runs: int = 0, name: str = "") -> Study:
+    """The study of `sane_text`, read from a file that is written into a folder."""
+    return _read(sane_text(seed, duration=duration, runs=runs, name=name), f"sane-{seed}", folder)
+
+
+def bearing_study(seed: int, folder: Path) -> Study:
+    """The study of `bearing_text`, read from a file that is written into a folder."""
+    return _read(bearing_text(seed), f"bearing-{seed}", folder)
+
+
+def _read(text: str, name: str, folder: Path) -> Study:
+    path = folder / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_study(path)
+
+
+def sane_text(seed: int, *, duration: str = "", runs: int = 0, name: str = "") -> str:
+    """A study for `rank`: bearing, film, cage and two candidates, a smooth and a rough one.
+
+    Parameters
+    ----------
+    seed : int
+        Of the study: the same seed is the same text.
+    duration : str
+        Of a run, with its unit; the default of [stability] if absent.
+    runs : int
+        Per kick and friction; the default of [stability] if 0. Kicks are always left out.
+    name : str
+        Class of the bearing; by the seed if absent.
+    """
+    rng = np.random.default_rng((17, seed))
+    name = name or str(rng.choice(sorted(CLASSES)))
+    of_class, geometry = CLASSES[name], _geometry(CLASSES[name], rng)
+    axial = _axial_load(of_class, geometry, rng)
+    radial = axial * rng.uniform(0.05, 0.4) if rng.random() < 0.5 else 0.0
+    speed = math.copysign(rng.uniform(*of_class.dn) / geometry["bore"], rng.random() - 0.15)
+    settings = [f'duration = "{duration}"'] * bool(duration) + [f"runs = {runs}"] * bool(runs)
+    return "\n".join(
+        [
+            f'title = "{name} bearing, seed {seed}"',
+            *_bearing(of_class, geometry, rng),
+            *_operation(speed, axial, radial, 0.0),
+            of_class.environment,
+            *_film(of_class, rng),
+            *_cage(geometry, rng),
+            *_candidates(of_class, rng),
+            *(["[stability]", *settings] if settings else []),
+            "",
+        ]
+    )
+
+
+def bearing_text(seed: int) -> str:
+    """A study for `bearing`, with one of `LOADS`, at a speed from 0 to the least of the limits above.
+
+    Pure radial loads and moments leave balls unloaded. A moment comes with the axial load of a preload.
+    """
+    rng = np.random.default_rng((19, seed))
+    name, kind = str(rng.choice(sorted(CLASSES))), LOADS[seed % len(LOADS)]
+    of_class, geometry = CLASSES[name], _geometry(CLASSES[name], rng)
+    most = min(MOST_SPEED, MOST_DN / geometry["bore"])
+    speed = most * rng.choice([0.0, rng.uniform(0.0, 0.05), rng.random(), rng.random()])
+    axial = _axial_load(of_class, geometry, rng)
+    radial = axial * rng.uniform(0.2, 2.0) if kind in ("radial", "combined") else 0.0
+    moment = axial * geometry["pitch"] * 1e-3 * rng.uniform(0.02, 0.4) if kind == "moment" else 0.0
+    return "\n".join(
+        [
+            f'title = "{name} bearing, {kind} load, seed {seed}"',
+            *_bearing(of_class, geometry, rng),
+            *_operation(speed, axial if kind != "radial" else 0.0, radial, moment),
+            of_class.environment,
+            *_film(of_class, rng),
+            "",
+        ]
+    )
+
+
+def _geometry(of_class: Class, rng: np.random.Generator) -> dict[str, float]:
+    """Ball, pitch circle, bore and angle [mm, deg]: balls fill 60 to 80 % of the pitch circle."""
+    ball = rng.uniform(*of_class.ball_diameter)
+    count = int(rng.integers(8, 18))
+    pitch = count * ball / (math.pi * rng.uniform(0.6, 0.8))
+    angle = rng.uniform(*of_class.contact_angle)
+    bore = pitch - ball * rng.uniform(1.4, 1.8)
+    return {"ball": ball, "count": count, "pitch": pitch, "bore": bore, "angle": angle}
+
+
+def _axial_load(of_class: Class, geometry: dict[str, float], rng: np.random.Generator) -> float:
+    """Axial load [N] that gives the balls the class's load."""
+    ball_load = rng.uniform(*of_class.stribeck) * geometry["ball"] ** 2
+    return float(geometry["count"] * ball_load * math.sin(math.radians(geometry["angle"])))
+
+
+def _bearing(of_class: Class, geometry: dict[str, float], rng: np.random.Generator) -> list[str]:
+    ball, ring = of_class.materials[rng.integers(len(of_class.materials))]
+    low, high = of_class.conformity
+    return [
+        "[bearing]",
+        f'ball_diameter = "{geometry["ball"]:.4f} mm"',
+        f'pitch_diameter = "{geometry["pitch"]:.3f} mm"',
+        f"ball_count = {geometry['count']}",
+        f'contact_angle = "{geometry["angle"]:.2f} deg"',
+        f"inner_conformity = {rng.uniform(low, high):.4f}",
+        f"outer_conformity = {rng.uniform(low, high):.4f}",
+        f'bore = "{geometry["bore"]:.3f} mm"',
+        f'ball_material = "{ball}"',
+        f'ring_material = "{ring}"',
+    ]
+
+
+def _operation(speed: float, axial: float, radial: float, moment: float) -> list[str]:
+    lines = ["[operation]", f'inner_speed = "{speed:.1f} rpm"', f'axial_load = "{axial:.3f} N"']
+    lines += [f'radial_load = "{radial:.3f} N"'] * bool(radial)
+    return lines + [f'moment = "{moment:.6f} N m"'] * bool(moment)
+
+
+def _film(of_class: Class, rng: np.random.Generator) -> list[str]:
+    """A film, or bare races in a fifth of the studies."""
+    friction = rng.uniform(*of_class.race_friction)
+    thickness = rng.uniform(*of_class.thickness)
+    lines = ["[film]", f"race_friction = {friction:.4f}"]
+    if rng.random() < 0.2:
+        return lines
+    return [*lines, f'material = "{of_class.film}"', f'thickness = "{thickness:.3f} um"']
+
+
+def _cage(geometry: dict[str, float], rng: np.random.Generator) -> list[str]:
+    """A polymer ring of plausible section, less its pockets; plays of 1 to 5 % of a ball."""
+    ball, pitch, count = geometry["ball"], geometry["pitch"], geometry["count"]
+    height, width = ball * rng.uniform(0.3, 0.5), ball * rng.uniform(1.5, 2.0)
+    volume = math.pi * pitch * width * height - count * math.pi / 4.0 * ball**2 * height
+    mass = volume * rng.uniform(1200.0, 2000.0) * 1e-6
+    gap = pitch * math.sin(math.pi / count) - ball
+    lines = [
+        "[cage]",
+        f'mass = "{mass:.5f} g"',
+        f"material = {_polymer(rng)}",
+        f'pocket_clearance = "{min(ball * rng.uniform(0.01, 0.05), gap / 3.0):.5f} mm"',
+        f'pocket_shape = "{rng.choice(["square", "square", "cylindrical"])}"',
+        f'gravity = "{rng.choice([0.0, 9.81]):g} m/s2"',
+    ]
+    guidance = rng.choice(["outer", "inner", "ball"], p=[0.5, 0.35, 0.15])
+    lines.append(f'guidance = "{guidance}"')
+    if guidance == "ball":
+        return lines
+    return [
+        *lines,
+        f'land_clearance = "{ball * rng.uniform(0.01, 0.05):.5f} mm"',
+        f"land_friction = {rng.uniform(0.05, 0.25):.3f}",
+        f'land_stiffness = "{10 ** rng.uniform(6.0, 7.0):.4g} N/m"',
+        f"land_restitution = {rng.uniform(0.3, 0.8):.2f}",
+    ]
+
+
+def _polymer(rng: np.random.Generator) -> str:
+    modulus, ratio = 10 ** rng.uniform(0.3, 1.0), rng.uniform(0.3, 0.42)
+    return f'{{ elastic_modulus = "{modulus:.2f} GPa", poisson_ratio = {ratio:.2f} }}'
+
+
+def _candidates(of_class: Class, rng: np.random.Generator) -> list[str]:
+    """Two materials, tested in one environment: the one of the study."""
+    where = "liquid nitrogen, 440C" if "liquid nitrogen" in of_class.environment else "vacuum"
+    lines: list[str] = []
+    for name, low, high in (("smooth", 0.04, 0.15), ("rough", 0.2, 0.45)):
+        mean = rng.uniform(low, high)
+        test = f"{{ mean = {mean:.3f}, standard_deviation = {mean * 0.1:.4f}, count = 4 }}"
+        lines += ["[[ranking.candidates]]", f'name = "{name}"', f'friction = {{ "{where}" = {test} }}']
+        lines.append(f"material = {_polymer(rng)}")
+    return lines
