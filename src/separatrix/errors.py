@@ -37,22 +37,13 @@ class InputError(SeparatrixError, ValueError):
         return f"{text} {self.cure}".rstrip()
 
 
-def together(problems: Sequence[InputError], longest: int = 380) -> InputError:
-    """One error, on one line, for everything wrong at once; its `problems` holds each.
-
-    What does not fit in `longest` characters is counted, not printed.
-    """
-    if len(problems) == 1:
-        return problems[0]
-    text = ""
-    for i, problem in enumerate(problems):
-        more = f"; {problem}" if text else str(problem)
-        if text and len(text) + len(more) > longest:
-            text += f"; and {len(problems) - i} more"
-            break
-        text = text.removesuffix(".") + more
-    error = InputError(text.removesuffix("."), "")
-    error.problems = tuple(problems)
+def together(problems: Sequence[InputError]) -> InputError:
+    """One error for everything wrong at once, a line each; its `problems` holds each."""
+    single = [one for problem in problems for one in problem.problems or (problem,)]
+    if len(single) == 1:
+        return single[0]
+    error = InputError("\n".join(map(str, single)).removesuffix("."), "")
+    error.problems = tuple(single)
     return error
 
 

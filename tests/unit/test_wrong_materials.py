@@ -1,4 +1,4 @@
-"""Wrong library files, and wrong calls of `materials`: one line each, exit status 2, nothing written."""
+"""Wrong library files and wrong calls of `materials`: a line a mistake, exit status 2, nothing written."""
 
 import os
 from pathlib import Path
@@ -207,7 +207,7 @@ def test_a_wrong_library_is_refused_in_one_line(what, tmp_path):
     message = str(refused.value)
     assert words in message
     assert message.startswith("ours.toml")
-    assert message.isprintable()
+    assert message.replace("\n", "").isprintable()
     assert len(message) < 500
     assert [p.name for p in tmp_path.iterdir()] == ["ours.toml"]
 
@@ -254,7 +254,7 @@ def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(what, tmp_path
     with pytest.raises(InputError) as refused:
         read_study(tmp_path / "case.toml")
     assert words in str(refused.value)
-    assert str(refused.value).isprintable()
+    assert str(refused.value).replace("\n", "").isprintable()
 
 
 def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
@@ -349,7 +349,7 @@ def state_of(folder):
 
 
 @pytest.mark.parametrize("what", CALLS)
-def test_a_wrong_call_is_one_line_and_writes_nothing(what, folder, capsys):
+def test_a_wrong_call_writes_nothing(what, folder, capsys):
     """Exit status 2, nothing on standard output, no file made or changed."""
     if "state" in what:
         pytest.importorskip("CoolProp")
@@ -358,7 +358,7 @@ def test_a_wrong_call_is_one_line_and_writes_nothing(what, folder, capsys):
     assert main(["materials", *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.count("\n") == 1
+    assert all(line.startswith("separatrix: ") for line in err.splitlines())
     assert words in err
     assert state_of(folder) == before
 

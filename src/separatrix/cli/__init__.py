@@ -22,7 +22,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 answered, 1 a fault of ours, 2 a wrong input (one line on standard error), 130 interrupted.
+        0 answered, 1 a fault of ours, 2 a wrong input (on standard error a line for each mistake),
+        130 interrupted.
     """
     os.environ.setdefault(BLAS_THREADS, "1")  # read when numpy is first imported, below
     try:

@@ -316,7 +316,8 @@ def run_command_line(arguments: Sequence[str] | None) -> int:
         complain(_usage(error.format_message()))
         return WRONG_INPUT
     except SeparatrixError as error:
-        complain(str(error))
+        for line in str(error).split("\n"):
+            complain(line)
         return WRONG_INPUT if isinstance(error, ValueError | LookupError) else FAULT
     return int(status or ANSWERED)
 

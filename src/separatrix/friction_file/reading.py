@@ -15,7 +15,7 @@ from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ra
 from separatrix.units import parse, printable, shown
 
 MOST_TESTS = 10_000
-MOST_PROBLEMS = 20
+MOST_PROBLEMS = 100
 KIND = Kind(
     noun="a friction file",
     most_bytes=8 * 1024 * 1024,
@@ -35,7 +35,7 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
     Raises
     ------
     InputError
-        Everything that is wrong with it, on one line: place, rule, value, cure.
+        Everything that is wrong with it, a line each: place, rule, value, cure.
     """
     data, lines = read_toml(path, KIND)
     label = label_of(path)

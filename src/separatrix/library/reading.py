@@ -26,7 +26,7 @@ SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
 """Section of a file -> kind of its records."""
 
 MOST_RECORDS = 2000
-MOST_PROBLEMS = 20
+MOST_PROBLEMS = 100
 TOP = ("title",)
 
 

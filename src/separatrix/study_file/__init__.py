@@ -23,7 +23,7 @@ def read_study(study: str | Path) -> Study:
     Raises
     ------
     InputError
-        Everything that is wrong with the file, on one line: place, rule, value, cure.
+        Everything that is wrong with the file, a line each: place, rule, value, cure.
 
     Warns
     -----

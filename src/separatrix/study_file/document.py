@@ -18,7 +18,7 @@ SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "
 MOST_BASES = 8
 WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
 WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
-MOST_PROBLEMS = 20
+MOST_PROBLEMS = 100
 """After so many mistakes a file is read no further."""
 
 _ALTERNATIVES = {

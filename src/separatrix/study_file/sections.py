@@ -96,7 +96,7 @@ def build_study(document: Document, name: str) -> Study:
     Raises
     ------
     InputError
-        With everything that is wrong, on one line.
+        With everything that is wrong, a line each.
     """
     title = attempt(document, _title, document, name)
     library = attempt(document, library_of, document)
@@ -108,12 +108,20 @@ def build_study(document: Document, name: str) -> Study:
         rule = f"lacks the section{'s'[: len(missing) > 1]} {', '.join(missing)}"
         document.problems.append(InputError(document.label, rule))
     if document.problems:
-        raise together(document.problems)
+        raise _refusal(document)
     try:
         study = Study(name=name, title=title or name, origins=_origins(document), **parts)
     except InputError as error:
         raise relocated(document, error) from None
     return _with_distributions(document, replace(study, records=used_records(library, document)))
+
+
+def _refusal(document: Document) -> InputError:
+    """Everything that is wrong; one line more where there were too many mistakes to read on."""
+    if len(document.problems) > MOST_PROBLEMS:
+        rule = f"was not read to its end: it has more than {MOST_PROBLEMS} mistakes"
+        document.problems.append(InputError(document.label, rule))
+    return together(document.problems)
 
 
 def _with_distributions(document: Document, study: Study) -> Study:
