@@ -11,7 +11,15 @@ from separatrix.errors import InputError
 from separatrix.units import format_quantity, unit_of
 
 if TYPE_CHECKING:
-    from separatrix.study import BallBearing, CageDesign, Candidate, Operation, RankingQuestion, Study
+    from separatrix.study import (
+        BallBearing,
+        CageDesign,
+        Candidate,
+        Operation,
+        RankingQuestion,
+        StabilitySettings,
+        Study,
+    )
 
 
 LANDLESS = "has no meaning for a cage guided by its balls"
@@ -83,6 +91,15 @@ def rising(
     falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
     if falls:
         yield InputError(where, "must increase, none twice", unit.replace("-", ""), falls[0])
+
+
+def reference_among_kicks(settings: StabilitySettings) -> _check.Problems:
+    """The reference kick is one of the kicks, if there are any."""
+    reference, kicks = settings.reference_kick, settings.kicks
+    if reference is not None and kicks and reference not in kicks:
+        known = ", ".join(f"{kick:g}" for kick in kicks)
+        rule, cure = f"must be one of the kicks, {known} m/s", "Add it to kicks, or leave kicks out."
+        yield _check.problem(settings, "reference_kick", rule, cure)
 
 
 def nothing_measured(candidate: Candidate) -> _check.Problems:

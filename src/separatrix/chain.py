@@ -10,7 +10,8 @@ import warnings
 from dataclasses import dataclass, fields
 from typing import Any
 
-from separatrix.cage import PlanarCage
+from separatrix.cage import PlanarCage, settings_for
+from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
 from separatrix.creep import Creep, contact_creep
 from separatrix.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.errors import InputError, ValidityWarning
@@ -24,7 +25,7 @@ from separatrix.restitution import (
     hertz_coefficient_for,
     restitution,
 )
-from separatrix.study import CageDesign, Material, PocketContact, Race, Study
+from separatrix.study import CageDesign, Material, PocketContact, Race, StabilitySettings, Study
 from separatrix.traction import TractionCurve, film_compliance, traction_curve
 from separatrix.units import (
     MetrePerSecond,
@@ -32,6 +33,7 @@ from separatrix.units import (
     NewtonPerMetre,
     NewtonPerMetre1_5,
     Radian,
+    RadianPerSecond,
     Ratio,
     format_quantity,
 )
@@ -60,6 +62,11 @@ class BearingState:
     inner: RaceContact
     outer: RaceContact
 
+    @property
+    def cage_speed(self) -> RadianPerSecond:
+        """Mean orbital speed of the balls [rad/s]."""
+        return mean_speed(self.equilibrium.orbital_speed)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TractionState:
@@ -83,12 +90,14 @@ class RestitutionState:
 class CageState:
     """The cage that moves in the plane, after everything before it.
 
-    `orbital_share` is the share of the variance of the balls' orbital speeds that the cage's harmonics hold
-    [-]; None where all balls run alike, as under an axial load.
+    `stability` has numbers for the kicks where the study has defaults. `orbital_share` is the share of the
+    variance of the balls' orbital speeds that the cage's harmonics hold [-]; None where all balls run alike,
+    as under an axial load.
     """
 
     restitution: RestitutionState
     cage: PlanarCage
+    stability: StabilitySettings
     orbital_share: Ratio | None = None
 
 
@@ -174,8 +183,8 @@ def restitution_state(
         If it is known already.
     """
     design = cage_design(study)
-    stiffness, source = pocket_stiffness(study, material)
     links = traction or traction_state(study)
+    stiffness, source = pocket_stiffness(study, links.bearing.cage_speed, material)
     damping = (
         contact_damping(curve.slope, at.load, at.rolling_speed)
         for curve, at in ((links.inner, links.bearing.inner), (links.outer, links.bearing.outer))
@@ -212,7 +221,26 @@ def cage_design(study: Study) -> CageDesign:
     return study.cage
 
 
-def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[NewtonPerMetre, str]:
+def impact_speed(study: Study, cage_speed: RadianPerSecond) -> MetrePerSecond:
+    """Speed of a blow at which a Hertz pocket's stiffness is taken: the study's, or 2.5 pocket speeds.
+
+    It is a property of the bearing, whatever the kicks are.
+    """
+    design = cage_design(study)
+    if design.impact_speed is not None:
+        return design.impact_speed
+    return REFERENCE * pocket_speed(cage_speed, design.pocket_clearance)
+
+
+def stability_settings(study: Study) -> StabilitySettings:
+    """Return the study's settings with numbers for its kicks; without a cage there is nothing to kick."""
+    speed = pocket_speed(bearing_state(study).cage_speed, cage_design(study).pocket_clearance)
+    return with_kicks(study.stability, speed)
+
+
+def pocket_stiffness(
+    study: Study, cage_speed: RadianPerSecond, material: Material | None = None
+) -> tuple[NewtonPerMetre, str]:
     """k_BC and where it comes from: the study, or Hertz with the modulus of the cage's material.
 
     Raises
@@ -228,7 +256,7 @@ def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[Ne
         raise InputError(
             "[cage] ball_cage_stiffness", "is missing, and no cage material is known", cure=NO_STIFFNESS
         )
-    speed = study.stability.middle_kick
+    speed = impact_speed(study, cage_speed)
     stiffness = ball_pocket_stiffness(
         study.bearing.ball_diameter,
         study.bearing.ball_material,
@@ -236,7 +264,7 @@ def pocket_stiffness(study: Study, material: Material | None = None) -> tuple[Ne
         cage_mass=design.mass,
         impact_speed=speed,
     )
-    return stiffness, f"Hertz, ball on a flat wall of {wall.name} at {speed:g} m/s"
+    return stiffness, f"Hertz, ball on a flat wall of {wall.name} at {speed:.3g} m/s"
 
 
 def cage_state(
@@ -265,13 +293,13 @@ def cage_state(
         moment_of_inertia=inertia,
         ball_count=study.bearing.ball_count,
         pitch_radius=radius,
-        cage_speed=mean_speed(found.orbital_speed),
+        cage_speed=links.traction.bearing.cage_speed,
         inner_speed=study.operation.inner_speed,
         outer_speed=study.operation.outer_speed,
         ball_cage_stiffness=links.restitution.ball_cage_stiffness,
         race_damping=links.restitution.race_damping,
         ball_cage_friction=pocket_friction(study) if friction is None else friction,
-        hertz_coefficient=_hertz_coefficient(study, links.restitution.ball_cage_stiffness),
+        hertz_coefficient=_hertz_coefficient(study, links),
         orbital_cosines=waves.cosines,
         orbital_sines=waves.sines,
         ramp_time=study.operation.ramp_time,
@@ -279,7 +307,8 @@ def cage_state(
         **_as_designed(design),
     )
     _say_if_pushed_round(cage)
-    return CageState(restitution=links, cage=cage, orbital_share=waves.share)
+    settings = settings_for(study.stability, cage)
+    return CageState(restitution=links, cage=cage, stability=settings, orbital_share=waves.share)
 
 
 _COMPUTED = {"moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"}
@@ -291,15 +320,16 @@ def _as_designed(design: CageDesign) -> dict[str, Any]:
     return {name: getattr(design, name) for name in names}
 
 
-def _hertz_coefficient(study: Study, stiffness: NewtonPerMetre) -> NewtonPerMetre1_5 | None:
-    """Hertz's K behind the chain's stiffness: equal energy and depth in a blow at the middle kick.
+def _hertz_coefficient(study: Study, links: RestitutionState) -> NewtonPerMetre1_5 | None:
+    """Hertz's K behind the chain's stiffness: equal energy and depth in a blow at the impact speed.
 
-    A stiffness that came from a material by Hertz at that kick gives the material's own K back.
+    A stiffness that came from a material by Hertz at that speed gives the material's own K back.
     """
     design = cage_design(study)
     if design.pocket_contact is PocketContact.LINEAR:
         return None
-    return hertz_coefficient_for(stiffness, design.mass, study.stability.middle_kick)
+    speed = impact_speed(study, links.traction.bearing.cage_speed)
+    return hertz_coefficient_for(links.restitution.ball_cage_stiffness, design.mass, speed)
 
 
 def _say_if_pushed_round(cage: PlanarCage) -> None:

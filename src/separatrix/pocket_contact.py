@@ -27,7 +27,7 @@ class PocketConditions:
     """Conditions of the rubbing contact of ball and pocket.
 
     `slip_speed` is the mean over the balls, between `slip_speed_low` and `slip_speed_high`. The pressures are
-    those of the strongest moment of a blow of the whole cage at the middle kick; `pressure` is the mean over
+    those of the strongest moment of a blow of the whole cage at the impact speed; `pressure` is the mean over
     the contact, two thirds of `max_pressure`.
     """
 
@@ -60,11 +60,11 @@ def pocket_conditions(
     damping_ratio : float
         Of the blow, from the chain: the races yield and take force from it [-].
     impact_speed : float
-        Of the cage, the middle kick [m/s].
+        Of the cage [m/s].
 
     Notes
     -----
-    The sliding of the whirl itself, at most the speed of the kick, is left out: it points across the ball's
+    The sliding of the whirl itself is left out: it points across the ball's
     sliding and changes it little.
     """
     speeds = sliding_speed(equilibrium.ball_spin, ball_diameter)

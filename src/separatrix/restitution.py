@@ -157,7 +157,7 @@ def ball_pocket_stiffness(
     cage_mass : float
         The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
     impact_speed : float
-        Speed of the blow, the middle kick in a study [m/s]. The stiffness goes as its power 2/5.
+        Speed of the blow, [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
 
     Notes
     -----

@@ -206,6 +206,9 @@ class CageDesign:
     pocket_clearance: Metre
     material: Material | None = None
     ball_cage_stiffness: NewtonPerMetre | None = None
+    impact_speed: MetrePerSecond | None = None
+    """Speed at which a Hertz pocket's stiffness is taken; by default 2.5 times the pocket speed."""
+
     ball_cage_friction: Ratio | None = None
     pocket_shape: PocketShape = PocketShape.SQUARE
     pocket_axial_clearance: Metre | None = None
@@ -231,6 +234,7 @@ class CageDesign:
         _check.settle(
             _check.positive(self, "mass", 1e-9, 1e4),
             _check.positive(self, "ball_cage_stiffness", 1.0, 1e12),
+            _check.positive(self, "impact_speed", 1e-6, 1e3),
             _check.between(self, "ball_cage_friction", 0.0, FRICTION_LIMIT),
             _check.one_of(self, "pocket_contact", PocketContact),
             *_cage_rules.pocket_fields(self),
@@ -254,9 +258,15 @@ def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilitySettings:
-    """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen."""
+    """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen.
 
-    kicks: tuple[MetrePerSecond, ...] = (0.1, 0.5, 2.0)
+    Without kicks they scale with the bearing; `cage.kicks.settings_for` puts numbers in their place.
+    """
+
+    kicks: tuple[MetrePerSecond, ...] = ()
+    reference_kick: MetrePerSecond | None = None
+    """The kick of critical friction and threshold: one of the kicks, or what default kicks scale with."""
+
     runs: int = 64
     duration: Second = 0.3
     ball_scatter: Ratio = 0.3
@@ -265,18 +275,22 @@ class StabilitySettings:
 
     def __post_init__(self) -> None:
         _check.settle(
-            _rules.rising(self, "kicks", LEAST_KICK, MOST_KICK, most=20, hint=NO_KICK),
+            _rules.rising(self, "kicks", LEAST_KICK, MOST_KICK, least=0, most=20, hint=NO_KICK),
+            _check.positive(self, "reference_kick", 1e-6, 1e3, hint=NO_KICK),
             _check.whole(self, "runs", 1, 1_000_000),
             _check.positive(self, "duration", 1e-9, 1e4, hint="Some tenths of a second show the motion."),
             _check.between(self, "ball_scatter", 0.0, 1.0),
             _rules.rising(self, "restitution_factors", 0.0, 1.0, least=0, most=1000),
             _check.whole(self, "seed", 0, 2**63 - 1),
         )
+        _check.settle(_rules.reference_among_kicks(self))
 
     @property
     def middle_kick(self) -> MetrePerSecond:
-        """The kick at which stiffness, critical friction and threshold are taken; of two, the larger."""
-        return sorted(self.kicks)[len(self.kicks) // 2]
+        """The reference kick of settings whose defaults have numbers (`cage.kicks.settings_for`)."""
+        if self.reference_kick is None:
+            raise InputError("StabilitySettings.reference_kick", "is not known before the cage's speed is")
+        return self.reference_kick
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -42,7 +42,7 @@ WHOLE = ""
 
 RADIAL_CLEARANCE = "bearing.radial_clearance"
 MOST_DISTRIBUTIONS = 50
-SETTINGS = ("stability.runs", "stability.seed")
+SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
 """Numbers that say how an answer is made, not what it is of."""
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from separatrix.cage import settings_for
 from separatrix.chain import (
     bearing_state,
     cage_state,
@@ -18,7 +19,7 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.report.cage import chain_facts
 from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.results import documents
-from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape
+from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape, StabilitySettings
 from separatrix.study_file import read_study
 
 STUDY = read_study("cryogenic-turbopump")
@@ -60,12 +61,12 @@ def test_a_study_without_a_cage_is_refused():
 def test_an_unknown_pocket_stiffness_is_refused_with_the_cure():
     """Neither a stiffness nor a material to compute it from."""
     with pytest.raises(InputError, match=r"ball_cage_stiffness is missing.*elastic_modulus"):
-        pocket_stiffness(cage(ball_cage_stiffness=None, material=None))
+        pocket_stiffness(cage(ball_cage_stiffness=None, material=None), 0.0)
 
 
-def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_middle_kick():
+def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_impact_speed():
     """A given stiffness wins; else the candidate's material, else the cage's."""
-    assert pocket_stiffness(STUDY, POLYMER) == (3e6, "given in the study")
+    assert pocket_stiffness(STUDY, 0.0, POLYMER) == (3e6, "given in the study")
     expected = ball_pocket_stiffness(
         STUDY.bearing.ball_diameter,
         STUDY.bearing.ball_material,
@@ -74,10 +75,49 @@ def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_middle_kick():
         impact_speed=0.5,
     )
     other = replace(POLYMER, name="other", elastic_modulus=9e9)
-    assert pocket_stiffness(cage(ball_cage_stiffness=None, material=POLYMER))[0] == expected
-    stiffness, source = pocket_stiffness(cage(ball_cage_stiffness=None, material=other), POLYMER)
+    own = cage(ball_cage_stiffness=None, impact_speed=0.5, material=POLYMER)
+    assert pocket_stiffness(own, 600.0)[0] == expected
+    stiffness, source = pocket_stiffness(replace(own, cage=replace(own.cage, material=other)), 600.0, POLYMER)
     assert stiffness == expected
     assert source == "Hertz, ball on a flat wall of polymer at 0.5 m/s"
+
+
+def test_default_kicks_scale_with_the_bearing():
+    """0.5, 2.5 and 10 times cage speed times half the pocket clearance, to three digits."""
+    state = cage_state(STUDY)
+    speed = state.cage.cage_speed * STUDY.cage.pocket_clearance / 2
+    assert state.stability.kicks == pytest.approx([0.5 * speed, 2.5 * speed, 10 * speed], rel=5e-3)
+    assert state.stability.reference_kick == state.stability.kicks[1] == float(f"{2.5 * speed:.3g}")
+    assert settings_for(state.stability, state.cage) == state.stability
+
+
+def test_a_ball_set_at_rest_and_a_gripping_pocket_have_kicks():
+    """The pocket speed counts as at least 0.02 m/s."""
+    cage_at_rest = replace(cage_state(STUDY).cage, cage_speed=0.0)
+    found = settings_for(StabilitySettings(), cage_at_rest)
+    assert (found.kicks, found.reference_kick) == ((0.01, 0.05, 0.2), 0.05)
+
+
+@pytest.mark.parametrize(
+    ("given", "kicks", "reference"),
+    [
+        ({"kicks": (0.1, 0.5, 2.0)}, (0.1, 0.5, 2.0), 0.5),
+        ({"kicks": (0.1, 0.5, 2.0, 4.0)}, (0.1, 0.5, 2.0, 4.0), 0.5),
+        ({"kicks": (0.1, 2.0), "reference_kick": 2.0}, (0.1, 2.0), 2.0),
+        ({"reference_kick": 1.0}, (0.2, 1.0, 4.0), 1.0),
+    ],
+)
+def test_given_kicks_stay(given, kicks, reference):
+    """The reference is the given one, or the middle one of a list, the lower of two."""
+    found = settings_for(StabilitySettings(**given), cage_state(STUDY).cage)
+    assert (found.kicks, found.reference_kick) == (kicks, reference)
+
+
+def test_eta_does_not_move_with_the_list_of_kicks():
+    """Phenolic's eta fell from 0.42 to 0.28 with kicks of 2 and 3 m/s: a property of the bearing must not."""
+    soft = cage(ball_cage_stiffness=None, material=POLYMER)
+    hard = replace(soft, stability=StabilitySettings(kicks=(2.0, 3.0)))
+    assert restitution_state(hard).restitution == restitution_state(soft).restitution
 
 
 def test_the_cage_has_the_numbers_of_the_chain():
@@ -148,15 +188,15 @@ def test_the_cage_in_the_plane_takes_the_design_as_it_is():
 
 
 def test_hertz_contact_has_the_coefficient_of_the_material():
-    """Through the stiffness of equal energy and depth at the middle kick, and back; rounding."""
+    """Through the stiffness of equal energy and depth at the impact speed, and back; rounding."""
     soft = cage(ball_cage_stiffness=None, material=POLYMER, pocket_contact=PocketContact.HERTZ)
     expected = hertz_coefficient(STUDY.bearing.ball_diameter, STUDY.bearing.ball_material, POLYMER)
     assert cage_state(soft).cage.hertz_coefficient == pytest.approx(expected, rel=1e-12)
 
 
 def test_hertz_contact_behind_a_given_stiffness_stores_the_kick_as_deep():
-    """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of the middle kick."""
-    found = cage_state(cage(pocket_contact=PocketContact.HERTZ)).cage
+    """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of a blow at 0.5 m/s."""
+    found = cage_state(cage(impact_speed=0.5, pocket_contact=PocketContact.HERTZ)).cage
     K, energy = found.hertz_coefficient, 0.5 * found.mass * 0.5**2
     depth = (2.5 * energy / K) ** 0.4
     assert 0.8 * K * depth**0.5 == pytest.approx(3e6, rel=1e-12)  # rounding

@@ -272,7 +272,7 @@ EDITS = {
     "unknown guidance": (('guidance = "outer"', 'guidance = "both"'), ['"inner" or "ball"', 'got "both"']),
     "runs zero": (("runs = 64", "runs = 0"), ["[stability] runs must be a whole number from 1", "got 0"]),
     "runs half": (("runs = 64", "runs = 0.5"), ["[stability] runs must be a whole number", "got 0.5"]),
-    "kicks empty": (('["0.1 m/s", "0.5 m/s", "2 m/s"]', "[]"), ["[stability] kicks must hold 1 to 20"]),
+    "kicks empty": (('["0.1 m/s", "0.5 m/s", "2 m/s"]', "[]"), ["[stability] kicks must not be empty"]),
     "kicks not a list": (
         ('["0.1 m/s", "0.5 m/s", "2 m/s"]', '"0.5 m/s"'),
         ["[stability] kicks must be a list"],

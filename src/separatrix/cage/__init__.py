@@ -4,6 +4,7 @@ from separatrix.cage.ensemble import Ensemble, run_ensemble
 from separatrix.cage.hard import blow_restitution, run_hard_ensemble
 from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.interval import wilson_interval
+from separatrix.cage.kicks import settings_for
 from separatrix.cage.linear import (
     drift_law,
     linear_critical_friction,
@@ -33,6 +34,7 @@ __all__ = [
     "linear_whirl_frequency",
     "run_ensemble",
     "run_hard_ensemble",
+    "settings_for",
     "simulate",
     "turning_critical_friction",
     "wilson_interval",

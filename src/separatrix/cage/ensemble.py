@@ -18,6 +18,7 @@ from separatrix.cage.coefficients import (
     series_columns,
     time_unit,
 )
+from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk, series_of
 from separatrix.errors import InputError
@@ -162,7 +163,7 @@ def run_ensemble(
     """
     forward = cage.rotation_sense > 0
     cage = turned_forward(cage)
-    speeds, runs = chosen(settings, kicks, runs)
+    speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     check_length(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)
     evidence = np.zeros((len(speeds), runs, slots.EVIDENCE))

@@ -22,6 +22,7 @@ from separatrix.cage.ensemble import (
     random_starts,
     spread,
 )
+from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.slots import (
     DIRECTION,
@@ -260,7 +261,7 @@ def run_hard_ensemble(
     """
     _refuse(cage)
     cage = turned_forward(cage)
-    speeds, runs = chosen(settings, kicks, runs)
+    speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     mass = felt_mass(cage, may_turn=may_turn)
     eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution
     p = _walls(cage, may_turn=may_turn)

@@ -201,7 +201,7 @@ def stability(study: Study, work: Work) -> StabilityAnswer:
 
     study = first_seen(study)
     state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
-    curve = stability_curve(state.cage, study.stability, jobs=work.jobs, progress=work.progress)
+    curve = stability_curve(state.cage, state.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
 
 
@@ -211,12 +211,13 @@ def simulate(
     kick: MetrePerSecond | None = None,
     run: int = 0,
 ) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the middle kick."""
+    """Follow one run of the ensemble, by default the first from the reference kick."""
     from separatrix.cage import linear_whirl_frequency, simulate
     from separatrix.chain import cage_state
     from separatrix.ranking.friction import first_seen
 
-    state, settings = cage_state(first_seen(study)), study.stability
+    state = cage_state(first_seen(study))
+    settings = state.stability
     speed = settings.middle_kick if kick is None else kick
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(state.cage) * settings.duration
     history = simulate(

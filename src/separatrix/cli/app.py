@@ -56,7 +56,7 @@ StudyArgument = Annotated[
 MOST_JOBS = 1024
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
-KICK_HELP = 'For instance "0.5 m/s" [default: the middle kick of the study].'
+KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
 ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, and check some of them."
 EPILOGS = {
     "map": "An axis is a numeric key of the study file with its section, or restitution_factor, "

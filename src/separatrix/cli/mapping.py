@@ -100,7 +100,9 @@ def _refuse_twice(x: MapAxis, y: MapAxis) -> None:
 def _kick(text: str | None, study: Study, x: MapAxis, y: MapAxis) -> float:
     """Kick of every point; of no meaning where an axis is the kick."""
     if text is None:
-        return study.stability.middle_kick
+        from separatrix.chain import stability_settings
+
+        return stability_settings(study).middle_kick
     if "kick" in (x.parameter, y.parameter):
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     return kick_speed(text)

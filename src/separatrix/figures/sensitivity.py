@@ -81,7 +81,7 @@ def _line(axes: Axes, data: xr.Dataset, *, first: bool) -> None:
     axes.fill_between(eta, low, high, color=GREY, alpha=0.15, lw=0, label=label if first else None)
     ends = data["line_critical_friction_low"].values, data["line_critical_friction_high"].values
     axes.fill_between(eta, *ends, color=BLACK, alpha=0.3, lw=0, label="its 95 % interval" if first else None)
-    label = "half of the runs grow from the middle kick"
+    label = "half of the runs grow from the reference kick"
     axes.plot(eta, data["line_critical_friction"].values, color=BLACK, lw=1.0, label=label if first else None)
 
 

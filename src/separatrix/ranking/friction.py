@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
-from separatrix.chain import CageState, cage_state, traction_state
+from separatrix.chain import CageState, cage_state, impact_speed, traction_state
 from separatrix.errors import ValidityWarning
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.study import Candidate, Friction, Operation, Study
@@ -141,7 +141,7 @@ def conditions_of(study: Study, state: CageState) -> PocketConditions:
         ball_cage_stiffness=state.cage.ball_cage_stiffness,
         cage_mass=state.cage.mass,
         damping_ratio=state.restitution.restitution.damping_ratio,
-        impact_speed=study.stability.middle_kick,
+        impact_speed=impact_speed(study, state.cage.cage_speed),
     )
 
 

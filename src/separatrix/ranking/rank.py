@@ -124,9 +124,9 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         ),
         overall=_ranked(question, found, means, ""),
         stability=_curve(question, found, jobs),
-        kicks=study.stability.kicks,
-        runs=study.stability.runs,
-        duration=study.stability.duration,
+        kicks=question.settings.kicks,
+        runs=question.settings.runs,
+        duration=question.settings.duration,
         complete=found.complete,
     )
 
@@ -157,7 +157,7 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
     reference = states[asked.candidates[0].name].cage.ball_cage_stiffness
     factors, stop = threshold_factors(study.stability), Event()
     return _Question(
-        settings=study.stability,
+        settings=cages[reference].stability,
         cages=cages,
         tracers={
             k: Tracer(GrowthCounter(state.cage, study.stability, stop), factors, band=False)

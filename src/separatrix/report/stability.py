@@ -18,7 +18,7 @@ HEADERS = (
     "hard\nlimit",
 )
 LEGEND = "\n" + paragraph(
-    "critical friction: half the runs grow from the middle kick; fewer below, more above. band: nine in "
+    "critical friction: half the runs grow from the reference kick; fewer below, more above. band: nine in "
     "ten runs die from every kick below its low end, and grow from every kick above its high end. linear "
     "limit: no clearance. hard limit: walls as pockets, evenly spaced. Both for balls at rest."
 )

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from separatrix.cage import PlanarCage
+from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.drive import drift_rate_law, drifts
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
@@ -237,6 +237,7 @@ def curve_of_points(
     jobs: int = 1,
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
+    settings = settings_for(settings, cage)
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
     hard = work_through(lambda eta: hard_limit(cage, eta, settings), etas, jobs=jobs)

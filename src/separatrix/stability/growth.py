@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from threading import Event
 
-from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
+from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, settings_for, wilson_interval
 from separatrix.errors import ValidityWarning
 from separatrix.restitution import damping_for
 from separatrix.stability.pool import Stopped
@@ -69,7 +69,7 @@ class GrowthCounter:
     """
 
     def __init__(self, cage: PlanarCage, settings: StabilitySettings, stop: Event | None = None) -> None:
-        self.cage, self.settings, self.stop = cage, settings, stop or Event()
+        self.cage, self.settings, self.stop = cage, settings_for(settings, cage), stop or Event()
         self._counts: dict[tuple[Ratio | None, Ratio, MetrePerSecond, int, int], Count] = {}
 
     def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> PlanarCage:

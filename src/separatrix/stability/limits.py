@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from separatrix.cage import PlanarCage, RunOutcome, linear_critical_friction, run_hard_ensemble
+from separatrix.cage import PlanarCage, RunOutcome, linear_critical_friction, run_hard_ensemble, settings_for
 from separatrix.stability.growth import Count, cage_at
 from separatrix.stability.response import LADDER, Crossing, Response
 from separatrix.study import Guidance, StabilitySettings
@@ -56,6 +56,7 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
         return None
     if restitution_factor >= 1.0:
         return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
+    settings = settings_for(settings, cage)
     lasting = CROSSINGS * cage.pocket_clearance / settings.middle_kick
     still, even = hard_cage(cage), replace(settings, ball_scatter=0.0, duration=lasting)
 

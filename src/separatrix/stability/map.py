@@ -160,7 +160,7 @@ class PointFinder:
         of_traction = tuple(item for item in values if changes_traction(item[0]))
         try:
             study = self._varied(values)
-            return cage_state(study, traction=_found(self._traction(of_traction))), study.stability
+            return (state := cage_state(study, traction=_found(self._traction(of_traction)))), state.stability
         except (InputError, ConvergenceError) as error:
             return str(error)
 
@@ -327,4 +327,4 @@ def value_here(study: Study, state: CageState, name: str) -> float | None:
         return state.restitution.restitution.restitution_factor
     if name == FRICTION:
         return known_friction(study)
-    return study.stability.middle_kick if name == KICK else value_in(study, name)
+    return state.stability.middle_kick if name == KICK else value_in(study, name)

@@ -37,7 +37,7 @@ class CriticalFriction:
     restitution_factor : float
         eta [-].
     critical_friction : float or None
-        Friction at which half the runs grow from the middle kick [-].
+        Friction at which half the runs grow from the reference kick [-].
     critical_friction_low, critical_friction_high : float or None
         The sub-critical band: below the first nine in ten runs die from every kick, above the second nine
         in ten grow from every kick [-].
@@ -80,7 +80,7 @@ def critical_friction(
     band: bool = True,
     guess: Ratio | None = None,
 ) -> CriticalFriction:
-    """Friction at which half the runs grow from the middle kick, and the band over all kicks.
+    """Friction at which half the runs grow from the reference kick, and the band over all kicks.
 
     Parameters
     ----------
@@ -98,6 +98,7 @@ def critical_friction(
         A friction near the critical one, to save time; by default from the linear law.
     """
     counts = counter or GrowthCounter(cage, settings)
+    settings = counts.settings
     eta = own_restitution_factor(cage) if restitution_factor is None else restitution_factor
     start = linear_guess(counts, restitution_factor) if guess is None else guess
     responses = {

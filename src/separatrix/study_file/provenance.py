@@ -13,6 +13,8 @@ from separatrix.study import Candidate, Film, Friction, Material, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
+_SCALED = "2.5 x cage speed x half the pocket clearance, at least 0.05 m/s"
+
 _WITHOUT = {
     "bearing.bore": "not given; only the DN figure needs it",
     "operation.tilt": "default: the inner ring tilts until the moment balances",
@@ -21,11 +23,14 @@ _WITHOUT = {
     "film.material": "default: bare races",
     "film.thickness": "default: bare races",
     "cage.material": "not given",
-    "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the middle kick",
+    "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
+    "cage.impact_speed": f"default: {_SCALED}",
     "cage.ball_cage_friction": "default: that of the first candidate",
     "cage.pocket_axial_clearance": "not given: that of the shape",
     "cage.pocket_angles": "default: evenly spaced",
     "cage.land_clearance": "not given: no land",
+    "stability.kicks": "default: 0.2, 1 and 4 times the reference kick",
+    "stability.reference_kick": f"default: the middle one of the kicks; without kicks {_SCALED}",
     "stability.restitution_factors": "default: chosen where the curve bends",
     "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
 }

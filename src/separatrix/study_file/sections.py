@@ -76,6 +76,7 @@ _READERS: dict[str, dict[str, Reader]] = {
     "stability": _readers(
         StabilitySettings,
         kicks=certain(values.kicks),
+        reference_kick=certain(values.quantity("m/s")),
         runs=certain(values.whole),
         restitution_factors=certain(values.restitution_factors),
         seed=certain(values.whole),

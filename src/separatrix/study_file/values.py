@@ -82,6 +82,8 @@ def current_temperature() -> float | None:
 
 def kicks(value: Any, where: str) -> tuple[float, ...]:
     """Read the speeds of the kicks, in any order."""
+    if not value and isinstance(value, list):
+        raise InputError(where, "must not be empty", cure="Leave it out to have them chosen.")
     return tuple(sorted(list_of(quantity("m/s"))(value, where)))
 
 

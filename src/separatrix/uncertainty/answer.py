@@ -193,7 +193,7 @@ def _answer(model: Model, draws: Draws, factors: Factors, found: Sampled) -> Unc
         clouds=tuple(_clouds(model, found)),
         boundaries=tuple(_boundaries(model)),
         boundary_draws=BOUNDARIES,
-        kicks=model.study.stability.kicks,
+        kicks=model.kinds[0].boundary.traced.kicks,
         runs=sum(kind.runs for kind in model.kinds),
     )
 

@@ -15,10 +15,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.chain import BearingState, bearing_state, cage_design, pocket_stiffness, require_rolling
-from separatrix.equilibrium import Equilibrium
+from separatrix.chain import (
+    BearingState,
+    bearing_state,
+    cage_design,
+    impact_speed,
+    pocket_stiffness,
+    require_rolling,
+)
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.orbit import HIGHEST, mean_speed, orbital_waves
+from separatrix.orbit import HIGHEST, orbital_waves
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.restitution import Restitution, contact_damping, restitution
 from separatrix.stability.pool import work_through
@@ -27,7 +33,7 @@ from separatrix.study_numbers import Setter, setter
 from separatrix.traction import film_compliance, traction_slope
 from separatrix.traction.curve import THIN
 from separatrix.uncertainty.sampling import Draws, candidates_of
-from separatrix.units import Array, NewtonSecondPerMetre
+from separatrix.units import Array, NewtonSecondPerMetre, RadianPerSecond
 
 CHUNK = 32
 """Samples that one thread takes at a time."""
@@ -38,7 +44,7 @@ _EQUILIBRIUM, _TRACTION, _BLOW, _LATER = range(4)
 """Stages, from the first that an input touches."""
 
 _NO_STAGE = ("bearing.bore", "operation.temperature", "operation.ramp_time", "operation.ramp_start")
-_OF_A_BLOW = ("cage.mass", "cage.ball_cage_stiffness")
+_OF_A_BLOW = ("cage.mass", "cage.ball_cage_stiffness", "cage.impact_speed", "cage.pocket_clearance")
 
 _PER_SAMPLE = (
     "race_damping",
@@ -87,7 +93,7 @@ class ChainSamples:
     slip_speed : ndarray
         Mean sliding speed of balls on pockets, shape (sample,) [m/s].
     pocket_pressure : ndarray
-        Mean contact pressure in the pocket at a blow of the middle kick, shape (sample, candidate) [Pa].
+        Mean contact pressure in the pocket at a blow of the impact speed, shape (sample, candidate) [Pa].
     ball_cage_stiffness : ndarray
         k_BC, shape (sample, candidate) [N/m].
     restitution_factor, restitution_factor_hertz, restitution_factor_free_spin : ndarray
@@ -308,23 +314,23 @@ def _traction(study: Study, state: BearingState) -> _Traction:
 def _answer(study: Study, state: BearingState, traction: _Traction) -> _Answer:
     found = state.equilibrium
     waves = orbital_waves(found.orbital_speed, found.azimuth, study.bearing.pitch_diameter / 2.0)
-    blows = _blows(study, traction)
+    blows = _blows(study, traction, state.cage_speed)
     return _Answer(
         blows=blows,
-        pockets=_pockets(study, found, blows),
-        cage_speed=mean_speed(found.orbital_speed),
+        pockets=_pockets(study, state, blows),
+        cage_speed=state.cage_speed,
         film_over_semi_minor=traction.thin,
         cosines=waves.cosines,
         sines=waves.sines,
     )
 
 
-def _blows(study: Study, traction: _Traction) -> tuple[Restitution, ...]:
+def _blows(study: Study, traction: _Traction, cage_speed: RadianPerSecond) -> tuple[Restitution, ...]:
     """Blow on the pocket of each candidate; candidates of the same stiffness share one."""
     mass, known = cage_design(study).mass, {}
     blows = []
     for candidate in candidates_of(study):
-        stiffness = pocket_stiffness(study, candidate.material if candidate else None)[0]
+        stiffness = pocket_stiffness(study, cage_speed, candidate.material if candidate else None)[0]
         if stiffness not in known:
             known[stiffness] = restitution(
                 traction.inner, traction.outer, ball_cage_stiffness=stiffness, cage_mass=mass
@@ -333,16 +339,16 @@ def _blows(study: Study, traction: _Traction) -> tuple[Restitution, ...]:
     return tuple(blows)
 
 
-def _pockets(study: Study, found: Equilibrium, blows: Sequence[Restitution]) -> tuple[PocketConditions, ...]:
+def _pockets(study: Study, state: BearingState, blows: Sequence[Restitution]) -> tuple[PocketConditions, ...]:
     """What rubs in the pocket of each candidate; those of the same stiffness share it."""
     known = {
         blow.ball_cage_stiffness: pocket_conditions(
-            found,
+            state.equilibrium,
             ball_diameter=study.bearing.ball_diameter,
             ball_cage_stiffness=blow.ball_cage_stiffness,
             cage_mass=cage_design(study).mass,
             damping_ratio=blow.damping_ratio,
-            impact_speed=study.stability.middle_kick,
+            impact_speed=impact_speed(study, state.cage_speed),
         )
         for blow in dict.fromkeys(blows)
     }

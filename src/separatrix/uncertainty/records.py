@@ -150,7 +150,7 @@ class BoundaryLine:
     restitution_factor : ndarray
         Shape (node,) [-].
     critical_friction, critical_friction_low, critical_friction_high : ndarray
-        At which half of the runs grow from the middle kick, and its 95 % interval [-].
+        At which half of the runs grow from the reference kick, and its 95 % interval [-].
     stable_up_to, unstable_above : ndarray
         Between them a sample is UNDECIDED [-].
     """

@@ -84,7 +84,7 @@ def traced_boundary(
 ) -> TracedBoundary:
     """Trace the curve with its band over restitution factors from 0 to 1.
 
-    The points of the middle kick are those of `rank` and `stability`, so that the thresholds agree.
+    The points of the reference kick are those of `rank` and `stability`, so that the thresholds agree.
 
     Raises
     ------

@@ -168,7 +168,7 @@ def trained(
     count = cage_count(len(names))
     values = drawn(known, names, count, play, seed)
     cages = trainees(study, [one.key for one in known], values, place, names, jobs=jobs, stop=halt)
-    plan = _Plan(study.stability.kicks, traced, cages, seed)
+    plan = _Plan(traced.kicks, traced, cages, seed)
     points, law = None, None
     rounds = max(ROUNDS, -(-RUNS // plan.size))
     for turn in range(rounds):
@@ -251,7 +251,7 @@ def trainees(
             parameters=tuple(values[row, columns].tolist()),
             restitution_factor=state.restitution.restitution.restitution_factor,
             cage=state.cage,
-            settings=changed.stability,
+            settings=state.stability,
         )
 
     built = work_through(build, range(count), jobs=jobs, stop=stop)
