@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -266,3 +267,41 @@ def test_what_new_writes_is_a_study(capsys):
     assert main(["new", "mine.toml"]) == 0
     assert "separatrix check mine.toml" in capsys.readouterr().out
     assert main(["check", "mine.toml"]) == 0
+
+
+def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
+    """Seven materials without a datum at 90 K are one note; what matters and what is assumed comes first."""
+    bare = (resources.files("separatrix") / "examples" / "cryogenic-turbopump.toml").read_text(
+        encoding="utf-8"
+    )
+    lines = [line for line in bare.splitlines() if "ball_cage_stiffness" not in line]
+    Path("cold.toml").write_text("\n".join(lines).replace('"77 K"', '"90 K"'))
+    assert main(["check", "cold.toml"]) == 0
+    said = capsys.readouterr().out
+    assert len(said.splitlines()) <= 50
+    assert max(map(len, said.splitlines())) <= 96
+    assert said.count("not stated at 90 K") <= 3
+    assert said.count("Note: ") == 1
+    for words in (
+        "Speed parameter",
+        "million mm rpm",
+        "Pressure at rest",
+        "maximum",
+        "Assumed, as the study",
+    ):
+        assert words in said
+    assert main(["check", "cold.toml", "--full"]) == 0
+    whole = capsys.readouterr().out
+    assert "cold.toml, line" in whole
+    assert "Sources of the materials" in whole
+
+
+def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(capsys):
+    """DN is bore times speed; the pressure at rest is that of `bearing` at 0 rpm."""
+    Path("still.toml").write_text('extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "0 rpm"\n')
+    assert main(["check", "cryogenic-turbopump", "--json"]) == 0
+    checked = json.loads(capsys.readouterr().out)
+    assert main(["bearing", "still.toml", "--json"]) == 0
+    still = json.loads(capsys.readouterr().out)["contacts"]
+    for race in ("inner", "outer"):
+        assert checked["static"][race]["max_pressure"] == still[race]["max_pressure"]

@@ -204,9 +204,9 @@ def datum(value, temperature):
         (86.9, 2.0, None),
         (295.0, 1.0, None),
         (320.0, 3.0, None),
-        (150.0, 2.0, "none is stated at 150 K, that of 77 K is taken as it is"),
-        (405.0, 3.0, "none is stated at 405 K, that of 280 K to 400 K is taken as it is"),
-        (500.0, 3.0, "none is stated at 500 K, that of 280 K to 400 K is taken as it is"),
+        (150.0, 2.0, "not stated at 150 K, the value at 77 K is used"),
+        (405.0, 3.0, "not stated at 405 K, the value at 280 K to 400 K is used"),
+        (500.0, 3.0, "not stated at 500 K, the value at 280 K to 400 K is used"),
     ],
 )
 def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_in_silence(
@@ -232,9 +232,8 @@ def test_a_study_at_a_temperature_without_a_datum_says_so(tmp_path):
     """The film's modulus at 150 K is that of 77 K, in words; the shipped study at 77 K has nothing to say."""
     path = tmp_path / "warm.toml"
     path.write_text('extends = "cryogenic-turbopump"\n[operation]\ntemperature = "120 K"\n')
-    with pytest.warns(
-        ValidityWarning, match=r"\[film\] PTFE transfer film: modulus: none is stated at 120 K"
-    ):
+    said = r"PTFE transfer film \(modulus, Poisson's ratio: not stated at 120 K, the value at 77 K is used\)"
+    with pytest.warns(ValidityWarning, match=said):
         study = read_study(path)
     assert resolved(study)["film"]["material"]["cautions"]
     read_study("cryogenic-turbopump")
@@ -248,7 +247,7 @@ def test_cage_moduli_are_cautioned_only_where_they_act(tmp_path):
     read_study(path)
     bare = (files("separatrix") / "examples" / "cryogenic-turbopump.toml").read_text(encoding="utf-8")
     path.write_text("\n".join(line for line in bare.splitlines() if "ball_cage_stiffness" not in line))
-    with pytest.warns(ValidityWarning, match="none is stated at 77 K, that of 295 K") as said:
+    with pytest.warns(ValidityWarning, match="not stated at 77 K, the value at 295 K is used") as said:
         read_study(path)
     assert len(said) == 1
     assert "Meldin HTC 100, Meldin 7211, Armalon" in str(said[0].message)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from separatrix.errors import SeparatrixError, ValidityWarning
@@ -41,6 +41,14 @@ class Work:
     progress: Callable[[int, int], None] | None
     folder: Path | None = None
     quiet: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckAnswer:
+    """The bearing at standstill; None with the reason if its balance was not found."""
+
+    static: BearingState | None
+    static_reason: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,14 +100,26 @@ class RankingAnswer:
     ranking: Ranking
 
 
-def check(study: Study, work: Work) -> None:  # noqa: ARG001
-    """Compute nothing: the answer is the study itself.
+def check(study: Study, work: Work) -> CheckAnswer:  # noqa: ARG001
+    """The bearing at standstill, for its contact pressures.
 
     Warns
     -----
     ValidityWarning
         `sensitivity` refuses the friction that tests foretell in the pocket: its line.
     """
+    from separatrix.chain import bearing_state
+
+    _foretold_friction(study)
+    at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
+    try:
+        return CheckAnswer(static=bearing_state(replace(study, operation=at_rest)))
+    except SeparatrixError as error:
+        return CheckAnswer(static=None, static_reason=str(error))
+
+
+def _foretold_friction(study: Study) -> None:
+    """Warn where `sensitivity` refuses the friction that tests foretell in the pocket."""
     from separatrix.friction_fit import TestedFriction
 
     candidates = study.ranking.candidates if study.ranking and study.cage else ()

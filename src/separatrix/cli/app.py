@@ -29,6 +29,7 @@ Json = Annotated[bool, typer.Option("--json", help="One JSON document on standar
 OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
 Out = Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
+Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only what fits a screen.")]
 
 
 def whole(option: typer.CallbackParam, value: str | None) -> int | None:
@@ -113,9 +114,18 @@ def folder(out: str | None) -> Path | None:
     return None if out is None else Path(out)
 
 
-def _answer(verb: Verb, study: str, *, json: bool, out: str | None, quiet: bool, jobs: int | None) -> int:
+def _answer(
+    verb: Verb,
+    study: str,
+    *,
+    json: bool,
+    out: str | None,
+    quiet: bool,
+    jobs: int | None,
+    full: bool = False,
+) -> int:
     """Answer the question of a verb and return the exit status."""
-    options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs))
+    options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs), full=full)
     try:
         with Interruptible():
             return run(verb, study, options)
@@ -135,6 +145,22 @@ def _command(verb: Verb) -> Callable[..., int]:
         jobs: Jobs = None,
     ) -> int:
         return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+
+    return command
+
+
+def _command_with_more(verb: Verb) -> Callable[..., int]:
+    """Return the function behind the command of a verb whose answer has more than a screen takes."""
+
+    def command(
+        study: StudyArgument,
+        full: Full = False,
+        json: Json = False,
+        out: Out = None,
+        quiet: Quiet = False,
+        jobs: Jobs = None,
+    ) -> int:
+        return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, full=full)
 
     return command
 
@@ -279,7 +305,7 @@ def _application() -> typer.Typer:
     app.callback(invoke_without_command=True, help=HELP)(_start)
     app.command("new", help="Write a commented study file to fill in.")(_new)
     for verb in VERBS:
-        function = OWN.get(verb.name) or _command(verb)
+        function = OWN.get(verb.name) or (_command_with_more if verb.has_more else _command)(verb)
         app.command(verb.name, help=verb.help, epilog=EPILOGS.get(verb.name))(function)
     app.command(
         "tribometer",

@@ -33,6 +33,7 @@ class Options:
     out: Path | None
     quiet: bool
     jobs: int
+    full: bool = False
 
 
 def run(verb: Verb, name: str, options: Options) -> int:
@@ -96,12 +97,13 @@ def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options:
     """Write the answer, then the files, which take as long again, and say where they are."""
     from separatrix.report import report, whereabouts
 
-    text, summary = json.dumps(document, indent=1, allow_nan=False) + "\n", report(verb.name, document)
-    answer(text if options.json else summary)
+    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
+    answer(text if options.json else report(verb.name, document, full=options.full))
     if folder is None:
         return
+    texts = {".json": text, ".txt": report(verb.name, document, full=True)}
     with staged(folder) as stage:
-        _write_files(verb, document, stage, {".json": text, ".txt": summary}, quiet=options.quiet)
+        _write_files(verb, document, stage, texts, quiet=options.quiet)
     if not options.json:
         answer("\n" + whereabouts(verb.name, document, str(folder)))
 

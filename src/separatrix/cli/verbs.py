@@ -30,7 +30,8 @@ class Verb:
     `needs` are the sections of a study that may be left out but not for this question. How the record is
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
     `keeps_points` is for an answer whose parts are kept in its folder as they are finished; `draw` is for
-    pictures beside the figures; `has_workbook` for an answer that is also written as a workbook.
+    pictures beside the figures; `has_workbook` for an answer that is also written as a workbook; `has_more`
+    for one that is longer than a screen, and has an option for all of it.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Verb:
     keeps_points: bool = False
     draw: Draw | None = None
     has_workbook: bool = False
+    has_more: bool = False
 
 
 VERBS: tuple[Verb, ...] = (
@@ -49,6 +51,7 @@ VERBS: tuple[Verb, ...] = (
         help="Read a study; show what was understood and from where.",
         compute=answers.check,
         writes_files=False,
+        has_more=True,
     ),
     Verb(
         name="bearing",

@@ -207,9 +207,7 @@ def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Cho
     if nearest.temperature is None:
         return Choice(datum=nearest, caution=f"{words}: its source states no temperature, taken at {at}")
     stated = temperature_text(nearest.temperature)
-    return Choice(
-        datum=nearest, caution=f"{words}: none is stated at {at}, that of {stated} is taken as it is"
-    )
+    return Choice(datum=nearest, caution=f"{words}: not stated at {at}, the value at {stated} is used")
 
 
 def temperature_text(temperature: tuple[float, float]) -> str:

@@ -10,7 +10,7 @@ from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.map import stability_map
 from separatrix.report.ranking import rank
 from separatrix.report.sensitivity import sensitivity
-from separatrix.report.study import at_their_means, check
+from separatrix.report.study import at_their_means, check, every_input
 from separatrix.report.tables import heading, paragraph
 
 REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
@@ -25,11 +25,14 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "sensitivity": sensitivity,
 }
 
+FULL: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {"check": every_input}
+"""Of verbs whose answer has more than a screen takes: all of it."""
+
 DRAWS = ("check", "sensitivity")
 """Verbs that show uncertain inputs as what they are."""
 
 
-def report(verb: str, document: Mapping[str, Any]) -> str:
+def report(verb: str, document: Mapping[str, Any], *, full: bool = False) -> str:
     """Return the answer as text, ASCII but for what the study says.
 
     Parameters
@@ -38,8 +41,11 @@ def report(verb: str, document: Mapping[str, Any]) -> str:
         The question.
     document : mapping
         What `results.document` returns.
+    full : bool
+        Everything, where the answer has more than a screen takes.
     """
-    blocks = [heading(document["title"]), *REPORTS[verb](document)]
+    parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
+    blocks = [heading(document["title"]), *parts(document)]
     notes = [*_means(verb, document), *document["warnings"]]
     blocks += [paragraph(note, first="Note: ", indent="      ") for note in notes]
     return "\n\n".join(blocks) + "\n"

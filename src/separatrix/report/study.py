@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import asin, degrees
+from math import asin, degrees, isclose, pi
 from typing import Any, NamedTuple
 
 from separatrix.pocket_shape import half_play, tilt
@@ -16,6 +16,116 @@ SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability")
 
 
 def check(document: Entry) -> list[str]:
+    """What matters first, and everything that was assumed; the rest is in `every_input`."""
+    study = document["study"]
+    blocks = [facts([*_machine(study), *_static(document), *_cage(study), *_candidates(study)])]
+    if assumed := _assumed(study):
+        blocks.append(section("Assumed, as the study does not say otherwise", facts(assumed)))
+    if uncertain := study.get("uncertain_inputs"):
+        blocks.append(section("Uncertain inputs", _uncertain(uncertain)))
+    return [*blocks, _valid(study)]
+
+
+def _machine(study: Entry) -> list[tuple[str, str]]:
+    """Bearing, operation and film on a line each, with the speed parameter."""
+    bearing, operation, film = (study[name] for name in ("bearing", "operation", "film"))
+    bore = f", bore {shown(bearing['bore'])}" if bearing["bore"]["value"] is not None else ""
+    sizes = f"{shown(bearing['ball_count'])} balls of {shown(bearing['ball_diameter'])}"
+    loads = [
+        f"{shown(operation[name])} {words}"
+        for name, words in (("axial_load", "axial"), ("radial_load", "radial"), ("moment", "moment"))
+        if operation[name]["value"]
+    ]
+    around = [shown(operation[name]) for name in ("fluid", "temperature") if operation[name]["value"]]
+    speeds = [
+        f"{ring} ring {shown(operation[f'{ring}_speed'])}"
+        for ring in ("inner", "outer")
+        if ring == "inner" or operation[f"{ring}_speed"]["value"]
+    ]
+    coat = "none" if film["is_bare"] else f"{shown(film['material'])}, {shown(film['thickness'])}"
+    return [
+        ("Bearing", f"{sizes}, pitch diameter {shown(bearing['pitch_diameter'])}{bore}"),
+        ("Contact", f"{shown(bearing['contact_angle'])} free angle; balls {shown(bearing['ball_material'])}, "
+                    f"rings {shown(bearing['ring_material'])}"),
+        ("Operation", ", ".join([*speeds, *loads]) + (f"; {' at '.join(around)}" if around else "")),
+        ("Speed parameter", _speed_parameter(bearing, operation)),
+        ("Film on the races", f"{coat}; friction {shown(film['race_friction'])}"),
+    ]  # fmt: skip
+
+
+def _speed_parameter(bearing: Entry, operation: Entry) -> str:
+    """DN as catalogues have it, of the bore, or of the pitch diameter if the bore is not given."""
+    which = "pitch_diameter" if bearing["bore"]["value"] is None else "bore"
+    turns = abs(operation["inner_speed"]["value"] - operation["outer_speed"]["value"]) * 30.0 / pi
+    product = 1e3 * bearing[which]["value"] * turns
+    return f"{product / 1e6:.3g} million mm rpm ({which.replace('_', ' ')} x speed)"
+
+
+def _static(document: Entry) -> list[tuple[str, str]]:
+    """Contact pressure at standstill, of the most loaded ball."""
+    if document["static"] is None:
+        return [("Pressure at rest", f"not found: {document['static_reason']}")]
+    each = [
+        f"{race} {_pressure(at['max_pressure'] / 1.5)} mean, {_pressure(at['max_pressure'])} maximum"
+        for race, at in document["static"].items()
+    ]
+    return [("Pressure at rest", f"{'; '.join(each)} (Hertz, most loaded ball)")]
+
+
+def _pressure(pressure: float) -> str:
+    return quantity(float(f"{pressure:.3g}"), "Pa")
+
+
+def _cage(study: Entry) -> list[tuple[str, str]]:
+    """The cage on a line, and its room."""
+    cage = study["cage"]
+    if cage is None:
+        return []
+    name = cage["material"].get("name")
+    material = {None: "", "given in the study": "material given in the study, "}.get(name, f"{name}, ")
+    guided = {"ball": "guided by the balls"}.get(
+        cage["guidance"]["value"], f"{cage['guidance']['value']}-guided"
+    )
+    return [("Cage", f"{material}{shown(cage['mass'])}, {guided}"), *room(cage)]
+
+
+def _candidates(study: Entry) -> list[tuple[str, str]]:
+    """How many candidates there are, and in which environments their friction is known."""
+    ranking = study["ranking"]
+    if ranking is None:
+        return []
+    names = [candidate["name"] for candidate in ranking["candidates"]]
+    each = "; ".join(ranking["environments"])
+    return [("Candidates", ", ".join(names)), ("Friction known in", f"{each} (from {ranking['origin']})")]
+
+
+def _assumed(study: Entry) -> list[tuple[str, str]]:
+    """Defaults of each section, in a line."""
+    found = []
+    for name in (*SECTIONS, "ranking"):
+        entries = (study[name] or {}).items()
+        each = [_default(key, entry) for key, entry in entries if _is_default(entry)]
+        if each:
+            found.append((f"[{name}]", "; ".join(each)))
+    return found
+
+
+def _is_default(entry: Any) -> bool:
+    return isinstance(entry, Mapping) and str(entry.get("origin", "")).startswith("default")
+
+
+def _default(key: str, entry: Entry) -> str:
+    """A default value, or what its absence means."""
+    meaning = entry["origin"].partition(": ")[2]
+    return f"{key}: {meaning}" if meaning else f"{key} = {shown(entry)}"
+
+
+def _valid(study: Entry) -> str:
+    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if study[name] is None]
+    return "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
+
+
+def every_input(document: Entry) -> list[str]:
     """Every resolved input, its origin, and the sources of the materials."""
     study = document["study"]
     given = [name for name in SECTIONS if study[name] is not None]
@@ -23,15 +133,13 @@ def check(document: Entry) -> list[str]:
     for name in given:
         blocks.append(section(f"[{name}]", _values(study[name])))
         if name == "cage":
-            blocks.append(section("Room of the cage", facts(room(study["cage"]))))
+            blocks.append(section("Clearances of the cage", facts(room(study["cage"]))))
     if study["ranking"] is not None:
         blocks.append(section("[ranking] ball/cage friction", _frictions(study["ranking"])))
     if uncertain := study.get("uncertain_inputs"):
         blocks.append(section("Uncertain inputs, their means above", _uncertain(uncertain)))
     blocks.append(section("Sources of the materials", *_sources(study)))
-    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if study[name] is None]
-    blocks.append("The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else ""))
-    return blocks
+    return [*blocks, _valid(study)]
 
 
 def _values(part: Entry) -> str:
@@ -65,19 +173,19 @@ def shown(entry: Entry) -> str:
 
 
 def room(cage: Entry) -> list[tuple[str, str]]:
-    """Return the play that the cage has in its pockets and on its land, and which of them it meets first."""
+    """Return the clearance of the cage in its pockets and on its land, and which of them it meets first."""
     shape, *sizes = (cage[name]["value"] for name in _Pocket._fields)
     pocket = _Pocket(PocketShape(shape), *sizes)
     play, (_, sine) = half_play(pocket), tilt(pocket)
-    rows = [("Half play in a pocket", quantity(play, "m") + ", along the circumference")]
+    rows = [("Pocket clearance", quantity(play, "m") + " each way, along the circumference")]
     if sine != 0.0:
         rows.append(("Lean of its contact", quantity(asin(sine), "rad") + ", towards the bearing axis"))
     clearance = cage["land_clearance"]["value"]
     if clearance is None:
-        return [*rows, ("Land", "none: the balls guide the cage")]
+        return [*rows, ("Land clearance", "no land: the balls guide the cage")]
     gap = clearance / 2.0 - cage["land_out_of_round"]["value"]
-    first = "before its pockets" if gap < play else "after its pockets"
-    return [*rows, ("Land", f"reached at an offset of {quantity(gap, 'm')}, {first}")]
+    order = "together with" if isclose(gap, play) else "before" if gap < play else "after"
+    return [*rows, ("Land clearance", f"{quantity(gap, 'm')} radial, reached {order} the pockets")]
 
 
 class _Pocket(NamedTuple):
@@ -134,8 +242,10 @@ def _sources(study: Entry) -> list[str]:
 
 def _source(entry: Entry) -> str:
     numbers = f"E {quantity(entry['elastic_modulus']['value'], 'Pa')}, nu {entry['poisson_ratio']['value']:g}"
+    if entry["source"] == entry["confidence"]:  # of a material written in place
+        return f"{entry['name']}: {numbers}, from the study"
     said = f"{entry['name']}: {numbers}. {entry['source']} (confidence: {entry['confidence']})"
-    return f"{said}{_library(entry)}{''.join(f'. Note: {caution}' for caution in entry.get('cautions', ()))}"
+    return f"{said}{_library(entry)}"
 
 
 def _library(entry: Entry) -> str:

@@ -173,12 +173,14 @@ def uncertain_ranking(record: Any) -> Document:
     return sensitivity.sensitivity(record, cage(record.cage))
 
 
-def _nothing(record: Any) -> Document:  # noqa: ARG001 - the answer is the study itself
-    return {}
+def check(record: Any) -> Document:
+    """Return the contacts at standstill; the rest of the answer is the study itself."""
+    at_rest = None if record.static is None else contacts(record.static)
+    return {"static": at_rest, "static_reason": record.static_reason}
 
 
 DOCUMENTS: Mapping[str, Callable[[Any], Document]] = {
-    "check": _nothing,
+    "check": check,
     "bearing": bearing,
     "traction": traction,
     "restitution": restitution,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
@@ -35,28 +35,38 @@ def _ramp(study: Study) -> Iterator[str]:
 
 
 def _materials(study: Study) -> Iterator[str]:
-    """What must be said of the data of materials, where an answer depends on them."""
-    said: dict[tuple[str, ...], dict[str, None]] = {}
-    for where, material in _acting(study):
+    """One sentence on the data of materials whose sources state another temperature, or none."""
+    alike: dict[tuple[str, ...], dict[str, None]] = {}
+    for material in _acting(study):
         if material.cautions:
-            said.setdefault((where, *material.cautions), {})[material.name] = None
-    for (where, *cautions), names in said.items():
-        yield f"{where} {', '.join(names)}: {'; '.join(cautions)}. Better give a value for it."
+            alike.setdefault(material.cautions, {})[material.name] = None
+    if alike:
+        each = (f"{', '.join(names)} ({_short(cautions)})" for cautions, names in alike.items())
+        yield f"Material data of the library: {'; '.join(each)}. Consider giving your own values."
 
 
-def _acting(study: Study) -> Iterator[tuple[str, Material]]:
-    """Materials on whose numbers an answer depends, with where they are named."""
-    yield "[bearing]", study.bearing.ball_material
-    yield "[bearing]", study.bearing.ring_material
+def _short(cautions: Sequence[str]) -> str:
+    """Cautions that differ only in the property, which stands before the colon, as one."""
+    properties: dict[str, list[str]] = {}
+    for caution in cautions:
+        name, _, words = caution.partition(": ")
+        properties.setdefault(words, []).append(name)
+    return "; ".join(f"{', '.join(names)}: {words}" for words, names in properties.items())
+
+
+def _acting(study: Study) -> Iterator[Material]:
+    """Materials on whose numbers an answer depends."""
+    yield study.bearing.ball_material
+    yield study.bearing.ring_material
     if study.film.material is not None:
-        yield "[film]", study.film.material
+        yield study.film.material
     if study.cage is None or study.cage.ball_cage_stiffness is not None:
         return
     if study.cage.material is not None:
-        yield "[cage]", study.cage.material
+        yield study.cage.material
     for candidate in study.ranking.candidates if study.ranking is not None else ():
         if candidate.material is not None:
-            yield "[ranking]", candidate.material
+            yield candidate.material
 
 
 def _fluid(study: Study) -> Iterator[str]:
