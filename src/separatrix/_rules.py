@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from separatrix import _cage_rules, _check
 from separatrix.errors import InputError
-from separatrix.units import format_quantity, unit_of
+from separatrix.units import format_quantity, shown, unit_of
 
 if TYPE_CHECKING:
     from separatrix.study import (
@@ -106,6 +106,14 @@ def nothing_measured(candidate: Candidate) -> _check.Problems:
     """A candidate has at least one measured friction."""
     if all(value is None for value in candidate.friction.values()):
         yield InputError("Candidate.friction", f'of "{candidate.name}" holds no measured value')
+
+
+def environment_of_a_candidate(question: RankingQuestion) -> _check.Problems:
+    """The bearing's environment is one in which candidates were measured."""
+    if question.environment is not None and question.environment not in question.environments:
+        cure = f"Known: {'; '.join(question.environments)}."
+        rule = "must be one in which candidates were measured"
+        yield InputError("RankingQuestion.environment", rule, "", shown(question.environment), cure)
 
 
 def named_twice(question: RankingQuestion) -> _check.Problems:

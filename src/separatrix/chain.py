@@ -12,6 +12,9 @@ from typing import Any
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
+from separatrix.cage_choice import cage_candidate
+from separatrix.cage_choice import known_friction as known_friction
+from separatrix.cage_choice import pocket_friction as pocket_friction
 from separatrix.creep import Creep, contact_creep
 from separatrix.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.errors import InputError, ValidityWarning
@@ -38,7 +41,7 @@ from separatrix.units import (
     format_quantity,
 )
 
-NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material with its elastic_modulus."
+NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -251,7 +254,8 @@ def pocket_stiffness(
     design = cage_design(study)
     if design.ball_cage_stiffness is not None:
         return design.ball_cage_stiffness, "given in the study"
-    wall = material or design.material
+    own = cage_candidate(study)
+    wall = material or design.material or (own.material if own else None)
     if wall is None:
         raise InputError(
             "[cage] ball_cage_stiffness", "is missing, and no cage material is known", cure=NO_STIFFNESS
@@ -341,27 +345,3 @@ def _say_if_pushed_round(cage: PlanarCage) -> None:
             ValidityWarning,
             stacklevel=3,
         )
-
-
-def pocket_friction(study: Study) -> Ratio:
-    """Return f_BC for a single simulation: the study's, else the first candidate's first measured one.
-
-    Raises
-    ------
-    InputError
-        None is known.
-    """
-    friction = known_friction(study)
-    if friction is None:
-        cure = "Give it, or [ranking] with measured frictions."
-        raise InputError(f"{study.name}: [cage] ball_cage_friction", "is missing", cure=cure)
-    return friction
-
-
-def known_friction(study: Study) -> Ratio | None:
-    """Return f_BC as `pocket_friction`, or None if the study does not tell it."""
-    given = cage_design(study).ball_cage_friction
-    if given is not None:
-        return given
-    candidates = study.ranking.candidates[:1] if study.ranking else ()
-    return next((f.mean for c in candidates for f in c.friction.values() if f is not None), None)

@@ -205,6 +205,9 @@ class CageDesign:
     mass: Kilogram
     pocket_clearance: Metre
     material: Material | None = None
+    material_name: str | None = None
+    """Candidate of the ranking that the cage is made of; by default the one named like `material`."""
+
     ball_cage_stiffness: NewtonPerMetre | None = None
     impact_speed: MetrePerSecond | None = None
     """Speed at which a Hertz pocket's stiffness is taken; by default 2.5 times the pocket speed."""
@@ -311,6 +314,9 @@ class RankingQuestion:
 
     environments: tuple[str, ...]
     candidates: tuple[Candidate, ...]
+    environment: str | None = None
+    """The bearing's own: the headline of a ranking, and the column of the cage's friction."""
+
     friction_scatter: Ratio = 0.09
     """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess."""
 
@@ -318,7 +324,11 @@ class RankingQuestion:
         _check.settle(
             _check.between(self, "friction_scatter", 1e-3, 1.0, hint="0.09 stands for 9 %."),
         )
-        _check.settle(_rules.named_twice(self), _rules.unknown_environments(self))
+        _check.settle(
+            _rules.named_twice(self),
+            _rules.unknown_environments(self),
+            _rules.environment_of_a_candidate(self),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

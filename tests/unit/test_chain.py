@@ -60,8 +60,9 @@ def test_a_study_without_a_cage_is_refused():
 
 def test_an_unknown_pocket_stiffness_is_refused_with_the_cure():
     """Neither a stiffness nor a material to compute it from."""
+    nameless = cage(ball_cage_stiffness=None, material=None, material_name=None)
     with pytest.raises(InputError, match=r"ball_cage_stiffness is missing.*elastic_modulus"):
-        pocket_stiffness(cage(ball_cage_stiffness=None, material=None), 0.0)
+        pocket_stiffness(nameless, 0.0)
 
 
 def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_impact_speed():
@@ -137,11 +138,10 @@ def test_the_traction_of_a_study_is_not_computed_twice():
     assert restitution_state(STUDY, traction=known).traction is known
 
 
-def test_pocket_friction_is_given_or_the_first_candidates():
-    """The study's own, else the first measured one of the first candidate, else a refusal."""
+def test_pocket_friction_is_given_or_that_of_the_named_material():
+    """The study's own, else that of the cage's candidate in the bearing's environment, else a refusal."""
     assert pocket_friction(cage(ball_cage_friction=0.2)) == 0.2
-    first = next(f for f in STUDY.ranking.candidates[0].friction.values() if f is not None)
-    assert pocket_friction(STUDY) == first.mean
+    assert pocket_friction(STUDY) == 0.08  # Armalon in liquid nitrogen on 440C
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
         pocket_friction(study(ranking=None))
 

@@ -21,8 +21,8 @@ poisson_ratio = { value = 0.4, source = "usual", confidence = "guess" }
 """
 STUDY = 'title = "Ours"\nextends = "cryogenic-turbopump"\n[film]\nmaterial = "Our film"\n'
 DATUM = {"value", "unit", "range", "temperature", "pressure", "medium", "form", "source", "confidence"}
-RECORD = {"kind", "name", "remark", "composition", "library", "data"}
-FLUID = RECORD | {"substance", "phase", "coolprop", "aliases"}
+RECORD = {"kind", "name", "remark", "composition", "aliases", "library", "data"}
+FLUID = RECORD | {"substance", "phase", "coolprop"}
 TABLE = {
     *("kind", "name", "title", "remark", "source", "confidence", "conditions", "environments", "library"),
     "friction",

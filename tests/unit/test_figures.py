@@ -108,8 +108,10 @@ def test_a_picture_of_another_kind_is_refused_in_one_line(name, tmp_path):
 STUDY = {
     "operation": {"fluid": {"value": "liquid nitrogen"}, "temperature": {"value": 77.0}},
     "film": {"material": {"name": "PTFE"}, "thickness": {"value": 5e-7}, "is_bare": False},
-    "cage": {"ball_cage_friction": {"value": None}, "material": {"value": None}},
-    "ranking": {"candidates": [{"name": "Armalon", "friction": {"air": None, "vacuum": {"mean": 0.09}}}]},
+    "cage": {
+        "ball_cage_friction": {"value": None, "candidate": "Armalon", "environment": "vacuum"},
+        "material": {"value": None},
+    },
 }
 
 

@@ -14,7 +14,7 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.friction_file import friction_text, read_friction, write_friction
 from separatrix.friction_fit import FrictionTest, TestedFriction
 from separatrix.pocket_contact import PocketConditions
-from separatrix.ranking.friction import first_seen, friction_seen, frictions_seen
+from separatrix.ranking.friction import cage_seen, friction_seen, frictions_seen
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 from separatrix.uncertainty import training
@@ -154,10 +154,10 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
     asked = read_study(study(tmp_path, text))
     assert known_friction(asked) == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
     with pytest.warns(ValidityWarning, match=r"0\.12 of Armalon in liquid nitrogen, 440C, not tested"):
-        seen = first_seen(asked)
+        seen = cage_seen(asked)
     assert known_friction(seen) == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
     given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
-    assert first_seen(given) is given
+    assert cage_seen(given) is given
 
 
 @pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # not tested as the pocket rubs

@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
 from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
-from separatrix.ranking.rank import _tied
+from separatrix.ranking.rank import _margin, _tied
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
 from separatrix.stability import RestitutionThreshold
@@ -71,15 +71,29 @@ def test_on_one_curve_frictions_tell_who_is_tied():
     known = {name: MeanFriction(f, 0.09 * f) for name, f in (("A", 0.08), ("B", 0.09), ("C", 0.11))}
     a, b, c = (
         RankedMaterial(
-            name=name, reason="", ball_cage_stiffness=3e6, restitution_threshold=t,
-            restitution_threshold_low=t - 0.1, restitution_threshold_high=t + 0.1,
+            name=name, reason="", ball_cage_stiffness=3e6, restitution_factor=0.3, margin=t - 0.3,
+            restitution_threshold=t, restitution_threshold_low=t - 0.1, restitution_threshold_high=t + 0.1,
         )
         for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6))
     )  # fmt: skip
     assert _tied(b, a, known)
     assert not _tied(c, a, known)  # 2.5 standard deviations; the intervals meet
     assert _tied(replace(c, ball_cage_stiffness=4e6), a, known)
-    assert _tied(replace(c, restitution_threshold=0.74), a, known)  # such as 1: stable at any factor
+    assert _tied(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
+
+
+def test_where_eta_differs_the_margin_ranks():
+    """Threshold 0.9 at eta 0.5 stands behind 0.8 at eta 0.1; equal thresholds of two curves do not tie."""
+    rows = [
+        RankedMaterial(
+            name=name, reason="", ball_cage_stiffness=k, restitution_factor=eta, margin=t - eta,
+            restitution_threshold=t, restitution_threshold_low=t - 0.02, restitution_threshold_high=t + 0.02,
+        )
+        for name, k, eta, t in (("A", 1e6, 0.5, 0.9), ("B", 3e6, 0.1, 0.8), ("C", 2e6, 0.3, 0.9))
+    ]  # fmt: skip
+    known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
+    places = ranks([_margin(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
+    assert places == [3, 1, 2]
 
 
 def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
@@ -138,7 +152,7 @@ def test_the_reason_holds_the_numbers():
     said = reason(0.09, threshold, 0.27, judgement(Verdict.STABLE))
     assert said == (
         "With a friction of 0.09 it needs a restitution factor below 0.65 (0.61 to 0.68); "
-        "the film gives 0.27, 0.38 below that. So it is."
+        "this bearing has eta = 0.27, 0.38 below that. So it is."
     )
 
 
@@ -146,7 +160,7 @@ def test_a_reason_without_a_threshold_has_no_margin():
     """Stable nowhere: nothing to be above or below of."""
     said = reason(0.39, RestitutionThreshold(value=0.0, low=0.0, high=0.0), 0.27, judgement(Verdict.UNSTABLE))
     assert said.startswith(
-        "With a friction of 0.39 it is stable at no restitution factor above 0; the film gives 0.27. "
+        "With a friction of 0.39 it is stable at no restitution factor above 0; this bearing has eta = 0.27. "
     )
 
 
@@ -154,6 +168,7 @@ def test_a_missing_measurement_is_shown_as_missing():
     """Everything is None but the name and a reason; the others are ranked without it."""
     question = RankingQuestion(
         environments=("air", "vacuum"),
+        environment="air",
         candidates=(
             Candidate(name="B", friction={"air": None, "vacuum": Friction(mean=0.3)}),
             Candidate(name="A", friction={"air": Friction(mean=0.9), "vacuum": Friction(mean=0.1)}),
@@ -171,7 +186,9 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
     """Every field of the judgement, as it is; of one that was not measured there none."""
     blank = Candidate(name="B", friction={"air": None, "vacuum": Friction(mean=0.1)})
     measured_in_both = Candidate(name="A", friction=dict.fromkeys(("air", "vacuum"), Friction(mean=0.1)))
-    both = RankingQuestion(environments=("air", "vacuum"), candidates=(measured_in_both, blank))
+    both = RankingQuestion(
+        environments=("air", "vacuum"), environment="vacuum", candidates=(measured_in_both, blank)
+    )
     study = quick_study(ranking=both)
     a, b = rank(study).environments[0].materials
     assert a.margin == a.restitution_threshold - a.restitution_factor

@@ -204,7 +204,7 @@ EDITS = {
         ["[bearing] lacks: ball_diameter, pitch_diameter, ball_count"],
     ),
     "unknown material": (
-        ('ball_material = "440C"', 'ball_material = "440 C"'),
+        ('ball_material = "440C"', 'ball_material = "404C"'),
         ["line 11", "[bearing] ball_material", "Did you mean 440C?", "52100"],
     ),
     "unknown film": (('"PTFE transfer film"', '"Teflon"'), ["[film] material", "PTFE transfer film", "MoS2"]),
@@ -302,7 +302,7 @@ EDITS = {
         ["[ranking] friction", "pin-on-disk-77K"],
     ),
     "material not in the table": (
-        ('"Vespel SP 211"', '"Vespel SP-211"'),
+        ('"Vespel SP 211"', '"Vespel SP-212"'),
         ["[ranking] materials", "Did you mean Vespel SP 211?"],
     ),
     "material twice": (('"Vespel SP 211"', '"Armalon"'), ["[ranking] candidates", '"Armalon" twice']),

@@ -222,7 +222,7 @@ def test_the_files_that_are_changed_are_right(text, tmp_path):
 
 STUDIES = {
     "a film that no library has": ('[film]\nmaterial = "Ourz"\n', "is no film of the library"),
-    "a near miss of a user's record": ('[cage]\nmaterial = "ours"\n', "Did you mean Ours?"),
+    "a near miss of a user's record": ('[cage]\nmaterial = "Oors"\n', "Did you mean Ours?"),
     "a near miss of a user's table": ('[ranking]\nfriction = "rigg"\n', "Did you mean rig?"),
     "a material that the table lacks": (
         '[ranking]\nfriction = "rig"\nmaterials = ["Armalon"]\n',

@@ -94,7 +94,7 @@ class SimulationAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankingAnswer:
-    """The ranking, and the cage of its first candidate for the numbers of the chain."""
+    """The ranking, and the cage of its reference candidate for the numbers of the chain."""
 
     cage: CageState
     ranking: Ranking
@@ -215,11 +215,12 @@ def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
 
 def stability(study: Study, work: Work) -> StabilityAnswer:
     """Critical friction against restitution factor."""
-    from separatrix.chain import cage_state, known_friction
-    from separatrix.ranking.friction import first_seen
+    from separatrix.cage_choice import known_friction
+    from separatrix.chain import cage_state
+    from separatrix.ranking.friction import cage_seen
     from separatrix.stability import stability_curve
 
-    study = first_seen(study)
+    study = cage_seen(study)
     state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
     curve = stability_curve(state.cage, state.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
@@ -234,9 +235,9 @@ def simulate(
     """Follow one run of the ensemble, by default the first from the reference kick."""
     from separatrix.cage import linear_whirl_frequency, simulate
     from separatrix.chain import cage_state
-    from separatrix.ranking.friction import first_seen
+    from separatrix.ranking.friction import cage_seen
 
-    state = cage_state(first_seen(study))
+    state = cage_state(cage_seen(study))
     settings = state.stability
     speed = settings.middle_kick if kick is None else kick
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(state.cage) * settings.duration
@@ -254,10 +255,13 @@ def simulate(
 
 def rank(study: Study, work: Work) -> RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
+    from separatrix.cage_choice import reference_candidate, reference_friction
     from separatrix.chain import cage_state
     from separatrix.ranking import rank, ranking_question
-    from separatrix.ranking.friction import first_seen
+    from separatrix.ranking.friction import cage_seen
 
-    first = ranking_question(study).candidates[0]
-    state = cage_state(first_seen(study, marked=True), material=first.material)
+    question = ranking_question(study)
+    seen = cage_seen(study, marked=True)
+    own = reference_candidate(study, question)
+    state = cage_state(seen, material=own.material, friction=reference_friction(seen, question))
     return RankingAnswer(cage=state, ranking=rank(study, jobs=work.jobs, progress=work.progress))

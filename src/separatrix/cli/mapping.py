@@ -51,12 +51,13 @@ def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> Ma
     InputError
         An option cannot be understood, or no point can be run.
     """
-    from separatrix.chain import cage_state, known_friction
-    from separatrix.ranking.friction import first_seen
+    from separatrix.cage_choice import known_friction
+    from separatrix.chain import cage_state
+    from separatrix.ranking.friction import cage_seen
     from separatrix.stability.map import stability_map, value_here
 
     question = map_question(study, options or MapOptions())
-    study = first_seen(study)
+    study = cage_seen(study)
     question = replace(question, study=study)
     state = cage_state(study, friction=known_friction(study) or 0.0)
     x, y = (replace(axis, here=value_here(study, state, axis.parameter)) for axis in (question.x, question.y))

@@ -108,14 +108,16 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     KeyboardInterrupt
         Interrupted before the probabilities were there; later they are the answer.
     """
+    from separatrix.cage_choice import reference_candidate, reference_friction
     from separatrix.chain import cage_state
     from separatrix.ranking import ranking_question
-    from separatrix.ranking.friction import first_seen
+    from separatrix.ranking.friction import cage_seen
     from separatrix.sensitivity import evidence_of
     from separatrix.uncertainty.answer import uncertain_ranking
 
-    first = ranking_question(study).candidates[0]
-    state = cage_state(first_seen(study, marked=True), material=first.material)
+    asked, seen = ranking_question(study), cage_seen(study, marked=True)
+    own = reference_candidate(study, asked)
+    state = cage_state(seen, material=own.material, friction=reference_friction(seen, asked))
     stop = Event()
     stage = stages(work.progress)
     ranking, model, found = uncertain_ranking(study, samples, jobs=work.jobs, stage=stage, stop=stop)
@@ -178,11 +180,12 @@ def doubt_of(model: Model, found: Sampled, progress: Progress | None) -> Doubt:
 def _films(model: Model, question: Question, values: Array) -> tuple[tuple[StableRegion, ...], str]:
     """Which films keep each case stable; the reason if there is no film to choose."""
     from separatrix import sensitivity as doubts
+    from separatrix.cage_choice import reference_candidate
     from separatrix.chain import restitution_state
     from separatrix.ranking import ranking_question
 
     if model.study.film.material is None:
         return (), "The races are bare: there is no film to choose."
-    first = ranking_question(model.study).candidates[0]
-    grid = doubts.friction_grid(model.study, restitution_state(model.study, material=first.material))
+    own = reference_candidate(model.study, ranking_question(model.study))
+    grid = doubts.friction_grid(model.study, restitution_state(model.study, material=own.material))
     return doubts.stable_regions(question, values, grid), ""

@@ -103,16 +103,13 @@ def friction(data: xr.Dataset, study: Mapping[str, Any]) -> str:
     """Return the pocket's friction of a run, and whose it is."""
     if "cage_ball_cage_friction" not in data:
         return ""
-    whose = candidate(study) if known(study.get("cage", {}), "ball_cage_friction") is None else ""
-    whose = whose or name_of(study.get("cage", {}), "material")
+    whose = candidate(study) or name_of(study.get("cage", {}), "material")
     value = float(data["cage_ball_cage_friction"])
     return f"pocket friction {value:.3g}{f' ({whose})' if whose else ''}, "
 
 
 def candidate(study: Mapping[str, Any]) -> str:
-    """Return the first candidate and the environment its friction is of; "" without one."""
-    for first in study.get("ranking", {}).get("candidates", [])[:1]:
-        for environment, measured in first["friction"].items():
-            if measured is not None:
-                return f"{first['name']} in {environment}"
-    return ""
+    """Return the candidate and the environment that the cage's friction is of; "" if it is given."""
+    entry = study.get("cage", {}).get("ball_cage_friction", {})
+    whose = entry.get("candidate")
+    return f"{whose} in {entry['environment']}" if whose else ""

@@ -105,15 +105,22 @@ class Library:
         material = self.material(kind, name, temperature) if known else None
         return Candidate(name=name, friction=table.friction[name], material=material)
 
+    def named(self, kind: str, name: str) -> str | None:
+        """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
+
+        Case of letters, spaces, hyphens and the like do not count.
+        """
+        names, wanted = self.names(kind), folded(name)
+        if name in names:
+            return name
+        found = [known for known in names if folded(known) == wanted]  # no record is read
+        found = found or [r.name for r in self.records(kind).values() if wanted in map(folded, _aliases(r))]
+        return found[0] if wanted and len(found) == 1 else None
+
     def fluid(self, name: str) -> Record | None:
-        """Record of a fluid by its name or another name of it, in any case of letters; None if unknown."""
-        exact = self.find("fluid", name)
-        if isinstance(exact, Record):  # and no other is read
-            return exact
-        wanted = name.strip().casefold()
-        fluids = [record for record in self.records("fluid").values() if isinstance(record, Record)]
-        known = {alias.casefold(): r for r in fluids for alias in r.facts.get("aliases") or ()}
-        return (known | {record.name.casefold(): record for record in fluids}).get(wanted)
+        """Record of a fluid by its name or another name of it, in any spelling; None if unknown."""
+        known = self.named("fluid", name)
+        return None if known is None else self.record("fluid", known)
 
     def every(self) -> tuple[Record | FrictionTable, ...]:
         """All records."""
@@ -192,12 +199,21 @@ def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
     """Refuse a name, or another name of a fluid, that one before it has but for capitals and spaces."""
     known: dict[str, Record | FrictionTable] = {}
     for record in records:
-        aliases = record.facts.get("aliases") or () if isinstance(record, Record) else ()
-        for name in (record.name, *aliases):
+        for name in (record.name, *_aliases(record)):
             old = known.setdefault(" ".join(name.casefold().split()), record)
             if old is not record:
                 rule = f"has a name of {printable(old.name)} ({place(old)})"
                 raise InputError(_header(record), rule, "", shown(name), "Give it another name.")
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name in lower case: what two spellings of it have in common."""
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _aliases(record: Record | FrictionTable) -> Sequence[str]:
+    """Other names of a material or a fluid."""
+    return record.facts.get("aliases") or () if isinstance(record, Record) else ()
 
 
 def _header(record: Record | FrictionTable) -> str:

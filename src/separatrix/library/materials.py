@@ -23,7 +23,7 @@ def material(
     """Read a material or a fluid: its words, its facts and its numbers."""
     numbers = FLUID if kind == "fluid" else SOLID
     words: dict[str, Callable[[Any, str], Any]] = {"remark": long_text, "replaces": yes_or_no}
-    words |= _FACTS if kind == "fluid" else {"composition": long_text}
+    words |= _FACTS if kind == "fluid" else {"composition": long_text, "aliases": _aliases}
     tail = at.partition(": ")[2]
     given: dict[str, Any] = {}
     data: dict[str, tuple[Datum, ...]] = {}
@@ -44,7 +44,7 @@ def material(
         problems.append(InputError(at, f"lacks: {', '.join(missing)}"))
     if problems:
         raise together(problems)
-    facts = {key: given.pop(key, None) for key in _FACTS} if kind == "fluid" else {}
+    facts = {key: given.pop(key, None) for key in (_FACTS if kind == "fluid" else ("aliases",))}
     return Record(kind=kind, data=data, facts=facts, **given, **common)
 
 

@@ -119,7 +119,7 @@ class Record:
     replaces: bool = False
     data: Mapping[str, tuple[Datum, ...]]
     facts: Mapping[str, Any] = field(default_factory=dict)
-    """What a fluid is: substance, phase, coolprop, aliases."""
+    """Other names, aliases; what a fluid is: substance, phase, coolprop."""
 
     def plain(self) -> dict[str, Any]:
         """Return the whole record as plain data."""

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
+from separatrix.cage_choice import cage_candidate, cage_friction, environment_of
 from separatrix.chain import CageState, cage_state, impact_speed, traction_state
 from separatrix.errors import ValidityWarning
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
@@ -103,8 +104,8 @@ def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Cand
     return replace(candidate, friction=friction)
 
 
-def first_seen(study: Study, *, marked: bool = False) -> Study:
-    """The study with its first candidate's frictions as the cage sees them, where it has no friction itself.
+def cage_seen(study: Study, *, marked: bool = False) -> Study:
+    """The study with the frictions of its cage's candidate as the pocket sees them; a given one stays.
 
     Warns
     -----
@@ -113,14 +114,14 @@ def first_seen(study: Study, *, marked: bool = False) -> Study:
     """
     if study.cage is None or study.cage.ball_cage_friction is not None or study.ranking is None:
         return study
-    first, *others = study.ranking.candidates
-    name, friction = next(((env, f) for env, f in first.friction.items() if f is not None), ("", None))
-    if friction is None or friction.law is None:
+    own, friction, environment = cage_candidate(study), cage_friction(study), environment_of(study.ranking)
+    if own is None or environment is None or friction is None or friction.law is None:
         return study
-    seen = candidate_seen(study, first, cage_state(study, friction=0.0))
+    seen = candidate_seen(study, own, cage_state(study, material=own.material, friction=0.0))
     if not marked:
-        _say_what_was_not_tested(first.name, name, seen.friction[name])
-    return replace(study, ranking=replace(study.ranking, candidates=(seen, *others)))
+        _say_what_was_not_tested(own.name, environment, seen.friction[environment])
+    candidates = tuple(seen if candidate is own else candidate for candidate in study.ranking.candidates)
+    return replace(study, ranking=replace(study.ranking, candidates=candidates))
 
 
 def _say_what_was_not_tested(candidate: str, environment: str, friction: Friction | None) -> None:

@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from separatrix.units import Ratio
 
 Interval = tuple[Ratio, Ratio, Ratio]
-"""A threshold with the low and the high end of its scatter."""
+"""A margin with the low and the high end of its scatter."""
 
 
 def ranks(
-    thresholds: Sequence[Interval | None], tied: Callable[[int, int], bool] | None = None
+    margins: Sequence[Interval | None], tied: Callable[[int, int], bool] | None = None
 ) -> list[int | None]:
-    """Rank of each threshold, the largest first; None stays None.
+    """Rank of each margin, the largest first; None stays None.
 
     The best one leads the first group. Whoever cannot be told from the leader is tied with it; the best of
     the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3). Groups are told by
@@ -21,17 +21,15 @@ def ranks(
 
     Parameters
     ----------
-    thresholds : sequence
+    margins : sequence
         (value, low, high) of each candidate, or None [-].
     tied : callable, optional
         Whether the first of two cannot be told from the second, its leader; by default if their intervals
         meet.
     """
-    alike = tied or (lambda i, leader: meet(thresholds[i], thresholds[leader]))
-    order = sorted(
-        (i for i, t in enumerate(thresholds) if t is not None), key=lambda i: _best_first(thresholds, i)
-    )
-    found: list[int | None] = [None] * len(thresholds)
+    alike = tied or (lambda i, leader: meet(margins[i], margins[leader]))
+    order = sorted((i for i, t in enumerate(margins) if t is not None), key=lambda i: _best_first(margins, i))
+    found: list[int | None] = [None] * len(margins)
     leader, rank = None, 0
     for place, i in enumerate(order, start=1):
         if leader is None or not alike(i, leader):
@@ -40,11 +38,11 @@ def ranks(
     return found
 
 
-def _best_first(thresholds: Sequence[Interval | None], i: int) -> tuple[float, float]:
-    found = thresholds[i]
+def _best_first(margins: Sequence[Interval | None], i: int) -> tuple[float, float]:
+    found = margins[i]
     return (0.0, 0.0) if found is None else (-found[0], -found[2])
 
 
 def meet(other: Interval | None, leader: Interval | None) -> bool:
-    """Whether the interval of the smaller threshold reaches that of its leader."""
+    """Whether the interval of the smaller margin reaches that of its leader."""
     return other is not None and leader is not None and other[2] >= leader[1]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from threading import Event
 
 from separatrix.cage import Judgement, judge
+from separatrix.cage_choice import reference_candidate, required_environment
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
@@ -87,15 +88,16 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     Raises
     ------
     InputError
-        The study has no candidates, or a candidate's pocket stiffness is not known.
+        The study has no candidates, or its environment or a candidate's pocket stiffness is not known.
 
     Notes
     -----
-    Ranked by restitution threshold, as the paper does (its section 5, Figs 9-12); the verdict is the
-    ensemble's at the chain's own restitution factor (docs/theory/ranking.md). Only there the critical
-    friction has its band over the kicks.
+    Ranked by margin: where all candidates have one restitution factor, that is the order of thresholds, as
+    in the paper (its section 5, Figs 9-12). The verdict is the ensemble's at the chain's own restitution
+    factor (docs/theory/ranking.md). Only there the critical friction has its band over the kicks.
     """
     asked = ranking_question(study)
+    environment = required_environment(study, asked)
     question = _question(study, asked)
     candidates = [candidate_seen(study, c, _state(question, c.name)) for c in asked.candidates]
     frictions = {
@@ -109,6 +111,8 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     )
     found = _compute(question, keys, jobs=jobs, progress=progress)
     return Ranking(
+        environment=environment,
+        candidate=reference_candidate(study, asked).name,
         restitution_factor=_eta(question, question.reference),
         restitution_factor_free_spin=(
             question.cages[question.reference].restitution.restitution.restitution_factor_free_spin
@@ -152,9 +156,12 @@ def _measured(candidate: Candidate, environment: str) -> MeanFriction | None:
 
 def _question(study: Study, asked: RankingQuestion) -> _Question:
     traction = traction_state(study)
-    states = {c.name: cage_state(study, material=c.material, traction=traction) for c in asked.candidates}
+    states = {
+        c.name: cage_state(study, material=c.material, traction=traction, friction=0.0)
+        for c in asked.candidates
+    }
     cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
-    reference = states[asked.candidates[0].name].cage.ball_cage_stiffness
+    reference = states[reference_candidate(study, asked).name].cage.ball_cage_stiffness
     factors, stop = threshold_factors(study.stability), Event()
     return _Question(
         settings=cages[reference].stability,
@@ -250,7 +257,7 @@ def _ranked(
     """Rows of one environment, best first; the order of the study within a rank."""
     rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
     known = {name: friction for name, friction in table.items() if friction is not None}
-    places = ranks([_scatter(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
+    places = ranks([_margin(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
     lowest = lowest_among(known)
     chances = [lowest.probabilities.get(row.name) for row in rows]
     ranked = [
@@ -264,7 +271,7 @@ def _best_first(row: RankedMaterial) -> tuple[int, float, float]:
     last = row.rank is None
     return (
         10**9 if row.rank is None else row.rank,
-        0.0 if last else -(row.restitution_threshold or 0.0),
+        0.0 if last else -(row.margin or 0.0),
         row.friction or 0.0,
     )
 
@@ -273,22 +280,21 @@ def _tied(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanF
     """Whether a row cannot be told from the leader of its group.
 
     On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
-    with another pocket stiffness there is another curve, and the intervals of the thresholds tell.
+    with another pocket stiffness there are another curve and eta, and the intervals of the margins tell.
     """
-    if row.restitution_threshold == leader.restitution_threshold:
+    if row.margin == leader.margin:
         return True
     if row.ball_cage_stiffness == leader.ball_cage_stiffness:
         return may_be_lower(known[row.name], known[leader.name])
-    return meet(_scatter(row), _scatter(leader))
+    return meet(_margin(row), _margin(leader))
 
 
-def _scatter(row: RankedMaterial) -> Interval | None:
-    value, low, high = (
-        row.restitution_threshold,
-        row.restitution_threshold_low,
-        row.restitution_threshold_high,
-    )
-    return None if value is None or low is None or high is None else (value, low, high)
+def _margin(row: RankedMaterial) -> Interval | None:
+    """Margin with the ends of its interval, those of the threshold less the restitution factor."""
+    low, high, eta = row.restitution_threshold_low, row.restitution_threshold_high, row.restitution_factor
+    if row.margin is None or low is None or high is None or eta is None:
+        return None
+    return row.margin, low - eta, high - eta
 
 
 def _row(

@@ -26,7 +26,7 @@ def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgeme
     allowed = need.get(threshold.value, f"needs a restitution factor below {between}")
     margin = threshold.value - eta
     side = f", {abs(margin):.2f} {'below' if margin >= 0 else 'above'} that"
-    film = f"the film gives {eta:.2f}{'' if threshold.value in need else side}"
+    film = f"this bearing has eta = {eta:.2f}{'' if threshold.value in need else side}"
     first = f"With a friction of {friction:.3g} it {allowed}; {film}."
     return " ".join((first, judgement.reason, disagreement(threshold.value, judgement.verdict))).rstrip()
 

@@ -40,7 +40,7 @@ class RankedMaterial:
     verdict : str or None
         STABLE, UNSTABLE or UNDECIDED.
     rank : int or None
-        By threshold; those within the scatter of the best one share its rank.
+        By margin; those within the scatter of the best one share its rank.
     within_reach : bool or None
         Whether the threshold reaches the restitution factor that the paper grants solid lubrication.
     reason : str
@@ -110,13 +110,16 @@ class RankedEnvironment:
 class Ranking:
     """Answer of a ranking.
 
-    `restitution_factor` is the chain's for `ball_cage_stiffness`, and so is the stability curve; where each
-    candidate has a pocket stiffness, and so a restitution factor, of its own, these are the first one's.
-    `pocket` is what rubs there, `friction_scatter` what an unrepeated test is assumed to scatter.
-    `overall` takes the mean friction over the measured environments. `complete` is False if an interrupt
-    left something out.
+    `environment` is the bearing's own, the headline. `restitution_factor` is the chain's for
+    `ball_cage_stiffness`, and so is the stability curve; where each candidate has a pocket stiffness, and so
+    a restitution factor, of its own, these are those of `candidate`: the cage's material, or the first
+    candidate where the study does not name it. `pocket` is what rubs there, `friction_scatter` what an
+    unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
+    `complete` is False if an interrupt left something out.
     """
 
+    environment: str
+    candidate: str
     restitution_factor: Ratio
     restitution_factor_free_spin: Ratio
     ball_cage_stiffness: NewtonPerMetre

@@ -102,9 +102,6 @@ def ensemble_facts(settings: Document) -> list[tuple[str, str]]:
     ]
 
 
-FIRST = ", the first candidate's; [cage] ball_cage_friction sets it"
-
-
 def simulate(document: Document) -> list[str]:
     """How one run ended, where its centre went, its largest forces, and the work that drove it."""
     return [
@@ -137,8 +134,9 @@ def _ended(document: Document) -> list[tuple[str, str]]:
 
 def friction_text(document: Document) -> str:
     """Return the pocket friction, and where it comes from if not from the study's cage."""
-    origin = "" if document["study"]["cage"]["ball_cage_friction"]["value"] is not None else FIRST
-    return number(document["cage"]["ball_cage_friction"]) + origin
+    entry = document["study"]["cage"]["ball_cage_friction"]
+    whose = f", {entry['candidate']} in {entry['environment']}" if entry["candidate"] else ""
+    return number(document["cage"]["ball_cage_friction"]) + whose
 
 
 def orbit_facts(document: Document) -> list[tuple[str, str]]:

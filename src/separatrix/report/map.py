@@ -46,13 +46,13 @@ LEGEND = "\n" + paragraph(
 
 
 def _axes(document: Document) -> list[tuple[str, str]]:
-    given = document["study"]["cage"]["ball_cage_friction"]["value"] is not None
-    return [(name, _axis(document[name], given)) for name in ("x", "y")]
+    whose = document["study"]["cage"]["ball_cage_friction"]["candidate"]
+    return [(name, _axis(document[name], whose)) for name in ("x", "y")]
 
 
-def _axis(axis: Document, friction_given: bool) -> str:
+def _axis(axis: Document, candidate: str | None) -> str:
     low, high = (quantity(axis["values"][i], axis["unit"]) for i in (0, -1))
-    whose = "the study" if friction_given or axis["parameter"] != FRICTION else "its first candidate"
+    whose = candidate if candidate and axis["parameter"] == FRICTION else "the study"
     here = "" if axis["here"] is None else f", {whose} has {quantity(axis['here'], axis['unit'])}"
     return f"{axis['parameter']}, {low} to {high}, {len(axis['values'])} values{here}"
 

@@ -169,7 +169,7 @@ def stability_map(record: Any) -> Document:
 
 
 def uncertain_ranking(record: Any) -> Document:
-    """Return probabilities with their intervals, what drives the doubt, and the first candidate's chain."""
+    """Return probabilities with their intervals, what drives the doubt, and the cage's chain."""
     return sensitivity.sensitivity(record, cage(record.cage))
 
 

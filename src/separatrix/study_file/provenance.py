@@ -7,9 +7,10 @@ from dataclasses import fields
 from enum import Enum
 from typing import Any
 
+from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
 from separatrix.friction_fit import FrictionTest, TestedFriction
-from separatrix.study import Candidate, Film, Friction, Material, Study
+from separatrix.study import CageDesign, Candidate, Film, Friction, Material, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
@@ -25,10 +26,12 @@ _WITHOUT = {
     "cage.material": "not given",
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
     "cage.impact_speed": f"default: {_SCALED}",
-    "cage.ball_cage_friction": "default: that of the first candidate",
+    "cage.ball_cage_friction": "default: that of its material in [ranking] environment",
+    "cage.material_name": "default: the material's",
     "cage.pocket_axial_clearance": "not given: that of the shape",
     "cage.pocket_angles": "default: evenly spaced",
     "cage.land_clearance": "not given: no land",
+    "ranking.environment": "not given, and none fits the bearing",
     "stability.kicks": "default: 0.2, 1 and 4 times the reference kick",
     "stability.reference_kick": f"default: the middle one of the kicks; without kicks {_SCALED}",
     "stability.restitution_factors": "default: chosen where the curve bends",
@@ -82,7 +85,16 @@ def _part(study: Study, section: str) -> dict[str, Any] | None:
     values: dict[str, Any] = {f.name: _value(study, record, section, f.name) for f in fields(record)}
     if isinstance(record, Film):
         values["is_bare"] = record.material is None
+    if isinstance(record, CageDesign):
+        values["ball_cage_friction"] |= _whose_friction(study, record)
     return values
+
+
+def _whose_friction(study: Study, cage: CageDesign) -> dict[str, Any]:
+    """Candidate and environment whose friction the cage has; None where it has its own, or none is known."""
+    candidate = None if cage.ball_cage_friction is not None else cage_candidate(study)
+    environment = environment_of(study.ranking) if study.ranking and candidate else None
+    return {"candidate": candidate.name if candidate else None, "environment": environment}
 
 
 def _value(study: Study, record: object, section: str, name: str) -> dict[str, Any]:
@@ -139,6 +151,7 @@ def _ranking(study: Study) -> dict[str, Any] | None:
     table = study.records.get("ranking.friction")
     item = {
         "environments": list(study.ranking.environments),
+        "environment": _value(study, study.ranking, "ranking", "environment"),
         "candidates": candidates,
         "friction_scatter": _value(study, study.ranking, "ranking", "friction_scatter"),
         "table": table,

@@ -5,14 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from separatrix.errors import InputError, together
+from separatrix.library import folded
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.distributions import Uncertain, gathered
 from separatrix.study_file.document import Document
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, where
-from separatrix.study_file.tested_friction import of_conditions, question_of_tests, scatter_of, tests_file
+from separatrix.study_file.tested_friction import (
+    chosen_materials,
+    of_conditions,
+    question_of_tests,
+    scatter_of,
+    tests_file,
+)
 from separatrix.study_file.values import Reader
-from separatrix.toml_values import nearest
 from separatrix.units import shown
 
 MOST_CANDIDATES = 1000
@@ -35,18 +41,17 @@ def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
         raise InputError(f"{document.label}: [ranking]", "lacks: friction (or candidates)")
     if "friction_scatter" in given:
         question["friction_scatter"] = given["friction_scatter"]
+    if "environment" in given:
+        known = {folded(name): name for name in question["environments"]}
+        question["environment"] = known.get(folded(given["environment"]), given["environment"])
     return record_of(document, RankingQuestion, question)
 
 
 def _from_table(document: Document, given: dict[str, Any]) -> dict[str, Any]:
-    name, library = given["friction"], values.current_library()
-    values.refuse_unknown(name, "friction table", where(document, "ranking", "friction"))
+    library = values.current_library()
+    name = values.known_name(given["friction"], "friction table", where(document, "ranking", "friction"))
     table = library.friction_table(name)
-    chosen = given.get("materials", tuple(table.friction))
-    for material in chosen:
-        if material not in table.friction:
-            rule, cure = f"names a material that {name} lacks", nearest(material, table.friction)
-            raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
+    chosen = chosen_materials(document, given, tuple(table.friction), name)
     temperature = values.current_temperature()
     candidates = tuple(
         of_conditions(library.candidate(table, material, temperature), table, scatter_of(given))

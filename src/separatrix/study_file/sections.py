@@ -26,6 +26,7 @@ from separatrix.study_file import values
 from separatrix.study_file.distributions import certain, count, number, unwrapped, written
 from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, Entry
 from separatrix.study_file.libraries import library_of, used_records
+from separatrix.study_file.one_cage import FROM_BEARING, name_cage, name_environment
 from separatrix.study_file.ranking_section import ranking
 from separatrix.study_file.records import Unfinished, attempt, record_of, refuse_both, relocated, where
 from separatrix.study_file.values import Reader
@@ -65,7 +66,7 @@ _READERS: dict[str, dict[str, Reader]] = {
     ),
     "cage": _readers(
         CageDesign,
-        material=values.material("cage material"),
+        material=values.cage_material,
         guidance=values.choice(Guidance),
         pocket_shape=values.choice(PocketShape),
         pocket_contact=values.choice(PocketContact),
@@ -84,6 +85,7 @@ _READERS: dict[str, dict[str, Reader]] = {
     "ranking": {
         "friction": values.text,
         "materials": values.list_of(values.text),
+        "environment": values.text,
         "candidates": values.as_is,  # read one by one below, each with its own place
         "friction_scatter": certain(values.ratio),
     },
@@ -105,13 +107,16 @@ def build_study(document: Document, name: str) -> Study:
         raise together(document.problems)
     with values.using(library, _temperature(document)):
         parts = _parts(document)
+        attempt(document, name_cage, document, parts)
+        fits = name_environment(parts)
     if missing := [f"[{section}]" for section in _REQUIRED_SECTIONS if section not in document.sections]:
         rule = f"lacks the section{'s'[: len(missing) > 1]} {', '.join(missing)}"
         document.problems.append(InputError(document.label, rule))
     if document.problems:
         raise _refusal(document)
     try:
-        study = Study(name=name, title=title or name, origins=_origins(document), **parts)
+        origins = _origins(document) | ({"ranking.environment": FROM_BEARING} if fits else {})
+        study = Study(name=name, title=title or name, origins=origins, **parts)
     except InputError as error:
         raise relocated(document, error) from None
     return _with_distributions(document, replace(study, records=used_records(library, document)))
@@ -286,6 +291,8 @@ def _cage(document: Document, given: dict[str, Any]) -> CageDesign:
     if land and given["guidance"] is Guidance.BALL:
         _say_unused(document, land)
         given = {key: value for key, value in given.items() if key not in land}
+    if isinstance(given.get("material"), str):
+        given = {**given, "material": None}  # a candidate's, perhaps: `name_cage` looks
     refuse_both(document, "cage", "pocket_angles", "pocket_spacing_scatter")
     _refuse_alone(document, "cage", "land_lobes", "land_out_of_round", "the land is round")
     return record_of(document, CageDesign, given)

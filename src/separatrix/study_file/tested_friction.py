@@ -12,7 +12,7 @@ from separatrix.errors import InputError
 from separatrix.friction_file import read_friction
 from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
 from separatrix.friction_fit.records import CONDITIONS
-from separatrix.library import FrictionTable
+from separatrix.library import FrictionTable, folded
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
@@ -58,11 +58,7 @@ def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> 
     """Environments and candidates of a friction file, in the order in which they are first tested."""
     tests = read_friction(path)
     known = tuple(dict.fromkeys(test.material for test in tests))
-    chosen = given.get("materials", known)
-    for material in chosen:
-        if material not in known:
-            rule, cure = f"names a material that {given['friction']} lacks", nearest(material, known)
-            raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
+    chosen = chosen_materials(document, given, known, given["friction"])
     wanted = [test for test in tests if test.material in chosen]
     environments = tuple(dict.fromkeys(test.environment for test in wanted))
     scatter, source = scatter_of(given), _source(path)
@@ -70,6 +66,19 @@ def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> 
         "environments": environments,
         "candidates": tuple(_candidate(name, environments, tests, scatter, source) for name in chosen),
     }
+
+
+def chosen_materials(
+    document: Document, given: dict[str, Any], known: tuple[str, ...], name: str
+) -> tuple[str, ...]:
+    """Materials that the study ranks, in any spelling; by default all that are known."""
+    by_spelling = {folded(material): material for material in known}
+    chosen = [by_spelling.get(folded(material), material) for material in given.get("materials", known)]
+    for material in chosen:
+        if material not in known:
+            rule, cure = f"names a material that {name} lacks", nearest(material, known)
+            raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
+    return tuple(chosen)
 
 
 def _source(path: Path) -> str:

@@ -33,11 +33,13 @@ __all__ = [
     "Reader",
     "as_is",
     "build",
+    "cage_material",
     "choice",
     "current_library",
     "current_temperature",
     "friction",
     "kicks",
+    "known_name",
     "list_of",
     "material",
     "material_in_place",
@@ -46,7 +48,6 @@ __all__ = [
     "pocket_angles",
     "quantity",
     "ratio",
-    "refuse_unknown",
     "restitution_factors",
     "table",
     "text",
@@ -122,15 +123,23 @@ def material(kind: str) -> Reader:
 
 def named_material(name: str, kind: str, where: str) -> Material:
     """Material of the library, or a refusal that lists what there is."""
-    refuse_unknown(name, kind, where)
-    return current_library().material(kind, name, current_temperature())
+    return current_library().material(kind, known_name(name, kind, where), current_temperature())
 
 
-def refuse_unknown(name: str, kind: str, where: str) -> None:
-    """Refuse a name that the library lacks, with the nearest one and what there is."""
+def cage_material(value: Any, where: str) -> Material | Uncertain | str:
+    """Read the cage's material; a name that the library lacks stays, for it may be that of a candidate."""
+    if isinstance(value, str) and current_library().named("cage material", value) is None:
+        return text(value, where)
+    found: Material | Uncertain = material("cage material")(value, where)
+    return found
+
+
+def known_name(name: str, kind: str, where: str, more: str = "") -> str:
+    """Exact name in the library of one in any spelling, or a refusal with what there is."""
     names = current_library().names(kind)
-    if name in names:
-        return
+    found = current_library().named(kind, name)
+    if found is not None:
+        return found
     listed = f"The library has {', '.join(names)}."
     if len(listed) > 200:
         listed = f"{listed[: listed.rindex(',', 0, 200)]}, ..."
@@ -140,7 +149,7 @@ def refuse_unknown(name: str, kind: str, where: str) -> None:
         f"is no {kind} of the library",
         "",
         shown(name),
-        f"{near} {listed}" if near.startswith("Did") else listed,
+        f"{near} {listed}{more}" if near.startswith("Did") else f"{listed}{more}",
     )
 
 

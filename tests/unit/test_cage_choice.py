@@ -1,0 +1,103 @@
+"""One cage and one environment for every verb: what a study names, and what it must say."""
+
+from dataclasses import replace
+
+import pytest
+
+from separatrix.cage_choice import pocket_friction, required_environment
+from separatrix.chain import restitution_state
+from separatrix.errors import InputError
+from separatrix.study_file import read_study
+
+OTHERS = """extends = "cryogenic-turbopump"
+[cage]
+{cage}
+[operation]
+fluid = "{fluid}"
+[ranking]
+{ranking}
+[[ranking.candidates]]
+name = "My compound"
+friction = {{ "LN2, AISI 440C" = 0.3, "air, 440c" = 0.2 }}
+material = {{ elastic_modulus = "3 GPa", poisson_ratio = 0.4 }}
+[[ranking.candidates]]
+name = "Other"
+friction = {{ "LN2, AISI 440C" = 0.1, "air, 440c" = 0.4 }}
+"""
+
+
+def case(tmp_path, cage='material = "My compound"', fluid="liquid nitrogen", ranking=""):
+    """A study with two candidates of its own."""
+    path = tmp_path / "case.toml"
+    path.write_text(OTHERS.format(cage=cage, fluid=fluid, ranking=ranking))
+    return read_study(path)
+
+
+def extended(tmp_path, text):
+    """The shipped study with some lines changed."""
+    path = tmp_path / "case.toml"
+    path.write_text('extends = "cryogenic-turbopump"\n' + text)
+    return read_study(path)
+
+
+@pytest.mark.parametrize("name", ["Armalon", "armalon", "Meldin HTC 100", "meldin htc-100"])
+def test_the_cage_material_names_the_candidate(tmp_path, name):
+    """Its friction in the environment of the bearing, not that of the first candidate on another steel."""
+    study = extended(tmp_path, f'[cage]\nmaterial = "{name}"\n')
+    assert study.ranking.environment == "liquid nitrogen, 440C"
+    assert pocket_friction(study) == (0.32 if name[0] in "Mm" else 0.08)
+
+
+def test_the_cage_may_be_a_candidate_that_no_library_has(tmp_path):
+    """With the candidate's own modulus for the pocket's stiffness."""
+    study = case(tmp_path)
+    assert pocket_friction(study) == 0.3
+    assert study.cage.material == study.ranking.candidates[0].material
+    soft = replace(study, cage=replace(study.cage, ball_cage_stiffness=None))
+    assert restitution_state(soft).stiffness_source.startswith("Hertz")
+
+
+@pytest.mark.parametrize(
+    ("fluid", "environment"),
+    [("LN2", "LN2, AISI 440C"), ("liquid nitrogen", "LN2, AISI 440C"), ("Air", "air, 440c")],
+)
+def test_the_environment_is_found_by_identity(tmp_path, fluid, environment):
+    """Fluid and steel by any of their names."""
+    study = case(tmp_path, fluid=fluid)
+    assert required_environment(study, study.ranking) == environment
+
+
+def test_an_environment_that_nothing_matches_must_be_said(tmp_path):
+    """Liquid oxygen is not liquid nitrogen; the refusal lists what there is, and a given one serves."""
+    study = extended(tmp_path, '[operation]\nfluid = "LOX"\n[cage]\nmaterial = "Armalon"\n')
+    with pytest.raises(InputError, match=r'environment is missing.*or "liquid nitrogen, 440C"'):
+        required_environment(study, study.ranking)
+    with pytest.raises(InputError, match="environment is missing"):
+        pocket_friction(study)
+    given = '[operation]\nfluid = "LOX"\n[ranking]\nenvironment = "Liquid Nitrogen, 440c"\n'
+    assert extended(tmp_path, given).ranking.environment == "liquid nitrogen, 440C"
+
+
+def test_an_unknown_environment_is_refused(tmp_path):
+    """With those that there are."""
+    with pytest.raises(InputError, match=r"\[ranking\] environment must be one .*liquid nitrogen, 440C"):
+        extended(tmp_path, '[ranking]\nenvironment = "vacuum"\n')
+
+
+def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
+    """The refusal lists the candidates; it comes only from a verb that needs the friction."""
+    study = case(tmp_path, 'material = "Vespel SP 211"')
+    with pytest.raises(InputError, match=r'"Vespel SP 211" is not a candidate.*My compound, Other'):
+        pocket_friction(study)
+    assert pocket_friction(case(tmp_path, 'material = "Armalon"\nball_cage_friction = 0.2')) == 0.2
+    nameless = replace(study, cage=replace(study.cage, material=None, material_name=None))
+    with pytest.raises(InputError, match=r"without a \[cage\] material.*My compound, Other"):
+        pocket_friction(nameless)
+    alone = replace(nameless, ranking=replace(study.ranking, candidates=study.ranking.candidates[1:]))
+    assert pocket_friction(alone) == 0.1
+
+
+def test_a_name_that_nobody_has_is_refused(tmp_path):
+    """With the library's names and the candidates'."""
+    with pytest.raises(InputError, match=r"is no cage material of the library.*Candidates are My compound"):
+        case(tmp_path, 'material = "Unobtainium"')
