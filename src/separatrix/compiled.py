@@ -1,39 +1,107 @@
 """How kernels are compiled: strict floating point, without the interpreter's lock, and cached.
 
-numba keeps compiled code until the file of the function changes; it does not see a change in another file
-whose functions were compiled in. So the key of every cached kernel also holds a checksum of all files that
-have kernels.
+numba keeps compiled code until the file of the function changes. It does not see a change in another file,
+although a constant or a function of that file may be compiled in. So the code is cached in a folder that is
+named after the sources: every file from which a kernel can have taken anything, that is every file of the
+package that a module with kernels imports, directly or through others. A report or a figure is not one of
+them, so that an edit there compiles nothing again.
 """
 
 from __future__ import annotations
 
+import contextlib
+import os
+import re
+import shutil
+import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-from numba import njit
-from numba.core.caching import FunctionCache
+import numba
+
+CONFIG: Any = numba.config
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
+UNUSED = 14 * 86400.0
+"""Time after which compiled code of other sources is removed [s]: some days of changing between versions."""
 
-def source_stamp(package: Path) -> int:
-    """Checksum of the files below a folder that use this module."""
-    sources = (path.read_bytes() for path in sorted(package.rglob("*.py")))
-    return zlib.crc32(b"".join(source for source in sources if b"separatrix.compiled" in source))
-
-
-_STAMP = source_stamp(Path(__file__).parent)
+_IMPORT = re.compile(rb"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)", re.MULTILINE)
+_WHOLE_IMPORT = re.compile(rb"^[ \t]*import[ \t]+([^\n]+)", re.MULTILINE)
 
 
-class _SourceCache(FunctionCache):
-    """numba's cache of one function, keyed by the sources of all kernels too."""
+def kernel_sources(package: Path) -> list[Path]:
+    """Files of a package from which its kernels can take values or functions, in order.
 
-    def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
-        key: Any = super()._index_key
-        return (*key(sig, codegen), _STAMP)
+    These are the modules that use this one, and all that they import from the package. An import that a
+    function or a type checker makes counts too: one file too many costs time, one too few a wrong answer.
+    """
+    name, sources = package.name, {path: path.read_bytes() for path in package.rglob("*.py")}
+    modules = {_module(path.relative_to(package.parent)): path for path in sources}
+    waiting = [key for key, path in modules.items() if f"{name}.compiled".encode() in sources[path]]
+    found: set[str] = set()
+    while waiting:
+        module = waiting.pop()
+        if module in modules and module not in found:
+            found.add(module)
+            waiting += _imported(sources[modules[module]])
+    return sorted(modules[module] for module in found)
+
+
+def _module(path: Path) -> str:
+    parts = path.with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _imported(source: bytes) -> Iterator[str]:
+    """Modules that a source may import; the names that it takes out of them are tried as modules."""
+    for home, names in _IMPORT.findall(source):
+        yield home.decode()
+        yield from (f"{home.decode()}.{name.decode()}" for name in re.findall(rb"\w+", names))
+    for names in _WHOLE_IMPORT.findall(source):
+        yield from (name.decode() for name in re.findall(rb"[\w.]+", names))
+
+
+def source_stamp(package: Path) -> str:
+    """Checksum of `kernel_sources` and of the compiler's version."""
+    stamp = zlib.crc32(numba.__version__.encode())
+    for path in kernel_sources(package):
+        stamp = zlib.crc32(path.read_bytes(), zlib.crc32(path.name.encode(), stamp))
+    return f"{stamp:08x}"
+
+
+def cache_folder(package: Path) -> Path | None:
+    """Folder for code that is compiled from these sources; None if no folder can be written.
+
+    It is in the folder that NUMBA_CACHE_DIR names; else beside the package's own compiled files; else,
+    where that cannot be written, in the user's cache. The names of the files in it tell versions of Python
+    apart. Folders of other sources that were not used for `UNUSED` are removed.
+    """
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser(os.path.join("~", ".cache"))
+    usual = [package / "__pycache__", Path(user) / package.name]
+    asked = CONFIG.CACHE_DIR
+    for place in [Path(asked)] if asked else usual:
+        folder = place / f"{package.name}-kernels-{source_stamp(package)}"
+        with contextlib.suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            os.utime(folder)
+            if os.access(folder, os.W_OK):
+                _remove_unused(folder)
+                return folder
+    return None
+
+
+def _remove_unused(folder: Path) -> None:
+    """Remove the caches beside this one that were not used for long."""
+    for other in folder.parent.glob(f"{folder.name.rpartition('-')[0]}-*"):
+        if other.stat().st_mtime < time.time() - UNUSED:
+            shutil.rmtree(other, ignore_errors=True)
+
+
+_FOLDER = cache_folder(Path(__file__).parent)
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -55,9 +123,14 @@ def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _cached(function: Callable[P, R], **options: bool) -> Callable[P, R]:
-    """Compile with numba and cache by the sources of all kernels."""
-    compile_with: Any = njit
-    compiled: Any = compile_with(nogil=True, error_model="numpy", **options)(function)
-    cache: Any = _SourceCache
-    compiled._cache = cache(function)
+    """Compile with numba, and cache in the folder of these sources."""
+    compile_with: Any = numba.njit
+    usual = CONFIG.CACHE_DIR
+    try:
+        CONFIG.CACHE_DIR = str(_FOLDER or "")
+        compiled: Any = compile_with(nogil=True, error_model="numpy", cache=_FOLDER is not None, **options)(
+            function
+        )
+    finally:
+        CONFIG.CACHE_DIR = usual
     return compiled  # type: ignore[no-any-return]
