@@ -147,6 +147,37 @@ def test_two_runs_are_compared(folder, capsys):
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
 
 
+def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys):
+    """Two kicks and seeds of one study, another friction; no key that a study file does not know."""
+    other = SMALL.replace("= 0.1", "= 0.2").replace("[stability]", "[stability]\nseed = 2")
+    (folder / "other.toml").write_text(other)
+    options = ["--kick", "1 m/s", "--run", "1", "--out", str(folder / "other"), "--quiet"]
+    assert main(["simulate", str(folder / "other.toml"), *options]) == 0
+    capsys.readouterr()
+    assert main(["compare", str(folder / "small"), str(folder / "other"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {one["key"]: (one["first"], one["second"]) for one in found["differences"]} == {
+        "cage.ball_cage_friction": (0.1, 0.2),
+        "stability.seed": (1, 2),
+        "--kick": (0.5, 1.0),
+        "--run": (0, 1),
+    }
+    land = [float(abs(results.load(folder / name)["land_force"]).max()) for name in ("small/simulate.nc",)]
+    assert found["runs"][0]["largest_land_force"] == land[0]
+
+
+def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
+    """One run takes it from the first candidate, the other from the study; the table's range is no input."""
+    own = SMALL.replace("ball_cage_friction = 0.1", "")
+    (folder / "candidate.toml").write_text(own)
+    assert main(["simulate", str(folder / "candidate.toml"), "--out", str(folder / "own"), "--quiet"]) == 0
+    capsys.readouterr()
+    assert main(["compare", str(folder / "small"), str(folder / "own"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["differences"]
+    taken = float(results.load(folder / "own" / "simulate.nc")["cage_ball_cage_friction"])
+    assert found == [{"key": "cage.ball_cage_friction", "first": 0.1, "second": taken, "unit": "-"}]
+
+
 def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
     """`--json` without `--out`: the document alone."""
     assert main(["compare", str(folder / "small"), str(folder / "small"), "--json"]) == 0
@@ -160,7 +191,7 @@ def test_what_is_no_simulation_is_not_compared(folder, capsys):
     assert main(["bearing", str(folder / "small.toml"), "--out", str(folder / "bearing")]) == 0
     capsys.readouterr()
     other = str(folder / "bearing" / "bearing.nc")
-    assert "must be an answer of simulate; got bearing" in refused(
+    assert "must be an answer of simulate or rank; got bearing" in refused(
         capsys, "compare", str(folder / "small"), other
     )
     toml = str(folder / "small.toml")

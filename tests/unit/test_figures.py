@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
 from separatrix.figures.heading import heading
+from separatrix.figures.literal import literal_texts
 from separatrix.figures.ranking import _ranks, file_name
 from separatrix.figures.spectrum import spectrum_against_time, whirl_spectrum
 from separatrix.figures.style import canvas, journal, label_lines, save, settled, spread
@@ -124,7 +125,7 @@ def described(data, verb, **changes):
 def test_a_run_is_headed_by_study_medium_friction_kick_run_and_seed():
     """Three lines: what it is, what it runs in and on, which run; a dollar is no formula."""
     one = described(drawn.run(cage_ball_cage_friction=0.09, run=3), "simulate")
-    assert heading(one) == [
+    assert heading(literal_texts(one)) == [
         r"A \$5 bearing",
         "liquid nitrogen, 77 K; PTFE, 500 nm",
         "pocket friction 0.09 (Armalon in vacuum), kick 0.5 m/s, run 3, seed 7: GROWS after 10 ms",

@@ -1,136 +1,283 @@
-"""The verb `compare`: two saved simulations side by side."""
+"""The verb `compare`: two saved answers of `simulate`, or two of `rank`, side by side."""
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from separatrix.cli.console import answer
+from separatrix.cli.console import answer, harmless
 from separatrix.cli.files import staged, writable_folder
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
 
-VERB = "simulate"
+VERBS = ("simulate", "rank")
 NUMBERS = ("kick", "run", "energy_growth", "largest_offset", "largest_contact_force", "outcome")
-"""What a saved simulation says of itself in one value."""
+"""What a saved simulation says of itself in one value; not every version has each."""
+
+DRAWN: dict[str, int] = {
+    **dict.fromkeys(("outcome", "kick", "largest_offset"), 0),
+    **dict.fromkeys(("time", "land_force", "kinetic_energy", "spring_energy", "land_energy"), 1),
+    **dict.fromkeys(("pocket_angle", "half_play"), 1),
+    **dict.fromkeys(("position", "velocity", "contact_force"), 2),
+}
+"""What a comparison of simulations takes from each: variable and number of its dimensions."""
+
+RANKED = ("verdict", "margin", "probability_stable", "friction", "restitution_threshold")
+"""What a comparison of rankings takes of each material."""
+
+FRICTION = "cage.ball_cage_friction"
+"""Key of the pocket friction, which a study may leave to its candidates."""
+
+OVERALL = "Overall: mean friction over the measured environments"
+BESIDE = ("record", "table", "other_tests", "distribution")
+"""Parts of a resolved study that are not inputs: whole records of the library."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Saved:
-    """One saved simulation: where it was found, and its data."""
+    """One saved answer: where it was found, its data, and the resolved study in it."""
 
     path: Path
     data: xr.Dataset
+    study: Mapping[str, Any]
+
+    @property
+    def verb(self) -> str:
+        """The question that it answers."""
+        return str(self.data.attrs["verb"])
 
     @property
     def title(self) -> str:
         """Title of its study."""
-        return str(self.data.attrs.get("title", self.path.stem))
+        return str(self.data.attrs["title"])
 
 
 def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> int:
-    """Compare two saved simulations, draw them together, and return the exit status.
+    """Compare two saved answers, draw simulations together, and return the exit status.
 
     Parameters
     ----------
     first, second : Path
-        Folder of an answer of `simulate`, or its netCDF file.
+        Folder of an answer of `simulate` or `rank`, or its netCDF file.
     out : Path or None
-        Folder of the figure; without it none is drawn where a document is asked for.
+        Folder of the files; without it none is written where a document is asked for.
     as_json : bool
         Whether to print the document instead of the table.
 
     Raises
     ------
     InputError
-        One of them is no saved simulation, or the folder cannot be written.
+        One of them is not a saved answer, they answer different questions, or the folder cannot be written.
     """
     from separatrix.report.compare import compare as in_words
 
     pair = read(first), read(second)
+    if pair[0].verb != pair[1].verb:
+        rule = f"must be an answer of {pair[0].verb}, as {first} is"
+        raise InputError(str(second), rule, value=pair[1].verb)
     found = document(*pair)
     folder = out or (None if as_json else Path("compare"))
     if folder is not None:
         with writable_folder(folder):
-            _draw(pair, found, folder)
+            _write(pair, found, folder)
     answer(json.dumps(found, indent=1, allow_nan=False) + "\n" if as_json else in_words(found, folder))
     return 0
 
 
 def read(path: Path) -> Saved:
-    """Return a saved simulation.
+    """Return a saved answer of `simulate` or `rank`.
 
     Raises
     ------
     InputError
-        There is none, or it answers another question.
+        There is none, it answers another question, or it lacks something that such an answer has.
     """
     from separatrix import results
 
-    file = path / f"{VERB}.nc" if path.is_dir() else path
-    if not file.exists():
-        cure = f"Make it with: separatrix {VERB} STUDY --out DIR."
-        raise InputError(str(path), "holds no saved simulation", cure=cure)
-    data = results.load(file)
-    if data.attrs.get("verb") != VERB:
-        raise InputError(str(path), f"must be an answer of {VERB}", value=str(data.attrs.get("verb", "none")))
-    return Saved(path=path, data=data)
+    here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
+    if not here or not here[0].exists():
+        cure = "Make one with: separatrix simulate STUDY --out DIR, or separatrix rank STUDY --out DIR."
+        raise InputError(str(path), "holds no saved simulation or ranking", cure=cure)
+    data = results.load(here[0])
+    if data.attrs.get("verb") not in VERBS:
+        rule = f"must be an answer of {' or '.join(VERBS)}"
+        raise InputError(str(path), rule, value=str(data.attrs.get("verb", "none")))
+    _check_head(data, path)
+    study = _study(data, path)
+    _check_variables(data, path)
+    return Saved(path=path, data=data, study=study)
 
 
-def document(first: Saved, second: Saved) -> dict[str, Any]:
-    """Return what each simulation says of itself, and the inputs in which their studies differ."""
-    from separatrix import __version__
+def _check_head(data: xr.Dataset, path: Path) -> None:
+    """Refuse an answer without title or seed."""
+    if not str(data.attrs.get("title", "")).strip():
+        raise InputError(str(path), "lacks its title")
+    try:
+        int(data.attrs["seed"])
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise InputError(str(path), "lacks its seed") from None
 
+
+def _check_variables(data: xr.Dataset, path: Path) -> None:
+    """Refuse an answer that lacks what is compared, or has it in another shape."""
+    wanted = DRAWN if data.attrs["verb"] == "simulate" else _ranked()
+    for name, dimensions in wanted.items():
+        if name not in data or data[name].ndim != dimensions or data[name].size == 0:
+            raise InputError(str(path), f"lacks {name}, which an answer of {data.attrs['verb']} has")
+    texts = {name for name in wanted if name.endswith(("outcome", "verdict")) or name == "environment"}
+    for name in (name for name in wanted if name not in {*texts, "material"}):
+        if data[name].dtype.kind not in "iuf":
+            raise InputError(str(path), f"must have numbers in {name}", value=str(data[name].dtype))
+
+
+def _ranked() -> dict[str, int]:
+    """Variables of a ranking, with their number of dimensions."""
+    heads = {"material": 1, "environment": 1}
     return {
-        "separatrix_version": __version__,
-        "verb": "compare",
-        "runs": [_in_numbers(first), _in_numbers(second)],
-        "differences": list(differences(first.data, second.data)),
+        **heads,
+        **{f"overall_{name}": 1 for name in RANKED},
+        **{f"material_{name}": 2 for name in RANKED},
     }
 
 
+def _study(data: xr.Dataset, path: Path) -> Mapping[str, Any]:
+    """Return the resolved study that an answer holds; what stands above figures can be read from it."""
+    from separatrix.figures.heading import heading
+
+    try:
+        study = json.loads(data.attrs.get("study", ""))
+        inputs = dict(_inputs(study))
+        heading(data)
+    except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
+        inputs = {}
+    if not inputs:
+        raise InputError(str(path), "holds a study that separatrix did not write")
+    return dict(study)
+
+
+def document(first: Saved, second: Saved) -> dict[str, Any]:
+    """Return what each answer says of itself, and the inputs that differ."""
+    from separatrix import __version__
+
+    found: dict[str, Any] = {"separatrix_version": __version__, "verb": "compare", "of": first.verb}
+    if first.verb == "simulate":
+        found["runs"] = [_in_numbers(first), _in_numbers(second)]
+    else:
+        found["rankings"] = [_named(first), _named(second)]
+        found["environments"] = list(_side_by_side(first.data, second.data))
+    return found | {"differences": list(differences(first, second))}
+
+
+def _named(saved: Saved) -> dict[str, Any]:
+    return {"path": str(saved.path), "title": saved.title, "seed": int(saved.data.attrs["seed"])}
+
+
 def _in_numbers(saved: Saved) -> dict[str, Any]:
-    values = {name: saved.data[name].item() for name in NUMBERS if name in saved.data}
-    finite = {name: None if value != value else value for name, value in values.items()}
-    return {"path": str(saved.path), "title": saved.title, "seed": int(saved.data.attrs["seed"])} | finite
+    """Return the single numbers of a simulation, and the largest force of its land."""
+    data = saved.data
+    values = {name: data[name].item() for name in NUMBERS if name in data and data[name].size == 1}
+    values["largest_land_force"] = float(abs(data["land_force"]).max())
+    return _named(saved) | {name: _or_none(value) for name, value in values.items()}
 
 
-def differences(first: xr.Dataset, second: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield each input of the two studies that differs, by its name in a study file."""
-    one, other = (dict(_inputs(json.loads(data.attrs["study"]))) for data in (first, second))
-    for key in sorted({*one, *other}):
+def _or_none(value: Any) -> Any:
+    """Return a value that was there: no NaN stands for a number, no empty text for a verdict."""
+    is_absent = value == "" or (isinstance(value, float) and not math.isfinite(value))
+    return None if is_absent else value
+
+
+def _side_by_side(first: xr.Dataset, second: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield the materials of two rankings, overall and in each environment that either has."""
+    tables = _tables(first), _tables(second)
+    for environment in {**tables[0], **tables[1]}:
+        one, other = (table.get(environment, {}) for table in tables)
+        rows = [
+            {"name": name, "first": one.get(name), "second": other.get(name)} for name in {**one, **other}
+        ]
+        yield {"name": environment, "materials": rows}
+
+
+def _tables(data: xr.Dataset) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return environment -> material -> what the ranking says of it."""
+    tables = {OVERALL: _rows(data, "overall_")}
+    for i, environment in enumerate(data["environment"].values):
+        tables[str(environment)] = _rows(data.isel(environment=i), "material_")
+    return tables
+
+
+def _rows(data: xr.Dataset, prefix: str) -> dict[str, dict[str, Any]]:
+    """Return material -> its numbers; None where a material was not measured."""
+    columns = {name: data[prefix + name].values.tolist() for name in RANKED}
+    return {
+        str(material): {name: _or_none(column[i]) for name, column in columns.items()}
+        for i, material in enumerate(data["material"].values)
+    }
+
+
+def differences(first: Saved, second: Saved) -> Iterator[dict[str, Any]]:
+    """Yield each input that differs: keys of the study, then options of the command."""
+    one, other = (dict(_all_inputs(saved)) for saved in (first, second))
+    for key in {**one, **other}:
         a, b = one.get(key, (None, None)), other.get(key, (None, None))
         if a[0] != b[0]:
             yield {"key": key, "first": a[0], "second": b[0], "unit": a[1] or b[1]}
 
 
+def _all_inputs(saved: Saved) -> Iterator[tuple[str, tuple[Any, str | None]]]:
+    """Yield every input of an answer; of a simulation also kick and run, and the friction that it took."""
+    yield from sorted(_inputs(saved.study), key=lambda pair: pair[0])
+    taken = (("--kick", "kick", "m/s"), ("--run", "run", None), (FRICTION, "cage_ball_cage_friction", "-"))
+    for key, name, unit in taken if saved.verb == "simulate" else ():
+        if name in saved.data and saved.data[name].size == 1:
+            yield key, (_or_none(saved.data[name].item()), unit)
+
+
 def _inputs(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, tuple[Any, str | None]]]:
-    """Yield name, value and unit of every input of a resolved study."""
+    """Yield name, value and unit of every input of a resolved study; of an uncertain one what is known."""
     if "value" in node:
-        yield path, (node["value"], node.get("unit"))
+        known = node.get("distribution")
+        words = known.get("written") or known.get("words") if isinstance(known, Mapping) else None
+        yield path, (words or node["value"], None if words else node.get("unit"))
         return
+    if path and isinstance(node.get("name"), str):
+        yield path, (node["name"], None)
     for key, item in node.items():
-        if isinstance(item, Mapping):
+        if isinstance(item, Mapping) and key not in BESIDE:
             yield from _inputs(item, f"{path}.{key}" if path else key)
+        elif key == "candidates" and isinstance(item, list):
+            yield from _frictions(item)
 
 
-def _draw(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) -> None:
-    """Write figure, document and text, all or none."""
+def _frictions(candidates: list[Any]) -> Iterator[tuple[str, tuple[Any, str | None]]]:
+    """Yield the mean friction of each candidate in each environment, and its material."""
+    for one in (one for one in candidates if isinstance(one, Mapping)):
+        at = f"friction of {one.get('name')}"
+        friction = one.get("friction")
+        for environment, measured in friction.items() if isinstance(friction, Mapping) else ():
+            if isinstance(measured, Mapping):
+                yield f"{at} in {environment}", (measured.get("mean"), "-")
+        if isinstance(one.get("material"), Mapping):
+            yield from _inputs(one["material"], f"material of {one.get('name')}")
+
+
+def _write(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) -> None:
+    """Write document and text, and the figure of simulations, all or none."""
     from separatrix import figures
     from separatrix.report.compare import compare as in_words
 
-    names = _names(pair)
     with staged(folder) as stage:
         (stage / "compare.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-        (stage / "compare.txt").write_text(in_words(found, folder), encoding="utf-8")
-        figure = figures.compared(pair[0].data, pair[1].data, names)
-        for suffix in (".png", ".svg"):
-            figures.save(figure, stage / f"comparison{suffix}")
+        (stage / "compare.txt").write_text(harmless(in_words(found, folder)), encoding="utf-8")
+        if pair[0].verb == "simulate":
+            figure = figures.compared(pair[0].data, pair[1].data, _names(pair))
+            for suffix in (".png", ".svg"):
+                figures.save(figure, stage / f"comparison{suffix}")
 
 
 def _names(pair: tuple[Saved, Saved]) -> tuple[str, str]:

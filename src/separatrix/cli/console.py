@@ -5,8 +5,10 @@ from __future__ import annotations
 import _thread
 import contextlib
 import os
+import re
 import sys
 import threading
+import unicodedata
 from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import TextIO
@@ -20,10 +22,27 @@ RETRY = 0.02
 """Time after which a swallowed interrupt is sent again [s]."""
 
 
+_SUSPECT = re.compile(r"[^\n\x20-\x7e]")
+
+
+def harmless(text: str) -> str:
+    """Return the text with control characters spelled out, except ends of lines.
+
+    A terminal obeys them, and a title, a name or a log's header may come from somebody else. Characters that
+    cannot be seen, such as those that turn the direction of writing, are spelled out too.
+    """
+    return _SUSPECT.sub(_spelled, text)
+
+
+def _spelled(found: re.Match[str]) -> str:
+    c = found.group()
+    is_seen = c.isprintable() or unicodedata.category(c) == "Zs"
+    return c if is_seen else c.encode("unicode_escape").decode()
+
+
 def one_line(text: str) -> str:
     """Return the text on one line, with what no terminal should be sent spelled out."""
-    joined = " ".join(text.split())
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in joined)
+    return harmless(" ".join(text.split()))
 
 
 def complain(message: str) -> None:
@@ -69,11 +88,11 @@ class Interruptible:
 
 
 def write(stream: TextIO | None, text: str) -> None:
-    """Write text to a stream in whatever encoding it has; None (a closed stream) swallows it."""
+    """Write harmless text to a stream in whatever encoding it has; None (a closed stream) swallows it."""
     if stream is None:
         return
     encoding = stream.encoding or "ascii"
-    stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
+    stream.write(harmless(text).encode(encoding, "backslashreplace").decode(encoding))
     stream.flush()
 
 
@@ -107,8 +126,9 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Callable[[int, int], No
         yield None
         return
     from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress as Bar
 
     with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=None)
+        task = bar.add_task(escape(harmless(title)), total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)

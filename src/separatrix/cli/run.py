@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.answers import Work
-from separatrix.cli.console import answer, interrupted, progress_bar
+from separatrix.cli.console import answer, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
@@ -114,7 +114,7 @@ def _write_files(
     """Write texts, workbook, dataset and pictures."""
     for suffix, text in texts.items():
         path = folder / f"{verb.name}{suffix}"
-        path.write_text(text, encoding="utf-8", errors="backslashreplace")
+        path.write_text(harmless(text), encoding="utf-8")
     if verb.has_workbook:
         from separatrix.workbook import results_workbook
 

@@ -19,6 +19,7 @@ from separatrix.figures import (
 )
 from separatrix.figures import map as maps
 from separatrix.figures.heading import headed
+from separatrix.figures.literal import literal, literal_texts
 from separatrix.figures.style import journal, save, settled
 
 __all__ = ["compared", "figures", "save"]
@@ -60,8 +61,9 @@ def compared(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> F
     """
     from separatrix.figures.comparison import comparison
 
+    shown = literal(names[0]), literal(names[1])
     with journal():
-        return settled(comparison(first, second, names))
+        return settled(comparison(literal_texts(first), literal_texts(second), shown))
 
 
 def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -76,6 +78,7 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """
     if verb in NEEDED and NEEDED[verb] not in data.sizes:
         return
+    data = literal_texts(data)
     with journal():
         for name, draw in FIGURES.get(verb, {}).items():
             yield name, settled(headed(draw(data), data))

@@ -16,6 +16,7 @@ from PIL import Image
 from separatrix.errors import InputError
 from separatrix.figures import simulation
 from separatrix.figures.frames import DRAWN, pictures
+from separatrix.figures.literal import literal_texts
 from separatrix.figures.scene import scene
 from separatrix.figures.spectrum import fastest_whirl
 from separatrix.figures.style import journal
@@ -67,7 +68,7 @@ def animate(
     if kind not in KINDS:
         raise InputError("The kind of an animation", f"must be {' or '.join(KINDS)}", value=f'"{kind}"')
     encoder = video_encoder() if kind == "mp4" else None
-    moments = frame_moments(data)
+    data, moments = literal_texts(data), frame_moments(data)
     with journal(), _beside(path) as part:
         film = _told(pictures(data, scene(data, moments, fixed=fixed), moments), moments.size, progress)
         if encoder is None:

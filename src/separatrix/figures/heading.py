@@ -39,7 +39,7 @@ def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     Parameters
     ----------
     data : Dataset
-        Of any verb; what its attributes do not say is left out.
+        Of any verb, from `literal_texts`; what its attributes do not say is left out.
     width : int
         Most letters of a line.
     """
@@ -47,7 +47,7 @@ def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     around, which, one = list(surroundings(study)), which_run(data, study), "outcome" in data
     parts = [str(data.attrs.get("title", "")), "; ".join([*around, *([] if one or not which else [which])])]
     parts += [which] if one else []
-    return [line for part in parts for line in cut(part.replace("$", r"\$"), width)]
+    return [line for part in parts for line in cut(part, width)]
 
 
 def cut(text: str, width: int) -> list[str]:

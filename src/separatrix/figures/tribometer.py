@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from separatrix.figures.heading import LINE
+from separatrix.figures.literal import literal
 from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
 from separatrix.tribometer.flags import at
 from separatrix.tribometer.reduction import GIVEN
@@ -85,7 +86,7 @@ def heading(data: xr.Dataset) -> list[str]:
     for flag in json.loads(data.attrs["flags"]):
         first, *rest = _wrapped(flag, WIDTH - 2)
         lines += [f"\N{BULLET} {first}", *(f"   {line}" for line in rest)]
-    return [line.replace("$", r"\$") for line in lines]
+    return [literal(line) for line in lines]
 
 
 def _wrapped(text: str, width: int) -> list[str]:

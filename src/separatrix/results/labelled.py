@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from separatrix.errors import InputError
-from separatrix.regular_file import size_of
 from separatrix.results import maps, sensitivity
+from separatrix.results.container import DAMAGE, check_container, damaged
 from separatrix.results.labels import GROUPS, JOINED, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
 OWN: Mapping[str, Any] = {"map": maps, "sensitivity": sensitivity}
@@ -62,15 +61,15 @@ def load(path: Path | str) -> xr.Dataset:
     Raises
     ------
     InputError
-        There is no such file, or it is not one of ours.
+        There is no such file, or it is not one of ours: see `container`.
     """
     path = Path(path)
-    size_of(path, str(path))
+    check_container(path)
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as data:
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
             return data.load()
-    except (OSError, ValueError) as error:
-        raise InputError(str(path), "is not a readable netCDF result", cure=str(error)) from error
+    except DAMAGE as error:
+        raise damaged(str(path), error) from error
 
 
 def _provenance(document: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,137 @@
+"""Files of results, judged before anything in them is used: a file may come from somebody else.
+
+HDF5, the container of netCDF, can make a reader open other files, follow links in circles and expand a
+kilobyte to terabytes. Our own files need none of that: they hold plain arrays of numbers and texts, as long
+as they are. So everything else is refused, and nothing is read that is larger than the file itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from separatrix.errors import InputError
+from separatrix.regular_file import size_of
+from separatrix.units import printable
+
+MOST_BYTES = 512 * 1024**2
+"""Size of a file of results; the longest simulations have some 10 MB."""
+
+MOST_VARIABLES = 5000
+MOST_ATTRIBUTES = 100
+"""Of the file, and of one variable."""
+
+BLOCK = 64 * 1024**2
+"""Texts are measured so many bytes at a time, should each be as long as the file."""
+
+DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, AttributeError, IndexError, MemoryError)
+"""What the libraries below raise at a damaged file."""
+
+_AXES = ("DIMENSION_LIST", "REFERENCE_LIST")
+"""Attributes of netCDF that point from a variable to its dimensions and back."""
+
+_NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable"
+_SAVE_AGAIN = "Only files that separatrix wrote are read; compute this one again."
+
+
+def check_container(path: Path) -> None:
+    """Refuse a file of results that is no plain one.
+
+    Raises
+    ------
+    InputError
+        It is not HDF5, is larger than `MOST_BYTES`, has links, groups, external, virtual or compressed data,
+        data of a type that no result has, or more data than bytes.
+    """
+    where = str(path)
+    size = size_of(path, where)
+    if size > MOST_BYTES:
+        rule = f"is larger than a file of results can be, {MOST_BYTES // 1024**2} MB"
+        raise InputError(where, rule, "", f"{size / 1024**2:.0f} MB")
+    try:
+        with h5py.File(path, "r") as file:
+            _check(file, size, where)
+    except InputError:  # which is a ValueError, too
+        raise
+    except DAMAGE as error:
+        raise damaged(where, error) from None
+
+
+def damaged(where: str, error: Exception) -> InputError:
+    """Refusal of a file that the libraries cannot read."""
+    return InputError(where, "is not a readable netCDF result", cure=printable(str(error), 200))
+
+
+def _check(file: Any, size: int, where: str) -> None:
+    left = size - sum(_attribute_sizes(file, where))
+    if len(file) > MOST_VARIABLES:
+        raise _refusal(where, f"holds more than {MOST_VARIABLES} variables", str(len(file)))
+    for name in file:
+        at = f'{where}, variable "{printable(name)}"'
+        variable = _variable(file, name, at)
+        left -= sum(_attribute_sizes(variable, at))
+        if not bytes(variable.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
+            left -= variable.nbytes
+            if left >= 0 and h5py.check_string_dtype(variable.dtype) is not None:
+                left -= sum(_text_sizes(variable, size))
+        if left < 0:
+            raise _refusal(at, "declares more data than the file has bytes", f"{variable.nbytes} bytes")
+
+
+def _refusal(where: str, rule: str, value: str = "") -> InputError:
+    return InputError(where, rule, "", value, _SAVE_AGAIN)
+
+
+def _variable(file: Any, name: str, at: str) -> Any:
+    """One variable of a file: a plain array, in the file itself."""
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        raise _refusal(at, "is a link")
+    found = file[name]
+    if not isinstance(found, h5py.Dataset):
+        raise _refusal(at, "is not an array")
+    if found.external or found.is_virtual:
+        raise _refusal(at, "has its data in another file or variable")
+    if found.chunks is not None and found.size > 0:
+        raise _refusal(at, "is stored in pieces, as compressed data is")
+    if not _is_plain(found.dtype):
+        raise _refusal(at, "must hold numbers or text", printable(str(found.dtype)))
+    return found
+
+
+def _is_plain(dtype: np.dtype[Any]) -> bool:
+    is_text = h5py.check_string_dtype(dtype) is not None
+    is_number = dtype.kind in "iuf" and h5py.check_enum_dtype(dtype) is None and dtype.shape == ()
+    return is_text or is_number
+
+
+def _attribute_sizes(owner: Any, where: str) -> Iterator[int]:
+    """Bytes of each attribute of a file or a variable; those that are no number or text are refused."""
+    if len(owner.attrs) > MOST_ATTRIBUTES:
+        raise _refusal(where, f"has more than {MOST_ATTRIBUTES} attributes", str(len(owner.attrs)))
+    for name in owner.attrs:
+        kind = owner.attrs.get_id(name)
+        count = int(np.prod(kind.shape, dtype=float))
+        yield count * kind.dtype.itemsize
+        if name in _AXES:
+            continue
+        if not _is_plain(kind.dtype) or (kind.dtype.kind == "O" and count != 1):
+            raise _refusal(where, f'has an attribute "{printable(name)}" that is not a text or numbers')
+        if kind.dtype.kind == "O":
+            yield len(str(owner.attrs[name]))
+
+
+def _text_sizes(variable: Any, size: int) -> Iterator[int]:
+    """Bytes of the texts of a variable, some at a time: all of them may be one long text."""
+    if variable.dtype.kind != "O":
+        return
+    count = max(1, BLOCK // size)
+    if variable.shape == ():
+        yield len(variable[()])
+        return
+    for row in np.ndindex(variable.shape[:-1]):
+        for i in range(0, variable.shape[-1], count):
+            yield sum(len(text) for text in variable[(*row, slice(i, i + count))])

@@ -1,0 +1,97 @@
+"""Two saved rankings side by side."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from separatrix.cli import main
+
+STUDY = {
+    "cage": {"mass": {"value": 0.025, "unit": "kg", "origin": "default"}},
+    "bearing": {"ball_material": {"name": "440C", "elastic_modulus": {"value": 2e11, "unit": "Pa"}}},
+    "film": {"is_bare": True},
+    "ranking": {
+        "candidates": [{"name": "A", "friction": {"gas": {"mean": 0.1}, "liquid": None}, "material": None}],
+        "table": {"conditions": {"normal_force": {"value": [10.0, 140.0], "unit": "N"}}},
+    },
+}
+
+
+def saved(path, study, materials, **numbers):
+    """Write a ranking in one environment; all numbers that are not given are NaN."""
+    names = ("margin", "probability_stable", "friction", "restitution_threshold")
+    values = {name: np.array(numbers.get(name, [np.nan] * len(materials)), dtype=float) for name in names}
+    verdicts = np.array(numbers.get("verdict", [""] * len(materials)), dtype=object)
+    columns = {f"overall_{name}": ("material", one) for name, one in {**values, "verdict": verdicts}.items()}
+    rows = {
+        f"material_{name}": (("environment", "material"), one[np.newaxis])
+        for name, one in {**values, "verdict": verdicts}.items()
+    }
+    data = xr.Dataset(
+        columns
+        | rows
+        | {"material": np.array(materials, dtype=object), "environment": np.array(["gas"], dtype=object)},
+        attrs={"verb": "rank", "title": path.stem, "seed": 1, "study": json.dumps(study)},
+    )
+    data.to_netcdf(path, engine="h5netcdf")
+    return str(path)
+
+
+@pytest.fixture
+def pair(tmp_path, monkeypatch):
+    """Two rankings: another mass, ball material and friction, a material more, another verdict."""
+    monkeypatch.chdir(tmp_path)
+    other = json.loads(json.dumps(STUDY))
+    other["cage"]["mass"]["value"] = 0.03
+    other["bearing"]["ball_material"]["name"] = "Si3N4"
+    other["ranking"]["candidates"][0]["friction"]["gas"]["mean"] = 0.2
+    other["ranking"]["table"]["conditions"]["normal_force"]["value"] = [1.0, 2.0]
+    first = {"margin": [0.5], "probability_stable": [0.0], "friction": [0.1], "verdict": ["UNSTABLE"]}
+    second = {"margin": [-0.25, 0.1], "friction": [0.2, 0.3], "verdict": ["UNDECIDED", "STABLE"]}
+    return (
+        saved(tmp_path / "first.nc", STUDY, ["A"], **first),
+        saved(tmp_path / "second.nc", other, ["A", "B"], **second),
+    )
+
+
+def test_verdict_margin_and_probability_of_each_material(pair, capsys):
+    """A material that only one of them has is there too; 0 is a number, NaN is none."""
+    assert main(["compare", *pair, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    a, b = found["environments"][1]["materials"]
+    assert (a["first"]["verdict"], a["second"]["verdict"]) == ("UNSTABLE", "UNDECIDED")
+    assert (a["first"]["margin"], a["second"]["margin"]) == (0.5, -0.25)
+    assert (a["first"]["probability_stable"], a["second"]["probability_stable"]) == (0.0, None)
+    assert (b["first"], b["second"]["verdict"]) == (None, "STABLE")
+    assert [one["name"] for one in found["environments"]][1:] == ["gas"]
+
+
+def test_inputs_that_differ_are_those_of_a_study_file(pair, capsys):
+    """Values, names of materials and frictions; not what the library says of the tests."""
+    assert main(["compare", *pair, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["differences"]
+    assert {one["key"]: (one["first"], one["second"]) for one in found} == {
+        "cage.mass": (0.025, 0.03),
+        "bearing.ball_material": ("440C", "Si3N4"),
+        "friction of A in gas": (0.1, 0.2),
+    }
+
+
+def test_the_tables_are_printed_and_written(pair, tmp_path, capsys):
+    """Text and document; no figure."""
+    assert main(["compare", *pair, "--out", "both"]) == 0
+    text = capsys.readouterr().out
+    assert "UNSTABLE  UNDECIDED" in text
+    assert "+0.50   -0.25" in text
+    assert {path.name for path in (tmp_path / "both").iterdir()} == {"compare.json", "compare.txt"}
+
+
+def test_a_ranking_is_not_compared_with_a_simulation(pair, tmp_path, capsys):
+    """One line says which is which."""
+    data = xr.load_dataset(pair[0], engine="h5netcdf")
+    data.attrs["verb"] = "simulate"
+    data.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
+    assert main(["compare", pair[0], str(tmp_path / "run.nc")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
