@@ -216,7 +216,7 @@ def _sensitivity(
 
 
 def _compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of an answer of simulate.")],
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of an answer of simulate or rank.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
@@ -312,7 +312,7 @@ def _application() -> typer.Typer:
         help="Friction with its scatter from raw logs of tests.",
         epilog=EPILOGS["tribometer"],
     )(_tribometer)
-    app.command("compare", help="Two saved answers of simulate, side by side.")(_compare)
+    app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
