@@ -216,7 +216,7 @@ def _sensitivity(
 
 
 def _compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of an answer of simulate or rank.")],
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of simulate or of rank.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
