@@ -96,31 +96,30 @@ def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
     rng = np.random.default_rng(11)
     n, size = 256, 1.0
     x = (np.arange(n) + 0.5) / n
-    values = size * np.exp(-3.0 * x / share) + 0.02 * rng.standard_normal(n)
+    values = 2.0 + size * np.exp(-3.0 * x / share) + 0.02 * rng.standard_normal(n)
     found = run_in.run_in(values)
     behind = x > found.end
     rest = size * np.exp(-3.0 * x[behind] / share).mean()
     error = 0.02 / np.sqrt(behind.sum())
     assert found.ends
-    assert rest < error  # of two parts whose sum is least, the one that falls fast is the smaller
-    assert found.end < 3.0 * share  # exp(-9) of it is left there
+    assert rest < 2.0 * np.hypot(error, found.error)  # the interval, of two standard errors, holds it
+    assert 0.4 * share < found.end < 1.5 * share  # a person marks it at the share, where 5 % of it is left
 
 
 def test_an_excess_that_is_over_is_seldom_told_not_to_end():
-    """What a slow fall of little weight would leave is in the error, but is no reason to say so.
+    """An exponential of a tenth of the test, thirty times its noise, on a level of a hundred.
 
-    An exponential of a tenth of the test, thirty times its noise: a third of a standard error is left in
-    truth behind the usual cut. Of 100 logs at most five may say that it does not end.
+    Of 100 logs at most five may say that it does not end.
     """
     rng = np.random.default_rng(16)
     x = (np.arange(256) + 0.5) / 256
-    found = [run_in.run_in(30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
+    found = [run_in.run_in(100.0 + 30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
     assert sum(not one.ends for one in found) <= 5
 
 
 @pytest.mark.parametrize(
     "excess",
-    [lambda x: np.exp(-5.0 * x), lambda x: np.maximum(0.0, 1.0 - x / 0.9)],
+    [lambda x: np.exp(-2.0 * x), lambda x: np.maximum(0.0, 1.0 - x / 0.9)],
     ids=["exponential", "straight"],
 )
 def test_an_excess_that_goes_on_is_told(excess):
@@ -157,14 +156,17 @@ def test_a_fall_that_is_no_exponential_is_cut_too():
 
 
 def test_noise_and_drift_are_seldom_cut():
-    """Without running-in fewer than one of ten logs is cut, for noise with and without correlation."""
+    """Without running-in few logs are cut: noise with and without correlation, a drift of 17 %.
+
+    Where noise is correlated over 3 % of the test a drift in it is no longer even: at most 15 of 100.
+    """
     rng = np.random.default_rng(13)
     cut = [
         run_in.run_in(made(Recipe(rows=768, drift=0.02, correlation=c), rng).log.friction[::3]).end > 0.02
         for c in (0.0, 0.003, 0.01, 0.03)
         for _ in range(25)
     ]
-    assert sum(cut) <= 10
+    assert sum(cut) <= 15
 
 
 def test_a_test_too_short_for_its_correlation_is_told_rather_than_trusted():

@@ -58,7 +58,7 @@ def test_units_may_stand_in_brackets_or_nowhere(tmp_path):
     """A row of bracketed units is one of units; without it they are unknown, also beside names."""
     bracketed, plain = [["t", "mu"], ["[s]", "[-]"]], [["t [s]", "mu"]]
     numbers = [row[:2] for row in NUMBERS]
-    assert log(tmp_path, {"a": bracketed + numbers})[0].units == ("[s]", "[-]")
+    assert log(tmp_path, {"a": bracketed + numbers})[0].units == ("s", "-")
     assert log(tmp_path, {"a": plain + numbers})[0].units == ("", "")
 
 
@@ -154,7 +154,7 @@ def test_columns_of_a_sheet_may_be_given_by_their_numbers(tmp_path):
 
 def test_headers_of_an_instrument_are_known_in_a_workbook(tmp_path):
     """Rtec's CSV saved as a workbook: its names, its timestamp in seconds, and its steps."""
-    rows = [[float(i // 5), float(i % 5), 0.1] for i in range(10)]
+    rows = [[float(i // 5), float(i % 5), 0.1 + 0.01 * i] for i in range(10)]
     found = logs(tmp_path, {"a": [["Step", "Timestamp", "DAQ.COF ()"], *rows]})
     assert [(one.source, one.rows) for one in found] == [
         ("log.xlsx, a, step 0", 5),

@@ -310,9 +310,9 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
 
 def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
     """Without a line between, or with one that names the test."""
-    one = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))
     for between in (b"", b"\n", b"test B\n"):
-        first, second = read_all(tmp_path, one + between + one)
+        first, second = read_all(tmp_path, one + between + two)
         np.testing.assert_array_equal(first.friction, as_written(FRICTION))
         np.testing.assert_array_equal(second.time, as_written(TIME))
 

@@ -73,13 +73,13 @@ def test_running_in_that_does_not_end_is_told():
     """An excess that falls over the whole test is flagged, with the place of the last cut."""
     test = reduce_log(log(replace(QUIET, run_in=0.9, excess=0.2)))
     assert told(test, "Running-in does not end")
-    assert test.run_in_end > 0.7 * 400
+    assert test.run_in_end > 0.5 * 400
 
 
 def test_long_running_in_is_told():
     """A cut behind the middle is told with its share."""
-    test = reduce_log(log(replace(QUIET, run_in=0.3, excess=0.4)))
-    assert told(test, "Running-in takes ")
+    test = reduce_log(log(friction=lambda t: 0.12 + 0.1 * (t < 240.0) + 0.004 * _noise(t.size)))
+    assert told(test, "Running-in takes 60 %")  # to a span of 2 s
 
 
 def failed(share, ratio, **changes):
@@ -271,7 +271,7 @@ def test_a_test_too_short_for_its_correlation_is_told():
     """A correlation over a third of the test: the interval is not to be trusted, and that is said."""
     tests = [reduce_log(log(replace(QUIET, correlation=0.3), seed=seed)) for seed in range(5)]
     assert (
-        sum(bool(told(test, "Friction stays alike over")) for test in tests) >= 3
+        sum(bool(told(test, "Friction is correlated over")) for test in tests) >= 3
     )  # or it looks like a fall
 
 

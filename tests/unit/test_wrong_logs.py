@@ -136,7 +136,7 @@ WRONG = {
     ),
     "the same header twice": (
         lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))),
-        'could be the friction; got columns "COF", "COF". Say which below [columns] in a column map: friction = 2.',
+        'could be the friction; got columns "COF", "COF". Say which below [columns] in a column map: friction = 2 or 3.',
     ),
     "no friction": (
         csv(columns={"time [s]": TIME, "a": FRICTION}),
@@ -209,12 +209,28 @@ WRONG = {
         "has no value of time in any row",
     ),
     "dates for a time": (
-        lines("time [s];COF;n", *(f"2026-02-01 10:00:{i:02d};0.{100 + i};{i}" for i in range(9))),
-        'line 2, column "time [s]" must be a number; got "2026-02-01 10:00:00". Dates and times of day are not read',
+        lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))),
+        'line 2, column "time [s]" must be a number; got "2026-02-01". Write times like "10:00:01.5"',
     ),
-    "times of day": (
-        lines("time;COF", *(f"10:00:{i:02d};0.{100 + i}" for i in range(9))),
-        "has no table of numbers with two columns or more. Dates and times of day are not read from text",
+    "a time among times that is none": (
+        lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"),
+        'line 5, column "time" must be a time; got "late"',
+    ),
+    "times of two numbers": (
+        lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))),
+        'column "time" has no unit',
+    ),
+    "a force without unit": (
+        csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "Load": FORCE}),
+        'tangential_force = { name = "FrictionForce", unit = "N" } and normal_force = { name = "Load", unit = "N" }',
+    ),
+    "a force without unit, and no load": (
+        csv(columns={"time [s]": TIME, "FrictionForce": FORCE}),
+        'tangential_force = { name = "FrictionForce", unit = "N" }, below [test] normal_force = "10 N".',
+    ),
+    "a force beside a mangled letter": (
+        csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}),
+        'got columns "?". Say which below [columns] in a column map: friction = "?".',
     ),
     "a second table without header": (
         csv() + b"second run\n" + csv().split(b"\n", 1)[1],
@@ -239,6 +255,7 @@ def test_a_wrong_log_is_refused_in_one_line(tmp_path, what):
 
 
 WRONG_MAPS = {
+
     "an unknown section": ({"column": {}}, 'has no section of that name; got "column". Did you mean "columns"?'),
     "an unknown meaning": ({"columns": {"friktion": "a"}}, 'got "friktion". Did you mean "friction"?'),
     "a section that is none": ({"columns": 3}, "[columns] must be a section of the file; got 3"),

@@ -6,20 +6,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from separatrix.errors import InputError
+from separatrix.tribometer.clock import CLOCK
 from separatrix.tribometer.column_map import ColumnChoice, ColumnMap
 from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, MEANINGS, ColumnRead
 from separatrix.tribometer.names import (
+    CLOCKS,
     Scale,
     header_parts,
     known_units,
+    looks_like_force,
     looks_like_friction,
     plain,
     ranks,
     scale_of,
 )
 from separatrix.units import printable, shown
+
+LAST = 9
+"""Rank of times as text: a column of seconds is finer."""
+
+
+NO_UNIT = "has no unit, so that its meaning is not sure"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +59,8 @@ class Understood:
     used: dict[str, Chosen]
     columns: tuple[ColumnRead, ...]
     unsettled: dict[str, list[int]] = field(default_factory=dict)
+    twins: dict[str, list[int]] = field(default_factory=dict)
+    """Other columns of the same name and unit as the one used; they must hold the same numbers."""
     """Columns that could have each meaning, had they a unit or were they alone."""
 
 
@@ -92,10 +103,10 @@ def understand(
         for i in range(len(headers))
         if i not in {chosen.index for chosen in given.values()}
     }
-    used, unsettled = _decided(options, given)
+    used, unsettled, twins = _decided(options, given, headers)
     if "tangential_force" in given and "friction" not in given:
         used.pop("friction", None)
-    result = Understood(used, (), unsettled)
+    result = Understood(used, (), unsettled, twins)
     _require_friction(result, headers, source, options, columns, constant_force)
     _require_abscissa(result, headers, source, options)
     result.columns = _read(headers, units, options, result)
@@ -120,6 +131,10 @@ def _given(
     layout: Layout,
 ) -> Chosen:
     index = _place(meaning, choice, headers, source)
+    if meaning == "friction" and not choice.unit and looks_like_force(headers[index]):
+        rule = "is a force by its name, not a coefficient of friction"
+        cure = f'{_forces_line(headers, index)} If it is a coefficient all the same, add unit = "-" here.'
+        raise InputError(_column(source, headers[index]), rule, cure=cure)
     ways = header_parts(layout.header(headers[index]))
     beside = [unit for _, unit in ways if unit and _scale(meaning, unit, layout)]
     if not choice.unit and beside:
@@ -179,19 +194,23 @@ def _options(header: str, unit: str, layout: Layout) -> list[_Option]:
         options = [option for option in options if option.unit and option.scale] or options
         if options and (way == 0 or any(option.scale for option in options)):
             return options
-    return []
+    return [_Option("time", LAST, CLOCK, Scale())] if unit == CLOCK else []
 
 
 def _option(meaning: str, rank: int, unit: str, beside: str, layout: Layout) -> _Option:
+    if unit == CLOCK and beside in CLOCKS:
+        beside = ""
     written = _agreed(unit, beside, meaning, layout)
+    rank = LAST - 1 if unit == CLOCK else rank
     return _Option(meaning, rank, written, _scale(meaning, written, layout))
 
 
 def _decided(
-    options: dict[int, list[_Option]], given: dict[str, Chosen]
-) -> tuple[dict[str, Chosen], dict[str, list[int]]]:
-    """One column for each meaning where one is best; the others as columns that could have it."""
+    options: dict[int, list[_Option]], given: dict[str, Chosen], headers: Sequence[str]
+) -> tuple[dict[str, Chosen], dict[str, list[int]], dict[str, list[int]]]:
+    """One column for each meaning where one is best; the others as columns that could have it; its twins."""
     used, unsettled = dict(given), {}
+    twins: dict[str, list[int]] = {}
     for meaning in MEANINGS:
         if meaning in given:
             continue
@@ -199,12 +218,15 @@ def _decided(
         if sure:
             best = min(option.rank for option in sure.values())
             sure = {i: option for i, option in sure.items() if option.rank == best}
-        if len(sure) == 1:
-            ((index, option),) = sure.items()
+        if len({(headers[i].strip(), option.unit) for i, option in sure.items()}) == 1:
+            (index, option), *others = sure.items()
+            twins[meaning] = [i for i, _ in others]
+            sure = {index: option}
             used[meaning] = Chosen(index, option.scale or Scale(), option.unit, "its name")
         unsure = [i for i, o in options.items() if i not in sure and any(x.meaning == meaning for x in o)]
+        unsure = [i for i in unsure if i not in twins.get(meaning, [])]
         unsettled[meaning] = list(sure) if len(sure) > 1 else ([] if sure else unsure)
-    return used, unsettled
+    return used, unsettled, twins
 
 
 def _require_friction(
@@ -221,6 +243,8 @@ def _require_friction(
         return
     for meaning in ("tangential_force", "normal_force") if chosen_forces else ("friction",):
         _refuse_unsettled(meaning, result, headers, source, options)
+    if not chosen_forces and any(looks_like_friction(header) for header in headers):
+        raise _no_friction(headers, source, result)
     for meaning, other in (("tangential_force", "normal_force"), ("normal_force", "tangential_force")):
         if other in result.used or result.unsettled[other]:
             _refuse_unsettled(meaning, result, headers, source, options)
@@ -228,7 +252,7 @@ def _require_friction(
 
 
 def _no_friction(headers: Sequence[str], source: str, result: Understood) -> InputError:
-    near = [i for i, header in enumerate(headers) if looks_like_friction(header)]
+    """Refuse a table without friction: offer what may be a coefficient, else the forces that give one."""
     if "tangential_force" in result.used:
         rule = "has a tangential force but no normal force"
         cure = (
@@ -236,9 +260,33 @@ def _no_friction(headers: Sequence[str], source: str, result: Understood) -> Inp
         )
         return InputError(source, rule, cure=cure)
     rule = "has no column that is known to be the friction, nor two forces that give it"
-    name = headers[near[0]].strip() if near else "..."
-    cure = f"Say which below [columns] in a column map: friction = {shown(name)}."
-    return InputError(source, rule, "", _listed(headers, near or range(len(headers))), cure)
+    near = [i for i, header in enumerate(headers) if looks_like_friction(header)]
+    forces = [i for i in range(len(headers)) if i not in near and _is_tangential(headers[i])]
+    if near or not forces:
+        name = headers[near[0]].strip() if near else "..."
+        cure = f"Say which below [columns] in a column map: friction = {shown(name)}."
+        if not near:
+            cure += " A log without friction is of no use here: leave it out."
+        return InputError(source, rule, "", _listed(headers, near or range(len(headers))), cure)
+    return InputError(source, rule, "", _listed(headers, forces), _forces_line(headers, forces[0]))
+
+
+def _is_tangential(header: str) -> bool:
+    words = plain(header)
+    parts = ("fric", "reib", "frott", "tang", "lateral")
+    return looks_like_force(header) and any(part in words for part in parts)
+
+
+def _forces_line(headers: Sequence[str], index: int) -> str:
+    """The lines of a column map that make friction from a force whose unit is not known."""
+    normal = [i for i in range(len(headers)) if i != index and "normal_force" in ranks(headers[i])]
+    name = shown(headers[index].strip())
+    lines = f'tangential_force = {{ name = {name}, unit = "N" }}'
+    if normal:
+        lines += f' and normal_force = {{ name = {shown(headers[normal[0]].strip())}, unit = "N" }}'
+        return f"Below [columns] in a column map, with the true units: {lines}."
+    load = 'below [test] normal_force = "10 N"'
+    return f"In a column map, with the true unit and load: below [columns] {lines}, {load}."
 
 
 def _require_abscissa(
@@ -262,12 +310,19 @@ def _refuse_unsettled(
         return
     if len(places) == 1:
         option = next(o for o in options[places[0]] if o.meaning == meaning)
+        if meaning == "tangential_force" and not option.unit and "normal_force" not in result.used:
+            cure = _forces_line(headers, places[0])
+            raise InputError(_column(source, headers[places[0]]), NO_UNIT, cure=cure)
         raise _unit_wanted(meaning, headers[places[0]], option.unit, source, options[places[0]])
     twice = len({headers[i].strip() for i in places}) < len(places)
     choice = str(places[0] + 1) if twice else shown(headers[places[0]].strip())
     rule = f"has {len(places)} columns that could be the {_words(meaning)}"
     cure = f"Say which below [columns] in a column map: {meaning} = {choice}."
     raise InputError(source, rule, "", _listed(headers, places), cure)
+
+
+def _column(source: str, header: str) -> str:
+    return f"{source}: column {shown(header.strip())}"
 
 
 def _unit_wanted(
@@ -282,7 +337,7 @@ def _unit_wanted(
     if unit:
         rule = f"has a unit that is not one of the {_words(meaning)} ({known_units(meaning)})"
         return InputError(f"{source}: column {name}", rule, "", shown(unit), cure)
-    return InputError(f"{source}: column {name}", "has no unit, so that its meaning is not sure", cure=cure)
+    return InputError(f"{source}: column {name}", NO_UNIT, cure=cure)
 
 
 def _read(
@@ -298,19 +353,21 @@ def _read(
             meaning, chosen = by_index[i]
             read = ColumnRead(header=header.strip(), meaning=meaning, unit=chosen.unit, why=chosen.why)
         else:
-            why = _why_not(options.get(i, []), result)
+            why = _why_not(i, options.get(i, []), result)
             read = ColumnRead(header=header.strip(), meaning=None, unit=units[i], why=why)
         reads.append(read)
     return tuple(reads)
 
 
-def _why_not(options: list[_Option], result: Understood) -> str:
+def _why_not(index: int, options: list[_Option], result: Understood) -> str:
     if not options:
         return "not needed"
     option = options[0]
     if option.scale is None:
         said = f'the unit "{printable(option.unit)}" does not fit' if option.unit else "it has no unit"
         return f"could be {_words(option.meaning)}, but {said}"
+    if index in result.twins.get(option.meaning, []):
+        return f"the same as the column of {_words(option.meaning)}"
     if option.meaning in result.used:
         return f"another column is the {_words(option.meaning)}"
     return f"one of several that could be {_words(option.meaning)}"

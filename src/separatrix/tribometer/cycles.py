@@ -16,7 +16,10 @@ MOST = 256
 """Spans into which a test is divided for its statistics, at most."""
 
 FEWEST = 12
-"""Spans without which there are no statistics, where no cycle is known."""
+"""Spans, where no cycle is known and there are as many rows."""
+
+FEWEST_ROWS = 4
+"""Rows without which there are no statistics."""
 
 FEWEST_CYCLES = 4
 """Whole cycles below which means are over rows instead, which is told."""
@@ -258,7 +261,7 @@ def _bridged(sums: Array, counts: Array) -> Array:
 
 
 def even_spans(abscissa: Array, values: Array, start: float, end: float, source: str) -> Spans:
-    """Return as many equal spans as the rows from `start` to `end` fill, up to `MOST`.
+    """Return as many equal spans as the rows from `start` to `end` fill, up to `MOST`; of few rows, one each.
 
     Raises
     ------
@@ -266,12 +269,11 @@ def even_spans(abscissa: Array, values: Array, start: float, end: float, source:
         There are too few rows.
     """
     first, last = np.searchsorted(abscissa, start), np.searchsorted(abscissa, end, side="right")
-    count = min(MOST, int(last - first) // ROWS_OF_A_SPAN)
-    if count < FEWEST:
-        rule = f"needs at least {FEWEST * ROWS_OF_A_SPAN} rows of steady friction"
-        raise InputError(
-            source, rule, "", str(int(last - first)), "Take a longer log, or an earlier run_in_end."
-        )
+    rows = int(last - first)
+    count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST)))
+    if count < FEWEST_ROWS:
+        rule = f"needs at least {FEWEST_ROWS} rows of steady friction"
+        raise InputError(source, rule, "", str(rows), "Take a longer log, or an earlier run_in_end.")
     return means(abscissa, values, start, end, count)
 
 

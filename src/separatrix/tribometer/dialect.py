@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from separatrix.errors import InputError
+from separatrix.tribometer.clock import is_clock
 from separatrix.units import printable
 
 MISSING = frozenset(
@@ -47,12 +48,16 @@ _NAMES = {
     "|": "bar",
     " ": "blanks",
 }
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eEdD][+-]?[0-9]{1,3})?")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]++[.,]?[0-9]*+|[.,][0-9]++)(?:[eEdD][+-]?[0-9]{1,3})?")
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[.,][0-9]{3})+")
+_SEVERAL = re.compile(r"[+-]?[0-9]++(?:[.,][0-9]++){2,}+")
 _MOMENT = re.compile(r"[0-9]{1,4}[-/.:][0-9]{1,2}[-/.:][0-9]{1,4}|[0-9]{1,2}:[0-9]{2}")
-_WORD = re.compile(rf"(?:[^\W\d_]|{_MOMENT.pattern}).*")
+_WORD = re.compile(rf"[^\W\d_]|{_MOMENT.pattern}")
 
-NO_MOMENTS = "Dates and times of day are not read from text: log or export the time in seconds."
+NO_MOMENTS = (
+    'Write times like "10:00:01.5" or "2026-02-01 10:00:01" in each row; above times of two numbers, '
+    'name the column "Time [mm:ss]" or "Time [hh:mm]".'
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,20 +131,22 @@ def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> st
 
 
 def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> bool:
-    """Two numbers or more, and at most twice as many words; between blanks, where prose is, as many."""
-    numbers = words = absent = 0
+    """Two numbers, or one and a time, and at most twice as many words; between blanks only as many."""
+    numbers = words = absent = clocks = 0
     for field in row:
         if field.casefold() in missing:
             absent += 1
         elif is_number(field) or _several_signs(field):
             numbers += 1
-        elif _WORD.fullmatch(field):
+        elif is_clock(field):
+            clocks += 1
+        elif _WORD.match(field):
             words += 1
         else:
             return False
-    if numbers < 2:
+    if numbers + clocks < 2 or not numbers:
         return numbers == 1 and absent > 0 and words == 0
-    return words <= (1 if separator == " " else 2) * numbers
+    return words + (clocks if numbers > 1 else 0) <= (1 if separator == " " else 2) * numbers
 
 
 def is_moment(field: str) -> bool:
@@ -149,8 +156,8 @@ def is_moment(field: str) -> bool:
 
 def _several_signs(field: str) -> bool:
     """True for ``1.234,5`` and its like; a date is none."""
-    several = re.fullmatch(r"[+-]?[0-9]+(?:[.,][0-9]+){2,}", field) is not None
-    return several and _WORD.fullmatch(field) is None
+    several = _SEVERAL.fullmatch(field) is not None
+    return several and _WORD.match(field) is None
 
 
 def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:

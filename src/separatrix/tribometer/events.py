@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from separatrix.tribometer.cycles import Spans
+from separatrix.tribometer.cycles import FEWEST, Spans
 from separatrix.tribometer.log import RawLog
 from separatrix.tribometer.options import ReductionOptions
 from separatrix.units import Array
@@ -137,6 +137,8 @@ def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def friction_step(spans: Spans) -> tuple[float, float] | None:
     """Return place and size of a step that explains the means far better than a straight line; else None."""
     y, n = spans.means, spans.means.size
+    if n < FEWEST:
+        return None
     x = np.arange(n) - (n - 1) / 2
     level = y - y.mean()
     straight = float(level @ level - (x @ level) ** 2 / (x @ x))
@@ -182,6 +184,8 @@ def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float
 
 def wear_step(spans: Spans) -> tuple[float, float] | None:
     """Return place and size of a sudden change of wear depth; else None."""
+    if spans.means.size < FEWEST:
+        return None
     increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may lie
     excess = increments - np.median(increments)
     scatter = 1.4826 * float(np.median(np.abs(excess)))

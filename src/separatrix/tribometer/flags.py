@@ -26,6 +26,12 @@ CLEAR = 0.25
 HALF = 0.5
 """Share of a test beyond which running-in is told to be long."""
 
+FEW_ROWS = 36
+"""Rows below which nothing can be said of running-in."""
+
+HIGH = 1.0
+"""Friction above which a wrong column or unit is likelier than a contact."""
+
 GAP = 0.05
 """Share of the steady part without a row that is told."""
 
@@ -42,15 +48,24 @@ def at(value: float, axis: str) -> str:
     return format_quantity(value, "s")
 
 
-def run_in_flags(found: RunIn | None, start: float, end: float, cut: float, axis: str) -> Iterator[str]:
-    """Tell of running-in that takes more than half of the test, or that does not end in it."""
+def run_in_flags(
+    found: RunIn | None, mean: SteadyMean, start: float, end: float, cut: float, axis: str
+) -> Iterator[str]:
+    """Report running-in that is long or does not end, and a steady part that is not level."""
     share = (cut - start) / (end - start)
+    rest = 0.0 if found is None else found.rest
+    of_mean = f"{format_number(rest, 2)} ({100 * rest / max(abs(mean.mean), 1e-300):.2g} % of the mean)"
     if found is not None and not found.ends:
         yield (
-            f"Running-in does not end: friction still changes at {at(cut, axis)}, "
-            f"{100 * share:.0f} % of the test; the mean may be off by {format_number(abs(found.rest), 2)}."
+            f"Running-in does not end: friction still changes behind {at(cut, axis)}, {100 * share:.0f} % of "
+            f"the test; later parts differ from the mean by up to {of_mean}."
         )
-    elif share > HALF:
+    elif found is not None and not found.level and rest > mean.standard_error:
+        yield (
+            f"The steady part is not level: its later parts differ from its mean by up to {of_mean}, "
+            "which is in the interval."
+        )
+    if share > HALF and (found is None or found.ends):
         yield f"Running-in takes {100 * share:.0f} % of the test, up to {at(cut, axis)}."
 
 
@@ -137,12 +152,17 @@ def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | Non
         yield f"Wear depth jumps by {format_quantity(abs(size), 'm', 2)} at {place}: a wear event."
 
 
-def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) -> Iterator[str]:
-    """Tell of a test too short for its correlation."""
-    if mean.is_long:
+def length_flags(mean: SteadyMean, effective: float, rows: int, options: ReductionOptions) -> Iterator[str]:
+    """Report a test too short for its correlation."""
+    if rows < FEW_ROWS:
         yield (
-            f"Friction stays alike over {100 / (np.pi * LONG):.0f} % of the steady part or more, more likely "
-            "than not: the test is too short for its scatter, and the interval may be too narrow."
+            f"The steady part has {rows} rows: too few to see running-in or correlation, and the interval "
+            "assumes none."
+        )
+    elif mean.is_long:
+        yield (
+            f"Friction is correlated over {100 / (np.pi * LONG):.0f} % of the steady part or longer: the "
+            "test is too short for its scatter, and the interval may be too narrow."
         )
     elif effective < options.fewest_effective:
         yield (
@@ -152,13 +172,18 @@ def length_flags(mean: SteadyMean, effective: float, options: ReductionOptions) 
 
 
 def range_flag(mean: float, friction: Array) -> Iterator[str]:
-    """Tell of friction that no dry contact has, in the mean or in one of a hundred rows."""
+    """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
     low, high = (float(value) for value in np.percentile(friction, (1.0, 99.0)))
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
         numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
             "Friction lies outside 0 to 2 (mean {}, 98 % of its rows from {} to {}): "
             "check zero, sign and units of the forces.".format(*numbers)
+        )
+    elif mean > HIGH:
+        yield (
+            f"Friction {format_number(mean, 3)} is above {format_number(HIGH)}, which dry sliding seldom "
+            "reaches: check that its column is not a force, and the units of the forces."
         )
 
 

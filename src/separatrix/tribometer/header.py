@@ -24,6 +24,12 @@ _UNIT_WORDS = frozenset(
 )
 
 
+_REMARKS = frozenset(
+    {"comment", "comments", "remark", "remarks", "note", "notes", "kommentar", "bemerkung", "commentaire"}
+)
+"""Names of a last column that the rows leave out."""
+
+
 @dataclass(frozen=True, slots=True)
 class Header:
     """Names and units of the columns, and which of the lines before the table they are."""
@@ -50,7 +56,7 @@ def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header |
         return None
     if len(matching) > 1 and is_units(matching[0][1]):
         (units_line, units_row), (line, names) = matching[:2]
-        return Header(tuple(names), tuple(_bare(unit) for unit in units_row), (line, units_line))
+        return Header(tuple(names), tuple(bare_unit(unit) for unit in units_row), (line, units_line))
     line, names = matching[0]
     return Header(tuple(names), ("",) * count, (line,))
 
@@ -66,7 +72,7 @@ def header_at(
             where, shown = f"{source}: {key} = {number}", f'"{printable(line((number or 1) - 1))}"'
             raise InputError(where, f"must be a line of {count} fields", "", shown)
         rows.append(row)
-    return Header(tuple(rows[0]), tuple(_bare(unit) for unit in rows[1]))
+    return Header(tuple(rows[0]), tuple(bare_unit(unit) for unit in rows[1]))
 
 
 def is_names(line: str, dialect: Dialect) -> bool:
@@ -85,7 +91,7 @@ def _is_words(row: Sequence[str], dialect: Dialect) -> bool:
 
 def is_units(row: Sequence[str]) -> bool:
     """True for a row of units: at least two of them, and nothing that could be a name."""
-    bare = [_bare(field) for field in row]
+    bare = [bare_unit(field) for field in row]
     known = [unit for unit in bare if unit.casefold() in _UNIT_WORDS]
     filled = [unit for unit in known if unit]
     brackets = all(not field or field[0] in "[(" for field in row)
@@ -95,7 +101,8 @@ def is_units(row: Sequence[str]) -> bool:
     return not names and len(filled) >= 1 and len(known) >= 0.7 * len(bare)
 
 
-def _bare(unit: str) -> str:
+def bare_unit(unit: str) -> str:
+    """A unit without the brackets around it."""
     return re.sub(r"^\s*[\[(]\s*(.*?)\s*[\])]\s*$", r"\1", unit).strip()
 
 
@@ -104,7 +111,7 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
     for row in _splits(line, dialect):
         if len(row) == count:
             return row
-        if len(row) == count + 1 and not row[-1]:
+        if len(row) == count + 1 and (not row[-1] or row[-1].casefold() in _REMARKS):
             return row[:-1]
         if 2 <= len(row) == count - 1 and dialect.separator != " ":
             return [*row, ""]

@@ -65,9 +65,13 @@ def _separators(lines: Lines, separator: str) -> np.ndarray[tuple[int], np.dtype
     return np.diff(np.searchsorted(np.flatnonzero(u == ord(separator)), lines.ends), prepend=0)
 
 
-def stretches(lines: Lines, dialect: Dialect, begin: int) -> Iterator[tuple[int, int, int]]:
+def stretches(
+    lines: Lines, dialect: Dialect, begin: int, heading: re.Pattern[bytes] | None = None
+) -> Iterator[tuple[int, int, int]]:
     """Stretches of lines: (first, last + 1, separators) of rows, and separators -2 for other lines."""
     counts = _separators(lines, dialect.separator)
+    for found in heading.finditer(lines.text) if heading else ():
+        counts[slice(*np.searchsorted(lines.starts, found.span()))] = -1
     bounds = [begin, *(np.flatnonzero(np.diff(counts[begin:])) + begin + 1).tolist(), len(lines)]
     if begin:
         yield 0, begin, -2

@@ -7,6 +7,7 @@ import unicodedata
 from dataclasses import dataclass
 
 from separatrix import units
+from separatrix.tribometer.clock import CLOCK, SHORT_CLOCKS
 from separatrix.tribometer.log import MEANINGS
 
 NAMES: dict[str, tuple[str, ...]] = {
@@ -16,24 +17,27 @@ NAMES: dict[str, tuple[str, ...]] = {
         "kinetic friction coefficient; dynamic coefficient of friction; kinetic coefficient of friction; "
         "dynamic cof; kinetic cof; mu k; reibwert; reibungszahl; reibzahl; reibkoeffizient; "
         "reibungskoeffizient; coefficient de frottement; coeff frottement; coef frottement; coeff frott; "
-        "coef frott; coeff de frottement; coef de frottement; friction",
+        "coef frott; coeff de frottement; coef de frottement; c o f; mu kin; mu dyn; mu d; traction coeff; "
+        "traction coefficient; coefficient of traction; friction",
     ),
     "tangential_force": (
         "ff; ft; friction force; tangential force; frictional force; friction; fric force; f f; f t; "
-        "reibkraft; reibungskraft; tangentialkraft; force de frottement; force tangentielle; ffriction; "
+        "traction force; traction; reibkraft; reibungskraft; tangentialkraft; "
+        "force de frottement; force tangentielle; ffriction; "
         "ftangential",
         "fx",
     ),
     "normal_force": (
         "fn; f n; normal force; normal load; fnormal; normalkraft; force normale; charge normale",
         "load; down force; downforce; applied load; fz; last; anpresskraft; charge",
-        "nominal load; nominal normal force; set load; load setpoint; sollkraft",
+        "nominal load; nominal normal force; set load; load setpoint; sollkraft; ball load; pin load",
     ),
     "time": (
         "time; zeit; temps; t",
         "elapsed time; elapsed; test time; sliding time; total time; run time; running time; messzeit; "
         "prufzeit; laufzeit; versuchszeit; duree; temps ecoule; temps de test; timestamp; time stamp; "
-        "time of the waveform",
+        "time of the waveform; step time; time elapsed; relative time; test duration; uhrzeit; clock; "
+        "clock time; date time; datetime; date and time; zeitstempel; heure; horodatage",
     ),
     "distance": (
         "distance; sliding distance; sliding dist; dist; track distance; gleitweg; weg; reibweg; "
@@ -42,6 +46,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "cycles": (
         "cycles; cycle; laps; lap; cycle count; cycle number; cycle no; number of cycles; no of cycles; "
         "total cycles; lap number; number of laps; revolutions; revolution; number of revolutions; revs; "
+        "total revolutions; total laps; total turns; "
         "turns; number of turns; umdrehungen; anzahl umdrehungen; zyklen; zyklus; zyklenzahl; zyklusnummer; "
         "anzahl zyklen; runden; rundenzahl; lastwechsel; tours; nombre de cycles; nombre de tours; strokes; "
         "hube",
@@ -57,12 +62,13 @@ NAMES: dict[str, tuple[str, ...]] = {
     "slip_speed": (
         "sliding speed; slip speed; sliding velocity; linear speed; lin speed; gleitgeschwindigkeit; "
         "vitesse de glissement; vitesse lineaire",
-        "speed; velocity; geschwindigkeit; vitesse; max linear speed; max lin speed",
+        "speed; velocity; geschwindigkeit; vitesse; max linear speed; max lin speed; linear velocity; "
+        "surface speed; surface velocity; lin velocity; disc speed; disk speed",
     ),
     "rotational_speed": (
         "rotational speed; rotation speed; spindle speed; rotary velocity; rpm; drehzahl; "
-        "vitesse de rotation",
-        "speed; velocity; geschwindigkeit; vitesse",
+        "rotational velocity; angular velocity; angular speed; vitesse de rotation",
+        "speed; velocity; geschwindigkeit; vitesse; disc speed; disk speed",
     ),
 }
 """Names of each meaning; a name in an earlier entry is preferred to one in a later."""
@@ -102,12 +108,24 @@ SYMBOLS = {
 }
 """Signs that may stand behind a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
 
+CLOCKS = frozenset({CLOCK, *SHORT_CLOCKS, "hh:mm:ss", "h:mm:ss", "h:m:s", "hms"})
+"""Units of a column of times as text, which the reader gives in seconds."""
+
+MANGLED = frozenset({"?", "??", "\ufffd", "\ufffd\ufffd"})
+"""What a Greek letter becomes where a program could not write it; as a name most likely that of friction."""
+
+FORCES = ("force", "kraft", "load", "newton", "torque", "moment")
+"""Parts of names of what is no ratio of forces."""
+
 NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 _COUNTS = frozenset(
     {"cycle", "cycles", "lap", "laps", "rev", "revs", "revolution", "revolutions", "turn", "turns"}
     | {"u", "umdr", "tr", "tours", "#", "n", "count"}
 )
 
+
+_CAMEL = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z])")
+"""Where two words of a name meet without a blank."""
 
 _UNIT_AT_END = (
     r"(.+)_([^_\s]+)",
@@ -128,8 +146,15 @@ class Scale:
 
 
 def plain(name: str) -> str:
-    """A name for comparison: small letters, no accents or signs, "mu" for the Greek letter."""
-    folded = unicodedata.normalize("NFKD", name.casefold().replace("\u00b5", "mu").replace("\u03bc", "mu"))
+    """A name for comparison: small letters, no accents or signs, "mu" for the Greek letter.
+
+    Examples
+    --------
+    >>> plain("FrictionForce"), plain("CoF"), plain("\u00b5 [-]")
+    ('friction force', 'cof', 'mu')
+    """
+    whole = re.sub(r"\u00c2\u00b5|\u00ce\u00bc|[\u00b5\u03bc\u039c]", "mu", _CAMEL.sub(" ", name))
+    folded = unicodedata.normalize("NFKD", whole.casefold())
     letters = "".join(c for c in folded if not unicodedata.combining(c)).replace("\u00df", "ss")
     return " ".join(re.sub(r"[^0-9a-z%#]+", " ", letters).split())
 
@@ -137,10 +162,12 @@ def plain(name: str) -> str:
 def scale_of(unit: str, meaning: str) -> Scale | None:
     """How to bring a column of that meaning to SI; None where the unit is not one of its quantity."""
     si, spelling = MEANINGS[meaning], unit.strip()
+    if meaning == "time" and spelling.casefold().partition(".")[0] in CLOCKS:
+        return Scale()
     if si == "-":
         if meaning == "friction" and spelling == "%":
             return Scale(divisor=100.0)
-        if meaning == "friction" and plain(spelling) in SYMBOLS["friction"]:
+        if meaning == "friction" and (plain(spelling) in SYMBOLS["friction"] or spelling in MANGLED):
             return Scale()
         fits = spelling.casefold() in NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
         return Scale() if fits else None
@@ -173,7 +200,8 @@ def header_parts(header: str) -> list[tuple[str, str]]:
         return [(bracket[1].strip(), bracket[2])]
     ways = [(text, "")]
     patterns = (re.fullmatch(pattern, text) for pattern in _UNIT_AT_END)
-    return ways + [(found[1].strip(), found[2].strip()) for found in patterns if found and found[2] != "1"]
+    ways += [(found[1].strip(), found[2].strip()) for found in patterns if found and found[2] != "1"]
+    return ways
 
 
 def ranks(name: str) -> dict[str, int]:
@@ -194,9 +222,19 @@ def _without_symbol(words: str, meaning: str) -> str:
 
 
 def looks_like_friction(header: str) -> bool:
-    """True for a name that has to do with friction, for messages only."""
+    """True for a name that may be that of a coefficient of friction, for messages only; never for a force."""
     words = plain(header)
-    return any(part in words for part in ("cof", "fric", "reib", "frott")) or "mu" in words.split()
+    parts = ("cof", "fric", "reib", "frott", "traction")
+    named = any(part in words for part in parts) or "mu" in words.split()
+    return (named or header.strip() in MANGLED) and not looks_like_force(header)
+
+
+def looks_like_force(header: str) -> bool:
+    """True for a name or a unit of a force: its column is no coefficient, whatever else it is."""
+    words = plain(header)
+    coefficient = any(part in words for part in ("coef", "cof", "beiwert"))
+    units_of_force = any(scale_in(unit, "N") is not None for _, unit in header_parts(header) if unit)
+    return not coefficient and (units_of_force or any(part in words for part in FORCES))
 
 
 def _spelled(unit: str) -> str:

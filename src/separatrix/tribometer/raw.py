@@ -15,6 +15,7 @@ from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, MEANINGS, RawLog, RawTable
 from separatrix.tribometer.names import header_parts, plain
+from separatrix.tribometer.sliding import sliding_rows
 from separatrix.units import Array, format_quantity, printable
 
 HIGHEST = 5.0
@@ -51,14 +52,18 @@ def raw_log(
     understood = understand(
         table.headers, table.units, source, columns, layout, constant_force=force is not None
     )
+    _check_twins(table, understood, source)
     notes: list[str] = []
     absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
     arrays = {meaning: _in_si(table, chosen, absent) for meaning, chosen in understood.used.items()}
     arrays = _without_empty_abscissae(arrays, source, notes)
     _mend_sign(arrays, understood, source, notes)
-    arrays["friction"] = _magnitude(_friction(arrays, force, notes), source, notes)
+    signed = _friction(arrays, force, notes)
+    arrays["friction"] = _magnitude(signed, source, notes)
     kept, missing = _complete(arrays, source, notes)
     _check_order(arrays, kept, table, source)
+    kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
+    notes += [left_out] if left_out else []
     arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
     rotation = _speed_from_rotation(arrays, given, notes)
     metadata = _without_stroke_speed(table, arrays, notes)
@@ -75,6 +80,23 @@ def raw_log(
         notes=(*notes, *sentences),
         **fields,
     )
+
+
+def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
+    """Refuse columns of one name that hold different numbers, where one of them is needed."""
+    for meaning, others in understood.twins.items():
+        if meaning not in understood.used:
+            continue
+        places = [understood.used[meaning].index, *others]
+        columns = [table.columns[i] for i in places]
+        there = np.isfinite(columns).all(axis=0)
+        if any(not np.array_equal(columns[0][there], one[there]) for one in columns[1:]):
+            header = table.headers[places[0]].strip()
+            rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
+            listed = ", ".join(f'"{printable(header)}"' for _ in places)
+            numbers = " or ".join(str(i + 1) for i in places)
+            cure = f"Say which below [columns] in a column map: {meaning} = {numbers}."
+            raise InputError(source, rule, "", f"columns {listed}", cure)
 
 
 def _in_si(table: RawTable, chosen: Chosen, absent: Sequence[float]) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from separatrix.errors import InputError
@@ -142,16 +142,21 @@ def _from_text(raw: bytes, file: _File) -> tuple[RawLog, ...]:
     return _logs(tables, file, f"{layout.name} ({encoding}, {dialect.words})", layout)
 
 
-def _understood(headers: Sequence[str], units: Sequence[str], file: _File, layout: Layout) -> dict[str, int]:
-    """Columns that are used, by their meaning; none where the table is no log: `raw_log` says why."""
+def _understood(
+    headers: Sequence[str], units: Sequence[str], file: _File, layout: Layout
+) -> tuple[dict[str, int], list[int]]:
+    """Columns that are used, by their meaning, and others to be read; none of a table that is no log."""
     from separatrix.tribometer.columns import understand
+    from separatrix.tribometer.sliding import motion_columns
 
     constant = "normal_force" in file.given
     try:
         found = understand(headers, units, file.name, file.chosen, layout, constant_force=constant)
     except InputError:
-        return {}
-    return {meaning: column.index for meaning, column in found.used.items()}
+        return {}, []  # `raw_log` says why
+    used = {meaning: column.index for meaning, column in found.used.items()}
+    twins = [i for places in found.twins.values() for i in places]
+    return used, [*twins, *motion_columns(headers, units)]
 
 
 def _wanted(file: _File, layout: Layout | None = None) -> Wanted:
@@ -160,8 +165,8 @@ def _wanted(file: _File, layout: Layout | None = None) -> Wanted:
 
     def wanted(headers: Sequence[str], units: Sequence[str]) -> list[int]:
         known = layout or _layout_of(headers)
-        used = set(_understood(headers, units, file, known).values())
-        return sorted(used | step_column(headers, known)) if used else []
+        used, others = _understood(headers, units, file, known)
+        return sorted({*used.values(), *others, *step_column(headers, known)}) if used else []
 
     return wanted
 
@@ -177,7 +182,7 @@ def _abscissae(file: _File, layout: Layout) -> Wanted:
     """Which columns of a table are its time, distance and cycles."""
 
     def abscissae(headers: Sequence[str], units: Sequence[str]) -> list[int]:
-        used = _understood(headers, units, file, layout)
+        used, _ = _understood(headers, units, file, layout)
         return [used[meaning] for meaning in ABSCISSAE if meaning in used]
 
     return abscissae
@@ -202,12 +207,25 @@ def _logs(
         except InputError as error:
             wrong = wrong or error
     if wrong is None:
-        return tuple(log for _, log in found)
+        return _without_copies([log for _, log in found])
     if not found:
         raise wrong
     names = ", ".join(shown(name) for name, _ in found)
     cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
     raise InputError(wrong.where, wrong.rule, wrong.unit, wrong.value, cure)
+
+
+def _without_copies(logs: Sequence[RawLog]) -> tuple[RawLog, ...]:
+    """The logs, but each table once: the same numbers again are no other test."""
+    kept: dict[bytes, RawLog] = {}
+    for log in logs:
+        columns = [log.friction, *(getattr(log, name) for name in log.abscissae)]
+        numbers = b"".join(column.tobytes() for column in columns)
+        if numbers in kept:
+            note = f"{log.source} has the same numbers and is left out"
+            log = replace(kept[numbers], notes=(*kept[numbers].notes, note))
+        kept[numbers] = log
+    return tuple(kept.values())
 
 
 def _wanted_tables(tables: Sequence[RawTable], name: str, chosen: ColumnMap) -> list[RawTable]:

@@ -242,7 +242,8 @@ class _Parts:
         for event in self.events:
             if event.kind != "spike":
                 yield flags.event_flag(event, self.told_row(event.row))
-        yield from flags.run_in_flags(self.run_in, float(self.stretch.along[0]), high, low, self.axis)
+        start = float(self.stretch.along[0])
+        yield from flags.run_in_flags(self.run_in, self.mean, start, high, low, self.axis)
         rise = run_in_rise(self.stretch.spans(), self.spans.start, self.mean.mean)
         yield from flags.rise_flag(self.told(rise), self.mean.mean, is_end_given=self.run_in is None)
         yield from flags.drift_flag(self.mean, high - low, self.axis, self.options)
@@ -252,7 +253,7 @@ class _Parts:
         largest = max(spikes, key=lambda event: event.size, default=None)
         yield from flags.spike_flag(spikes, "" if largest is None else self.told_row(largest.row))
         yield from flags.step_flags(self.told(friction_step(self.spans)), self.told(self.wear()))
-        yield from flags.length_flags(self.mean, self.effective, self.options)
+        yield from flags.length_flags(self.mean, self.effective, self.friction.size, self.options)
         yield from flags.range_flag(self.mean.mean, self.friction)
         yield from flags.digit_flag(self.mean, *self.last_digit)
         yield from flags.gap_flag(self.spans)
@@ -282,7 +283,7 @@ class _Parts:
     @cached_property
     def error(self) -> float:
         """Standard error with what may be left of running-in, and that of the last digit."""
-        rest = 0.0 if self.run_in is None else self.run_in.rest
+        rest = 0.0 if self.run_in is None else self.run_in.error
         return float(np.linalg.norm((self.mean.standard_error, rest, self.last_digit[1])))
 
     @cached_property

@@ -1,58 +1,75 @@
-"""Where running-in ends: an excess fitted in correlated noise, cut where the error of the mean is least.
+"""Where running-in ends: the longest tail of a test whose mean agrees with that of each later part of it.
 
-Friction is a straight line, noise whose neighbours are correlated (a first-order autoregression) and perhaps
-an excess that falls: as an exponential, slower than one, straight, at once, or after a peak [1]_. Shapes,
-lengths and correlations, and no excess at all, have their Akaike weights [2]_. So it is known how much of an
-excess may be left in the mean behind each cut, also where noise hides it. An early cut leaves much of it, a
-late one little of the test: the cut is where both together are least. What is behind it is asked again, so
-that a mixture of shapes is cut in pieces.
+No shape of running-in is assumed. Let the tail begin at some span. Its mean is compared with the means of all
+shorter tails. Without running-in they differ by noise alone, and the variance of the difference of two nested
+means is the difference of their variances. The noise is taken from the shorter, later tail, by its lowest
+cosines, so that neighbouring values may be alike and running-in is no part of it. The steady part begins at
+the earliest place where no difference exceeds noise and `WORTH` together: the method of Lepski [1]_, which
+keeps as much of a series as its bias allows. What the later tails still differ by goes into the error. A test
+that as a whole is a straight line and noise has a drift, and no running-in.
 
 References
 ----------
-.. [1] P. J. Blau, "On the nature of running-in", Tribology International 38 (2005) 1007-1012: its shapes.
-.. [2] K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer 2002:
-   weights of models, and the error of what is averaged over them.
+.. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory of Probability and
+   its Applications 35 (1991) 454-466.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.fft import dct
+from scipy.ndimage import median_filter
+from scipy.special import stdtrit
 
+from separatrix.tribometer.steady import steady_mean
 from separatrix.units import Array, Ratio
 
-METHOD = "falling excess in correlated noise, cut where the error of the mean is least"
+METHOD = "longest tail whose mean agrees with that of each later part"
 
-CORRELATIONS = np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97])
-"""Correlations of neighbouring spans tried."""
-
-SHAPES: tuple[tuple[Array, Callable[[Array], Array]], ...] = (
-    (np.geomspace(0.003, 0.3, 96), lambda x: -np.exp(-x)),  # exponential
-    (np.geomspace(0.004, 0.2, 14), lambda x: -1.0 / (1.0 + x)),  # 1/(1 + x)^2, slower than that
-    (np.geomspace(0.02, 0.6, 16), lambda x: -0.5 * np.maximum(0.0, 1.0 - x) ** 2),  # straight, then none
-    (np.geomspace(0.005, 0.6, 20), lambda x: np.minimum(x, 1.0)),  # level, then none
-    (np.geomspace(0.004, 0.15, 14), lambda x: -(1.0 + x) * np.exp(-x)),  # x exp(-x), a peak
-)
-"""Falls tried: lengths as shares of what is looked at, and the integral over x, the place over the length."""
-
-COST = 6.0
-"""By how much -2 ln(likelihood) must fall for an excess to weigh as much as none: two for each of size,
-length and kind, which it adds [2]_. Four can be defended too: docs/theory/friction-tests.md says how six was
-chosen."""
-
-WORTH = 0.9
-"""A cut is made if it brings the error below this share of what it is without."""
-
-LIKELY = 0.5
-"""Weight of a statement from which it is more likely than not."""
+PLACES = 96
+"""Places where the steady part may begin, at most."""
 
 LATEST = 0.75
-"""Share of the test beyond which no cut is made."""
+"""Share of the test beyond which no steady part begins."""
 
-PASSES = 5
-"""How often what is left is asked again, at most, the first time included."""
+COSINES = 8
+"""Cosines from which the noise of a tail is estimated."""
+
+CHANCE = 1e-3
+"""Probability with which the difference of two tails exceeds noise on one side without running-in."""
+
+WORTH = 0.01
+"""Change of the mean, as a share of it, for which nothing is cut."""
+
+SEEN = 0.05
+"""Deviation of the first part of a tail, as a share of friction, that is cut however short that part is."""
+
+STRETCH = 1.3
+"""Factor by which the place found may move up to where the differences are noise alone."""
+
+NOISE = 2.0
+"""Squares of standard errors that are noise in a difference: the rest of it is what may be left."""
+
+SHARE = 0.75
+"""Share of what may be left that counts as its standard error."""
+
+LEVEL = 0.02
+"""What may be left, as a share of the mean, from which a steady part is not level."""
+
+OUTLIER = 6.0
+"""Standard deviations from its neighbours at which a single span is a spike, which is not running-in."""
+
+DRIFT = 0.01
+"""Probability without a drift below which a tail still drifts."""
+
+EVEN = 3.0
+"""Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
+
+FEWEST = 12
+"""Spans below which running-in is not looked for."""
 
 ROUNDING = 1e-12
 """Share of friction below which differences are those of rounding."""
@@ -64,10 +81,16 @@ class RunIn:
 
     end: Ratio
     rest: Ratio
-    """What may be left of it in the mean behind the end, root mean square [-]."""
+    """Largest difference between the mean behind the end and that of a later part, less its noise [-]."""
     ends: bool
-    """Whether more likely than not it is less than the error by noise, and was not cut in pieces up to
-    the latest place."""
+    """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
+    level: bool
+    """Whether what may be left is no more than `LEVEL` of the mean."""
+
+    @property
+    def error(self) -> Ratio:
+        """Standard error by what may be left."""
+        return SHARE * self.rest
 
 
 def run_in(values: Array) -> RunIn:
@@ -78,95 +101,90 @@ def run_in(values: Array) -> RunIn:
     values : ndarray
         Means over equal spans, shape (span,).
     """
-    n, first = values.size, 0
-    found = RunIn(end=0.0, rest=0.0, ends=True)
-    if np.ptp(values) <= ROUNDING * np.abs(values).max():
-        return found
-    for _ in range(PASSES):
-        rest, noise, chance = _errors(values[first:])
-        latest = int(LATEST * n) - first
-        both = np.hypot(rest, noise)[: latest + 1]
-        best = int(np.argmin(both))
-        cut = best if both[best] <= WORTH * both[0] else 0
-        in_pieces = first > 0 and 0 < cut == latest
-        first += cut
-        ends = bool(chance[cut] <= LIKELY) and not in_pieces
-        found = RunIn(end=first / n, rest=float(rest[cut]), ends=ends)
-        if cut == 0 or not ends:
-            break
-    return found
-
-
-def _errors(values: Array) -> tuple[Array, Array, Array]:
-    """Return both parts of the error of the mean behind each span.
-
-    Parameters
-    ----------
-    values : ndarray
-        Means over equal spans, shape (span,).
-
-    Returns
-    -------
-    tuple
-        What may be left of an excess, root mean square [-]; the error by noise [-]; how likely the first is
-        larger than the second; shape (span,) each. A root mean square may come from a shape of little weight
-        that leaves much, so it does not tell that.
-    """
     n = values.size
-    falls = shapes(n)
-    found = [_weighed(values, falls, rho) for rho in CORRELATIONS]
-    logs = np.array([log for log, _, _ in found])
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    squares = np.array([square for _, square, _ in found])[:, 1:]
-    density = float((weights * np.array([one for _, _, one in found])).sum())
-    left = n - np.arange(n)
-    tails = (np.cumsum(falls[:, ::-1], axis=1)[:, ::-1] / left) ** 2
-    noise, weights = density / left, weights[:, 1:]
-    chance = np.einsum("rs,rsc->c", weights, squares[..., None] * tails > noise)
-    return np.sqrt(np.einsum("rs,rs->s", weights, squares) @ tails), np.sqrt(noise), chance
+    if n < FEWEST or np.ptp(values) <= ROUNDING * np.abs(values).max():
+        return RunIn(end=0.0, rest=0.0, ends=True, level=True)
+    values = _without_spikes(values)
+    line = _without_line(values)
+    straight = _Tails(line, _without_line)
+    if _is_even(line) and straight.first(straight.noise) == 0:
+        return straight.from_place(0, abs(float(values.mean())))
+    tails = _Tails(values, _without_level)
+    first = tails.first(tails.noise + tails.worth)
+    if first:
+        reach = int(np.searchsorted(tails.starts, STRETCH * tails.starts[first] + 1, side="right")) - 1
+        first = max(first, min(tails.first(tails.noise), reach))
+    found = tails.from_place(first, abs(float(tails.means[first])))
+    return replace(found, ends=False) if first and _goes_on(values, int(tails.starts[first])) else found
 
 
-def _weighed(values: Array, falls: Array, rho: float) -> tuple[Array, Array, Array]:
-    """Return no excess and each shape under one correlation.
-
-    Returns
-    -------
-    tuple
-        Logarithm of the weight, mean square of the size [-], and spectral density of the noise at zero
-        frequency with one span as the unit of time; shape (1 + shape,) each.
-    """
-    n = values.size
-    line = np.stack([np.ones(n), (np.arange(n) + 0.5) / n - 0.5])
-    y, straight, g = (_whitened(one, rho) for one in (values, line, falls))
-    basis, factor = np.linalg.qr(straight.T)
-    y, g = y - basis @ (basis.T @ y), g - (g @ basis) @ basis.T
-    total, power = max(float(y @ y), 1e-300), (g * g).sum(axis=-1)
-    size = g @ y / power
-    left = np.concatenate([[1.0], np.maximum(1.0 - size**2 * power / total, 1e-13)])
-    cost = np.concatenate([[0.0], np.full(size.size, 0.5 * COST + np.log(size.size))])
-    level = 0.5 * np.log1p(-(rho**2)) - np.log(np.abs(np.diag(factor))).sum() - 0.5 * (n - 2) * np.log(total)
-    variance = total * left / (n - 3)
-    square = np.concatenate([[0.0], size**2 + variance[1:] / power])
-    return level - 0.5 * (n - 2) * np.log(left) - cost, square, variance / (1.0 - rho) ** 2
+def _goes_on(values: Array, start: int) -> bool:
+    """Return whether the tail still drifts away from what was before it, more than noise and `LEVEL` make."""
+    tail = steady_mean(values[start:])
+    away = tail.change * (tail.mean - float(values[:start].mean())) > 0.0
+    return away and tail.change_chance < DRIFT and abs(tail.change) > LEVEL * abs(tail.mean)
 
 
-def shapes(count: int) -> Array:
-    """Return the falls tried, as means over equal spans of a stretch of length one, shape (shape, span).
+class _Tails:
+    """The means of all tails of a series, their differences, and what noise makes of those."""
 
-    Each is the slope of what stands here, x from the start over its length.
-    """
-    edges = np.arange(count + 1) / count
-    sums = []
-    for lengths, integral in SHAPES:
-        x = edges / lengths[:, None]
-        sums.append(lengths[:, None] * integral(x))
-    return np.diff(np.concatenate(sums), axis=1) * count
+    def __init__(self, values: Array, without: Callable[[Array], Array]) -> None:
+        n = values.size
+        self.starts = np.unique(np.linspace(0.0, min(LATEST * n, n - COSINES), PLACES + 1).astype(int))
+        self.left = (n - self.starts).astype(float)
+        self.share = self.starts / n
+        self.means = np.cumsum(values[::-1])[::-1][self.starts] / self.left
+        self.difference = np.abs(self.means[:, None] - self.means[None, :])
+        shorter = np.maximum(1.0 / self.left[None, :] - 1.0 / self.left[:, None], 0.0)
+        self.variance = shorter * _densities(values, self.starts, without)
+        self.noise = float(stdtrit(min(COSINES, n - 1), 1.0 - CHANCE)) * np.sqrt(self.variance)
+
+    @property
+    def worth(self) -> Array:
+        """Differences for which nothing is cut, shape (place, later place)."""
+        part = 1.0 - self.left[None, :] / self.left[:, None]
+        return np.asarray(np.minimum(WORTH, SEEN * part) * np.abs(self.means))
+
+    def first(self, limit: Array) -> int:
+        """Return the first tail that agrees with all later ones within a limit; the last always does."""
+        earlier = np.tril(np.ones_like(limit, dtype=bool))
+        return int(np.argmax((earlier | (self.difference <= limit)).all(axis=1)))
+
+    def from_place(self, place: int, mean: float) -> RunIn:
+        """Return the end of running-in at a place."""
+        square = (self.difference[place] ** 2 - NOISE * self.variance[place])[place:]
+        rest = float(np.sqrt(max(0.0, float(square.max()))))
+        ends = place < self.starts.size - 1
+        return RunIn(end=float(self.share[place]), rest=rest, ends=ends, level=rest <= LEVEL * mean)
 
 
-def _whitened(values: Array, rho: float) -> Array:
-    """Take from each value what the one before it foretells, along the last axis."""
-    out = np.array(values)
-    out[..., 1:] -= rho * values[..., :-1]
-    out[..., 0] *= np.sqrt(1.0 - rho**2)
-    return out
+def _without_spikes(values: Array) -> Array:
+    """Return the values, spikes of one or two spans replaced by the median of their neighbours."""
+    middle = median_filter(values, 5, mode="nearest")
+    excess = np.abs(values - middle)
+    scatter = 1.4826 * float(np.median(excess))
+    return np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
+
+
+def _is_even(values: Array) -> bool:
+    """Return whether the spectrum does not rise to its low end: no slow wander, no curve."""
+    power = dct(values, type=2, norm="ortho")[1:] ** 2
+    beyond = power[COSINES : 4 * COSINES]
+    return bool(power[:COSINES].mean() <= EVEN * beyond.mean())
+
+
+def _densities(
+    values: Array, starts: np.ndarray[tuple[int], np.dtype[np.int64]], without: Callable[[Array], Array]
+) -> Array:
+    """Return the spectral density of each tail at zero frequency, shape (place,)."""
+    tails = (without(values[start:]) for start in starts.tolist())
+    return np.array([float((dct(t, type=2, norm="ortho")[1 : COSINES + 1] ** 2).mean()) for t in tails])
+
+
+def _without_level(values: Array) -> Array:
+    return np.asarray(values - values.mean())
+
+
+def _without_line(values: Array) -> Array:
+    x = np.arange(values.size) - (values.size - 1) / 2.0
+    return np.asarray(values - values.mean() - x * (x @ values) / (x @ x))

@@ -10,6 +10,7 @@ from io import BytesIO
 import numpy as np
 
 from separatrix.errors import InputError
+from separatrix.tribometer.clock import CLOCK, SHORT_CLOCKS, is_clock, seconds
 from separatrix.tribometer.column_map import TextFormat
 from separatrix.tribometer.dialect import (
     NO_MOMENTS,
@@ -25,10 +26,11 @@ from separatrix.tribometer.header import Header, find_header, header_at
 from separatrix.tribometer.lines import HEAD, Lines, indexed, stretches, unquoted
 from separatrix.tribometer.log import RawTable, Wanted
 from separatrix.tribometer.metadata import metadata_of
+from separatrix.tribometer.names import header_parts
 from separatrix.units import Array, printable
 
 _FLOAT = re.compile(
-    r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
+    r"[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][+-]?[0-9]++)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
 )
 """What numpy's reader takes for a number."""
 
@@ -38,6 +40,10 @@ _FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")
 _COMMA = bytes.maketrans(b",.", b".'")
 _BACK = str.maketrans(".'", ",.")
 """With decimal commas a point is no part of a number: it becomes a mark that none can have, and back."""
+
+
+MOST_TABLES = 2000
+"""Tables of one file; each keeps some 80 kB."""
 
 
 @dataclass(slots=True)
@@ -109,7 +115,7 @@ def _tables(
 ) -> list[_Found]:
     found: list[_Found] = []
     before: list[int] = []
-    for start, stop, n in stretches(lines, dialect, form.begin):
+    for start, stop, n in stretches(lines, dialect, form.begin, layout.heading):
         if n == -2:
             before += _other_lines(lines, start, stop, layout, bool(found))
         elif found and not before:
@@ -124,6 +130,8 @@ def _tables(
             if header is None:
                 raise _no_header(lines, before, start, n, source, dialect, found)
             found.append(_Found(header, [lines[i] for i in before], n, [(start, stop)]))
+            if len(found) > MOST_TABLES:
+                raise InputError(source, f"has more than {MOST_TABLES} tables", cure="Split the file.")
             before = []
     _check_end(lines, before, found, source, dialect)
     return _worthwhile(found, source, lines)
@@ -224,16 +232,24 @@ def _worthwhile(found: list[_Found], source: str, lines: Lines) -> list[_Found]:
 def _read(
     table: _Found, lines: Lines, source: str, dialect: Dialect, layout: Layout, wanted: Wanted
 ) -> RawTable:
-    header = table.header
+    header = _with_clocks(table, lines, dialect)
     needed = list(wanted(header.names, header.units))
     numbers = np.concatenate([np.arange(start, stop) for start, stop in table.rows]) + 1
     pieces = [lines.text[lines.starts[a] : lines.ends[b - 1] + 1] for a, b in table.rows]
     body = pieces[0] if len(pieces) == 1 else b"".join(pieces)
-    values = _numbers(body, dialect, needed, lambda row: f"{source}: line {numbers[row]}", header.names)
+    clocks = [i for i in needed if header.units[i] == CLOCK or header.units[i] in SHORT_CLOCKS]
+    plain = [i for i in needed if i not in clocks]
+
+    def where(row: int) -> str:
+        return f"{source}: line {numbers[row]}"
+
+    values = _numbers(body, dialect, plain, where, header.names)
     nothing = np.broadcast_to(np.float64(np.nan), (len(numbers),))
     columns: list[Array] = [nothing] * len(header.names)
-    for place, column in enumerate(needed):
+    for place, column in enumerate(plain):
         columns[column] = values[place]
+    for column in clocks:
+        columns[column] = _clock(body, column, header, dialect, where)
     return RawTable(
         name=layout.table_name(table.before),
         headers=header.names,
@@ -242,6 +258,29 @@ def _read(
         metadata=metadata_of(table.before, header.lines, keys_above=layout.keys_above),
         lines=numbers,
     )
+
+
+def _with_clocks(table: _Found, lines: Lines, dialect: Dialect) -> Header:
+    """The header, with a unit of its own for columns of times as text; a date alone is none."""
+    units = list(table.header.units)
+    for i, text in enumerate(dialect.fields(lines[table.rows[0][0]])[: len(units)]):
+        written = [units[i].casefold(), *(unit.casefold() for _, unit in header_parts(table.header.names[i]))]
+        if is_clock(text) and text.count(":") > 1:
+            units[i] = CLOCK
+        elif is_clock(text):
+            units[i] = next((unit for unit in written if unit in SHORT_CLOCKS), units[i])
+    return replace(table.header, units=tuple(units))
+
+
+def _clock(body: bytes, column: int, header: Header, dialect: Dialect, where: Callable[[int], str]) -> Array:
+    """Seconds of a column of times as text."""
+    fields_of = [dialect.fields(line)[column] for line in body.decode().removesuffix("\n").split("\n")]
+    texts = ["" if text.casefold() in dialect.missing else text for text in fields_of]
+    wrong = next((i for i, text in enumerate(texts) if text and not is_clock(text)), None)
+    if wrong is not None:
+        place = f'{where(wrong)}, column "{printable(header.names[column])}"'
+        raise InputError(place, "must be a time", "", f'"{printable(texts[wrong])}"', NO_MOMENTS)
+    return seconds(texts, of_minutes=header.units[column].startswith("m"))
 
 
 def _numbers(

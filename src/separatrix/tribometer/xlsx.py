@@ -20,7 +20,7 @@ import numpy as np
 from separatrix.errors import InputError
 from separatrix.spreadsheet import Cell, Row, Workbook, cell_name, column_name, open_workbook
 from separatrix.tribometer.column_map import TextFormat
-from separatrix.tribometer.header import is_units
+from separatrix.tribometer.header import bare_unit, is_units
 from separatrix.tribometer.log import RawTable, Wanted
 from separatrix.tribometer.sheet_numbers import plain_numbers
 from separatrix.units import Array, printable, shown
@@ -109,7 +109,7 @@ def _table(sheet: _Sheet) -> RawTable | None:
         raise InputError(sheet.at(), f"has more than {MOST_COLUMNS} columns", "", str(len(numbers)))
     headers = tuple(names.get(n, f"column {column_name(n)}") for n in numbers)
     kinds = {n: _kind(first, n) for n in numbers}
-    units = tuple(_unit(sheet, n, kinds[n], written.get(n, "")) for n in numbers)
+    units = tuple(_unit(sheet, n, kinds[n], bare_unit(written.get(n, ""))) for n in numbers)
     needed = [numbers[i] for i in sheet.wanted(headers, units)]
     return RawTable(
         name=sheet.name,

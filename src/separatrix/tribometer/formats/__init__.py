@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from separatrix.tribometer.formats import anton_paar, compend, rtec, umt
+from separatrix.tribometer.formats import anton_paar, compend, labview, pcs, rtec, umt
 from separatrix.tribometer.formats.layout import Layout
 
 PLAIN = Layout(name="plain text", recognised=lambda _: True)
 """A table in text of no known instrument."""
 
-LAYOUTS = (anton_paar.LAYOUT, rtec.LAYOUT, umt.LAYOUT, compend.LAYOUT, PLAIN)
+LAYOUTS = (
+    labview.LAYOUT,
+    pcs.LAYOUT,
+    anton_paar.LAYOUT,
+    rtec.LAYOUT,
+    umt.LAYOUT,
+    compend.LAYOUT,
+    PLAIN,
+)
 """In the order in which they are tried."""
 
 

@@ -30,6 +30,8 @@ class Layout:
     """Unit that a spelling stands for in a column of some meaning: ``{("normal_force", "g"): "gf"}``."""
     interruption: re.Pattern[str] | None = None
     """Lines that may stand between rows of the table and are no part of it."""
+    heading: re.Pattern[bytes] | None = None
+    """Blocks of lines that are never rows, however many numbers they hold."""
     keys_above: bool = False
     """A line of keys stands above one of values, even if there are only two of them."""
     table_name: Callable[[list[str]], str] = _no_name

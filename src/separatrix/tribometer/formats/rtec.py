@@ -12,12 +12,15 @@ import re
 
 from separatrix.tribometer.formats.layout import Layout
 
-_HEADER = re.compile(r'^[\s"]*Step[\s"]*[,;\t][\s"]*Timestamp[\s"]*[,;\t]', re.IGNORECASE | re.MULTILINE)
+_HEADER = re.compile(
+    r'^(?:[\s"]*Step[\s"]*[,;\t])?[\s"]*Timestamp[\s"]*[,;\t](?:.*[,;\t])?[\s"]*DAQ\.',
+    re.IGNORECASE | re.MULTILINE,
+)
 
 
 def _header(header: str) -> str:
     name = re.sub(r"^\s*(?:DAQ|XYZ|Rotary|Linear|Lateral|Reciprocating|Temperature)\.", "", header).strip()
-    coefficient = re.fullmatch(r"COF\s*\([^)]*\)", name)
+    coefficient = re.fullmatch(r"COF\s*(?:\([^)]*\))?", name)
     if coefficient:
         return "COF"
     return f"Rotary {name}" if header.strip().startswith("Rotary.Velocity") else name
