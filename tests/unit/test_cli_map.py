@@ -8,15 +8,18 @@ import sqlite3
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from separatrix import results
+from separatrix.chain import restitution_state
 from separatrix.cli import main
 from separatrix.cli.axes import read_axis
 from separatrix.errors import InputError
 from separatrix.results.ledger import NAME
+from separatrix.study_file import read_study
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -168,6 +171,30 @@ def test_a_refused_point_is_a_row_with_its_reason(capsys):
     assert all("gap between balls" in point["reason"] for point in refusals)
     assert (found["counts"]["refused"], found["complete"]) == (2, True)
     assert {point["runs"] for point in found["points"] if point["x"] == 0.001} == {2}
+
+
+def test_a_film_without_thickness_is_bare_races(capsys):
+    """The row at 0 has the restitution factor of the same study without a film; no point is refused."""
+    axes = ("--x", "ball_cage_friction=0..0.2:2", "--y", "film.thickness=0..5um:3")
+    found = mapped(capsys, *axes, "--runs", "2", "--quiet")
+    assert found["counts"]["refused"] == 0
+    assert found["y"]["values"][0] == 0.0
+    coated = {point["y"]: point["restitution_factor"] for point in found["points"]}
+    study = read_study("small.toml")
+    bare = replace(study, film=replace(study.film, material=None, thickness=None))
+    assert coated[0.0] == restitution_state(bare).restitution.restitution_factor
+    assert coated[0.0] != coated[2.5e-6]
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(12, 12), (25, 9)])
+def test_no_column_is_left_out_in_silence(columns, rows, capsys):
+    """A dozen are all printed; of more the text says how many are, and where the others stand."""
+    axes = ("--x", f"film.race_friction=0.05..0.2:{columns}", "--y", "ball_cage_friction=0..0.2:2")
+    assert main(["map", "small.toml", *axes, "--runs", "1", "--out", "m", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    body = text.split("Where the motion")[1].split("\n\n")[0].splitlines()[4:]
+    assert len(body) == rows
+    assert (f"{rows} of {columns} columns of the map are shown" in text) == (rows < columns)
 
 
 def test_the_dataset_stands_on_x_and_y(capsys):

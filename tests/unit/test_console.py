@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -147,8 +148,45 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert said == "separatrix: interrupted; no file was written.\n"
+    assert said.splitlines()[-1] == "separatrix: interrupted; no file was written."
+    assert all(line.startswith("separatrix: ") for line in said.splitlines())
     assert not out.exists()
+
+
+def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
+    """A plain line now and then with how far the work is, by the clock: the work itself need not speak."""
+    monkeypatch.setattr(console, "LINE_EVERY", 0.02)
+    with console.progress_bar("rank case", quiet=False) as life:
+        time.sleep(0.1)
+        life(3, 12)
+        time.sleep(0.1)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("separatrix: rank case: at work for 0.0")
+    assert "separatrix: rank case: 3 of 12 steps (25 %) after 0." in lines[-1]
+    assert threading.active_count() == 1
+
+
+def test_what_a_verb_will_take_is_printed_before_it_starts(capsys):
+    """To two digits, in a unit that is easy to read; nothing for a few seconds, nothing if quiet."""
+    with console.progress_bar("rank case", quiet=False) as life:
+        for seconds in (2.0, 38.4, 200.0, 9000.0):
+            life.expect(lambda seconds=seconds: seconds)
+        life.expect(lambda: 61.0, at_most=True)
+    assert capsys.readouterr().err.splitlines() == [
+        "separatrix: rank case takes about 38 s.",
+        "separatrix: rank case takes about 3 min.",
+        "separatrix: rank case takes about 2.5 h.",
+        "separatrix: rank case takes at most about 61 s.",
+    ]
+
+
+def test_quiet_is_quiet(monkeypatch, capsys):
+    """No bar, no line, and nothing is timed to be said."""
+    monkeypatch.setattr(console, "LINE_EVERY", 0.01)
+    with console.progress_bar("rank case", quiet=True) as life:
+        life.expect(lambda: pytest.fail("was timed"))
+        time.sleep(0.05)
+    assert capsys.readouterr() == ("", "")
 
 
 def _wait_until(happened) -> None:

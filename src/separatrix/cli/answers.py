@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ if TYPE_CHECKING:
 
     from separatrix.cage import History
     from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
+    from separatrix.cli.console import Life
     from separatrix.lubrication import LubricationCurve
     from separatrix.ranking import Ranking
     from separatrix.stability import StabilityCurve
@@ -38,7 +38,7 @@ class Work:
     """How the computing is to be done: threads, whom to tell how far it is, and where files may be."""
 
     jobs: int
-    progress: Callable[[int, int], None] | None
+    progress: Life
     folder: Path | None = None
     quiet: bool = False
 
@@ -217,11 +217,13 @@ def stability(study: Study, work: Work) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.cage_choice import known_friction
     from separatrix.chain import cage_state
+    from separatrix.cli.expected import expected_curve
     from separatrix.ranking.friction import cage_seen
     from separatrix.stability import stability_curve
 
     study = cage_seen(study)
     state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
+    work.progress.expect(lambda: expected_curve(state.cage, state.stability, jobs=work.jobs, band=True))
     curve = stability_curve(state.cage, state.stability, jobs=work.jobs, progress=work.progress)
     return StabilityAnswer(cage=state, curve=curve)
 
@@ -257,6 +259,7 @@ def rank(study: Study, work: Work) -> RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
     from separatrix.cage_choice import reference_candidate, reference_friction
     from separatrix.chain import cage_state
+    from separatrix.cli.expected import expected_ranking
     from separatrix.ranking import rank, ranking_question
     from separatrix.ranking.friction import cage_seen
 
@@ -264,4 +267,5 @@ def rank(study: Study, work: Work) -> RankingAnswer:
     seen = cage_seen(study, marked=True)
     own = reference_candidate(study, question)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, question))
+    work.progress.expect(lambda: expected_ranking(study, jobs=work.jobs))
     return RankingAnswer(cage=state, ranking=rank(study, jobs=work.jobs, progress=work.progress))

@@ -4,19 +4,30 @@ from __future__ import annotations
 
 import _thread
 import contextlib
+import math
 import os
 import re
 import sys
 import threading
+import time
 import unicodedata
 from collections.abc import Callable, Iterator
 from types import TracebackType
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from separatrix.errors import InputError
 
+if TYPE_CHECKING:
+    from separatrix.units import Second
+
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
+
+LINE_EVERY: Second = 15.0
+"""Time between two lines where standard error is not a terminal."""
+
+WORTH_SAYING: Second = 5.0
+"""An expected time below this is not printed."""
 
 RETRY = 0.02
 """Time after which a swallowed interrupt is sent again [s]."""
@@ -119,16 +130,94 @@ def _discard_standard_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+class Life:
+    """How far a verb is; called with (done, total) by the work.
+
+    Parameters
+    ----------
+    title : str
+        Verb and study.
+    """
+
+    def __init__(self, title: str) -> None:
+        self.title, self.begun = title, time.monotonic()
+        self.done = self.total = 0
+
+    def __call__(self, done: int, total: int) -> None:
+        """Take in how far the work is."""
+        self.done, self.total = done, total
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Print what the work will take, unless that is too short to matter."""
+        seconds = estimate()
+        if seconds >= WORTH_SAYING:
+            complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
+
+    def line(self) -> str:
+        """Return how far the work is after which time."""
+        passed = in_words(time.monotonic() - self.begun)
+        if not self.total:
+            return f"{self.title}: at work for {passed}"
+        share = math.floor(100.0 * self.done / self.total)
+        return f"{self.title}: {self.done} of {self.total} steps ({share} %) after {passed}"
+
+
+class Silent(Life):
+    """Says nothing, as `--quiet` asks."""
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Estimate nothing."""
+
+
 @contextlib.contextmanager
-def progress_bar(title: str, *, quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """Yield what the work calls with (done, total), drawn on standard error; None without a terminal."""
-    if quiet or sys.stderr is None or not sys.stderr.isatty():
-        yield None
-        return
+def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
+    """Yield what the work tells how far it is; with `quiet` nobody hears of it."""
+    if quiet or sys.stderr is None:
+        yield Silent(title)
+    elif sys.stderr.isatty():
+        with _bar(title) as life:
+            yield life
+    else:
+        with _lines(title) as life:
+            yield life
+
+
+@contextlib.contextmanager
+def _bar(title: str) -> Iterator[Life]:
+    """A bar that goes away when the work is done."""
     from rich.console import Console
     from rich.markup import escape
-    from rich.progress import Progress as Bar
+    from rich.progress import Progress
 
-    with Bar(console=Console(stderr=True), transient=True) as bar:
+    class Drawn(Life):
+        def __call__(self, done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(escape(harmless(title)), total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        yield Drawn(title)
+
+
+@contextlib.contextmanager
+def _lines(title: str) -> Iterator[Life]:
+    """A plain line now and then, by a thread of its own: the work may be silent for long."""
+    life, over = Life(title), threading.Event()
+
+    def speak() -> None:
+        while not over.wait(LINE_EVERY):
+            complain(life.line())
+
+    speaker = threading.Thread(target=speak, daemon=True)
+    speaker.start()
+    try:
+        yield life
+    finally:
+        over.set()
+        speaker.join()
+
+
+def in_words(seconds: Second) -> str:
+    """Return a time as it is said: 40 s, 3 min, 1.5 h."""
+    if seconds < 99.5:
+        return f"{float(f'{seconds:.2g}'):g} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

@@ -53,6 +53,7 @@ def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> Ma
     """
     from separatrix.cage_choice import known_friction
     from separatrix.chain import cage_state
+    from separatrix.cli.expected import expected_map
     from separatrix.ranking.friction import cage_seen
     from separatrix.stability.map import stability_map, value_here
 
@@ -62,11 +63,13 @@ def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> Ma
     state = cage_state(study, friction=known_friction(study) or 0.0)
     x, y = (replace(axis, here=value_here(study, state, axis.parameter)) for axis in (question.x, question.y))
     with _ledger(question, work, fresh=bool(options and options.fresh)) as ledger:
+        known = _known(ledger, question, work)
+        work.progress.expect(lambda: expected_map(question, known, jobs=work.jobs), at_most=question.adaptive)
         found = stability_map(
             replace(question, x=x, y=y),
             jobs=work.jobs,
             progress=work.progress,
-            known=_known(ledger, question, work),
+            known=known,
             keep=ledger.keep if ledger else None,
         )
     return MapAnswer(cage=state, map=found)

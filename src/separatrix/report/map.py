@@ -11,8 +11,8 @@ from separatrix.report.tables import facts, paragraph, quantity, section, table
 Document = Mapping[str, Any]
 
 FRICTION = "ball_cage_friction"
-COLUMNS = 9
-"""Columns of the map whose bands are printed."""
+MOST_COLUMNS, SOME_COLUMNS = 20, 9
+"""Columns of the map whose bands are all printed, and how many are chosen of more."""
 
 KINDS = {
     "STABLE": "stable",
@@ -28,7 +28,9 @@ def stability_map(document: Document) -> list[str]:
     """Shares of the plane, bands at a few columns, the rule, and what it holds for."""
     blocks = [
         section("Stability map", facts(_axes(document)), "", _shares(document)),
-        section("Where the motion begins to grow", table(_headers(document), _bands(document)), LEGEND),
+        section(
+            "Where the motion begins to grow", table(_headers(document), _bands(document)), *_legend(document)
+        ),
         section("What it holds for", facts(_holds_for(document))),
     ]
     refused = _first_refusal(document["points"])
@@ -38,11 +40,26 @@ def stability_map(document: Document) -> list[str]:
 ROUNDING = 1e-9
 """A distance to a band below this share of the value is the rounding of its unit."""
 
-LEGEND = "\n" + paragraph(
+LEGEND = paragraph(
     "between the last point of a column at which, beyond the scatter, less than half the runs grow and the "
     "first at which more than half do; margin: distance of the study's own value to that band, positive "
     "where the motion dies."
 )
+
+
+def _legend(document: Document) -> list[str]:
+    """What the columns of the table are, and which part of the map it shows."""
+    total, shown = len(document["x"]["values"]), len(_chosen(document))
+    part = f"{shown} of {total} columns of the map are shown; map.json and map.nc have all of them."
+    return ["", *([paragraph(part)] if shown < total else []), LEGEND]
+
+
+def _chosen(document: Document) -> list[float]:
+    """Values of x whose bands are printed: all, or evenly chosen."""
+    values = list(document["x"]["values"])
+    if len(values) <= MOST_COLUMNS:
+        return values
+    return [values[round(i * (len(values) - 1) / (SOME_COLUMNS - 1))] for i in range(SOME_COLUMNS)]
 
 
 def _axes(document: Document) -> list[tuple[str, str]]:
@@ -72,10 +89,8 @@ def _headers(document: Document) -> tuple[str, ...]:
 
 
 def _bands(document: Document) -> list[list[str]]:
-    """Rows for a few columns, evenly chosen; a column that does not change says what it is."""
-    values = document["x"]["values"]
-    chosen = {round(i * (len(values) - 1) / (COLUMNS - 1)) for i in range(COLUMNS)}
-    return [row for i in sorted(chosen) for row in _band(document, values[i])]
+    """Rows of the chosen columns; a column that does not change says what it is."""
+    return [row for x in _chosen(document) for row in _band(document, x)]
 
 
 def _band(document: Document, x: float) -> list[list[str]]:

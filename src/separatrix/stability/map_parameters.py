@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from separatrix.errors import InputError
 from separatrix.study import Study
 from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
+
+THICKNESS = "film.thickness"
+"""Of a film; a map may begin at 0, where the races are bare."""
 
 SHORT = {"cage.ball_cage_friction": FRICTION}
 """A key that goes by a name of its own, so that one parameter has one name."""
@@ -51,7 +54,8 @@ def other_keys() -> list[str]:
 def varied(study: Study, name: str, value: float) -> Study:
     """Return the study with another value of one parameter.
 
-    Restitution factor and kick are no keys of a study; the map gives them to the cage and to its runs.
+    Restitution factor and kick are no keys of a study; the map gives them to the cage and to its runs. A film
+    of no thickness is bare races.
 
     Raises
     ------
@@ -66,6 +70,8 @@ def varied(study: Study, name: str, value: float) -> Study:
         raise InputError("[film]", "has no material whose properties could vary")
     if getattr(study, section, study) is None:
         raise InputError(f"[{section}]", "is missing")
+    if name == THICKNESS and value == 0.0:
+        return replace(study, film=replace(study.film, material=None, thickness=None))
     return with_values(study, {key: value})
 
 

@@ -1,0 +1,145 @@
+"""What a long verb will take: a few runs of its points are timed before it starts, and scaled."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from separatrix.cage import PlanarCage
+    from separatrix.stability.map_records import MapPoint, MapQuestion
+    from separatrix.study import StabilitySettings, Study
+    from separatrix.units import Ratio, Second
+
+SAMPLED = 3
+"""Runs from each kick that are timed at a friction."""
+
+LONGEST_SAMPLE = 5.0
+"""Time after which no further friction is timed [s]."""
+
+FACTORS = (0.5, 1.0, 2.0)
+"""Frictions at which runs are timed, as multiples of the linear limit: most of the work is done near it."""
+
+MAP_POINTS_NOT_TIMED = 30
+"""A map of so few points needs no estimate."""
+
+CURVE_POINTS = 12.0
+"""Points of a curve whose restitution factors are chosen where it bends, as studies have them on average."""
+
+
+def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
+    """Time of a stability curve, with its band at every point or only at the cage's own damping."""
+    from separatrix.stability.growth import GrowthCounter
+    from separatrix.stability.point import linear_guess
+
+    start = linear_guess(GrowthCounter(cage, settings), None)
+    each = _mean(_time_of_a_run(cage, settings, friction) for friction in _around(start))
+    points = float(len(settings.restitution_factors)) or CURVE_POINTS
+    banded = points + 1.0 if band else 1.0
+    runs = points * _runs_of_a_point(settings) + banded * _runs_of_a_band(settings)
+    return each * runs / jobs
+
+
+def expected_verdicts(
+    cage: PlanarCage, settings: StabilitySettings, frictions: Iterable[Ratio], *, jobs: int
+) -> Second:
+    """Time of the whole ensembles at these frictions, by those at the least, the middle and the largest."""
+    asked = sorted(frictions)
+    if not asked:
+        return 0.0
+    some = {asked[0], asked[len(asked) // 2], asked[-1]}
+    each = _mean(_time_of_a_run(cage, settings, friction) for friction in sorted(some))
+    return each * len(asked) * len(settings.kicks) * settings.runs / jobs
+
+
+def expected_ranking(study: Study, *, jobs: int) -> Second:
+    """Time of a ranking: a curve for every pocket stiffness, and a verdict for every friction."""
+    from separatrix.chain import cage_state, traction_state
+    from separatrix.ranking import ranking_question
+
+    asked, traction = ranking_question(study), traction_state(study)
+    total = 0.0
+    frictions: dict[float, set[Ratio]] = {}
+    cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
+    for candidate in asked.candidates:
+        state = cage_state(study, material=candidate.material, traction=traction, friction=0.0)
+        stiffness = state.cage.ball_cage_stiffness
+        cages[stiffness] = state.cage, state.stability
+        known = {found.mean for found in candidate.friction.values() if found is not None}
+        frictions.setdefault(stiffness, set()).update(known)
+    for stiffness, (cage, settings) in cages.items():
+        total += expected_curve(cage, settings, jobs=jobs, band=False)
+        total += expected_verdicts(cage, settings, frictions[stiffness], jobs=jobs)
+    return total
+
+
+def expected_map(
+    question: MapQuestion, known: Mapping[tuple[float, float], MapPoint], *, jobs: int
+) -> Second:
+    """Time of the points of a map that are not known, by some of them on an even lattice.
+
+    Those of its first row and column are not timed: with them the links of the chain are made that others
+    share.
+    """
+    from separatrix.stability.map import PointFinder, require_friction
+
+    require_friction(question)
+    xs, ys = (_some(axis.values) for axis in (question.x, question.y))
+    left = sum((x, y) not in known for x in question.x.values for y in question.y.values)
+    if left <= MAP_POINTS_NOT_TIMED:
+        return 0.0
+    finder = PointFinder(question)
+    for x in xs:
+        finder((x, ys[0]))
+    for y in ys[1:]:
+        finder((xs[0], y))
+    each = _mean(_time_of(finder, (x, y)) for x in xs[1:] for y in ys[1:])
+    return each * left / jobs
+
+
+def _some(values: Sequence[float]) -> list[float]:
+    """Three of the values of an axis, evenly chosen, or both of two."""
+    return list(dict.fromkeys(values[round(i * (len(values) - 1) / 2)] for i in range(3)))
+
+
+def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, float]) -> Second:
+    begun = time.perf_counter()
+    call(at)
+    return time.perf_counter() - begun
+
+
+def _around(friction: Ratio) -> list[Ratio]:
+    return [factor * friction for factor in FACTORS]
+
+
+def _runs_of_a_point(settings: StabilitySettings) -> float:
+    """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
+    return 32.0 + 1.5 * settings.runs
+
+
+def _runs_of_a_band(settings: StabilitySettings) -> float:
+    """Runs behind a band: a first look at three crossings of every kick, and more at the ends."""
+    return len(settings.kicks) * (16.0 + 1.5 * settings.runs)
+
+
+def _mean(times: Iterable[Second]) -> Second:
+    """Mean of times, of which no more is taken once they have taken long themselves."""
+    begun, found = time.monotonic(), []
+    for one in times:
+        found.append(one)
+        if time.monotonic() - begun > LONGEST_SAMPLE:
+            break
+    return sum(found) / len(found)
+
+
+def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings, friction: Ratio) -> Second:
+    """Time of a run at a friction, the mean over the kicks; the compiled code is loaded beforehand."""
+    from separatrix.cage import run_ensemble
+
+    cage = replace(cage, ball_cage_friction=friction)
+    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1, growth_only=True)
+    begun = time.perf_counter()
+    run_ensemble(cage, settings, runs=SAMPLED, growth_only=True)
+    return (time.perf_counter() - begun) / (SAMPLED * len(settings.kicks))
