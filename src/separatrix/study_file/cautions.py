@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.study import Material, Study
+from separatrix.study import Guidance, Material, Study
 from separatrix.units import format_quantity
 
 JUDGED_FROM = 0.8
@@ -21,6 +21,7 @@ def cautions(study: Study) -> Iterator[str]:
     yield from _ramp(study)
     yield from _materials(study)
     yield from _fluid(study)
+    yield from _land(study)
     yield from _leaning_pocket(study)
 
 
@@ -74,6 +75,22 @@ def _fluid(study: Study) -> Iterator[str]:
     record, temperature = study.records.get("operation.fluid"), study.operation.temperature
     if record is not None and temperature is not None:
         yield from (f"[operation] fluid {sentence}" for sentence in contradictions(record, temperature))
+
+
+def _land(study: Study) -> Iterator[str]:
+    """Numbers of the land that the study does not state: the defaults are guesses, not data of this cage."""
+    cage = study.cage
+    if cage is None or cage.guidance is Guidance.BALL:
+        return
+    assumed = {
+        "land_stiffness": format_quantity(cage.land_stiffness, "N/m"),
+        "land_restitution": f"{cage.land_restitution:g}",
+        "land_friction": f"{cage.land_friction:g}",
+    }
+    absent = [f"{key} {text}" for key, text in assumed.items() if f"cage.{key}" not in study.origins]
+    if absent:
+        verb = "is" if len(absent) == 1 else "are"
+        yield f"[cage] {', '.join(absent)} {verb} assumed: guesses, on which the motion on the land depends."
 
 
 def _leaning_pocket(study: Study) -> Iterator[str]:
