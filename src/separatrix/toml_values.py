@@ -16,6 +16,15 @@ Reader = Callable[[Any, str], Any]
 """From a value and the name of its place to the converted value; raises InputError."""
 
 
+_BESIDE = ("ring", "race", "land", "guided")
+"""Words that may stand after a choice."""
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name in lower case: what two spellings of it have in common."""
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
     choices = list(known)
@@ -70,14 +79,17 @@ def text(value: Any, where: str) -> str:
 
 
 def choice(options: type[Enum]) -> Reader:
-    """Read one of the values of an Enum."""
+    """Read one of the values of an Enum, in any spelling: "Inner ring" is "inner"."""
 
     def read(value: Any, where: str) -> Enum:
         names = [option.value for option in options]
-        if value not in names or not isinstance(value, str):
+        spelt = {spelling: name for name in names for spelling in (name, *(f"{name} {w}" for w in _BESIDE))}
+        known = {folded(spelling): name for spelling, name in spelt.items()}
+        found = known.get(folded(value)) if isinstance(value, str) else None
+        if found is None:
             rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
             raise InputError(where, rule, "", shown(value))
-        return options(value)
+        return options(found)
 
     return read
 

@@ -1,12 +1,13 @@
 """One cage and one environment for every verb: what a study names, and what it must say."""
 
+import warnings
 from dataclasses import replace
 
 import pytest
 
 from separatrix.cage_choice import pocket_friction, required_environment
 from separatrix.chain import restitution_state
-from separatrix.errors import InputError
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study
 
 OTHERS = """extends = "cryogenic-turbopump"
@@ -101,3 +102,21 @@ def test_a_name_that_nobody_has_is_refused(tmp_path):
     """With the library's names and the candidates'."""
     with pytest.raises(InputError, match=r"is no cage material of the library.*Candidates are My compound"):
         case(tmp_path, 'material = "Unobtainium"')
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[bearing]\nball_material = "silicon nitride"\nring_material = "440c"\n',
+        '[operation]\nfluid = "LO2"\n[ranking]\nenvironment = "liquid nitrogen, 440C"\n',
+        '[cage]\nguidance = "Inner ring"\nmaterial = "armalon"\n',
+        '[kinematics]\nmodel = "Outer-race control"\n',
+        '[film]\nmaterial = "ptfe transfer film"\n',
+        '[ranking]\nfriction = "Pin-on-disk 77K"\nmaterials = ["vespel SP211"]\n',
+    ],
+)
+def test_common_spellings_are_taken(tmp_path, text):
+    """Case of letters, hyphens, spaces and the usual other names do not stop a user."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)  # no datum of silicon nitride at 77 K
+        extended(tmp_path, text)

@@ -110,9 +110,9 @@ def test_a_wrong_study_is_refused_in_a_line(case, verb, capsys):
 def test_eight_mistakes_are_eight_lines(verb, capsys):
     """Every verb names all of them, each on a line of its own, in the order of the file."""
     mistakes = {
-        'ball_material = "440C"': 'ball_material = "silicon nitride"',
-        'ring_material = "440C"': 'ring_material = "440c"',
-        '"15000 rpm"': '"40\'000 rpm"',
+        'ball_material = "440C"': 'ball_material = "silicon carbide"',
+        'ring_material = "440C"': 'ring_material = "404c"',
+        '"15000 rpm"': '"40,000 rpm"',
         '"300 daN"': '"300"',
         '"PTFE transfer film"': '"PTFE transfer"',
         '"25 g"': '"25"',

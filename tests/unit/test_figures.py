@@ -132,7 +132,10 @@ def test_a_run_is_headed_by_study_medium_friction_kick_run_and_seed():
     ]
     own = {"ball_cage_friction": {"value": 0.2}, "material": {"name": "bronze"}}
     assert "(bronze)" in heading(described(one, "simulate", cage=own))[2]
-    assert "friction 0.09, kick" in heading(described(one, "simulate", cage={"ball_cage_friction": {"value": 0.09}}))[2]
+    assert (
+        "friction 0.09, kick"
+        in heading(described(one, "simulate", cage={"ball_cage_friction": {"value": 0.09}}))[2]
+    )
 
 
 def test_an_ensemble_is_headed_by_its_seed_and_the_chain_is_not():

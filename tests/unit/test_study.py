@@ -52,6 +52,9 @@ pocket_clearance = "0.5 mm"
 material = "Armalon"
 guidance = "inner"
 land_clearance = "0.8 mm"
+land_friction = 0.1
+land_stiffness = "1e7 N/m"
+land_restitution = 0.5
 """
 
 

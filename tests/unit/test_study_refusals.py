@@ -41,6 +41,9 @@ ball_cage_stiffness = "3e6 N/m"
 pocket_clearance = "0.6 mm"
 guidance = "outer"
 land_clearance = "1 mm"
+land_friction = 0.1
+land_stiffness = "1e7 N/m"
+land_restitution = 0.5
 
 [stability]
 kicks = ["0.1 m/s", "0.5 m/s", "2 m/s"]
@@ -328,7 +331,7 @@ EDITS = {
     ),
     "second candidate misspelt": (
         candidates(IN_PLACE + IN_PLACE.replace("name =", "nam =")),
-        ["line 41", "candidates[2].nam ", "Did you mean name?"],
+        ["line 44", "candidates[2].nam ", "Did you mean name?"],
     ),
     "ranking without anything": (candidates("[ranking]\n"), ["[ranking] lacks: friction (or candidates)"]),
     "duplicate key": (
@@ -460,7 +463,7 @@ def test_everything_wrong_is_reported_at_once(tmp_path):
     lines = refusal(path).split("\n")
     assert "line 8: [bearing] inner_conformity" in lines[0]
     assert "line 16: [operation] axial_load" in lines[1]
-    assert "line 35: [stability] runs" in lines[2]
+    assert "line 38: [stability] runs" in lines[2]
     assert len(lines) == 3
 
 

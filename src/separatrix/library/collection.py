@@ -13,6 +13,7 @@ from separatrix.library.reading import Content, Shipped, read_library
 from separatrix.library.records import KINDS, PROPERTIES, Choice, FrictionTable, LibraryFile, Record, choose
 from separatrix.study import Candidate, Material
 from separatrix.toml_text import path_text
+from separatrix.toml_values import folded
 from separatrix.units import Kelvin, printable, shown
 
 SHIPPED_FILES = {
@@ -204,11 +205,6 @@ def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
             if old is not record:
                 rule = f"has a name of {printable(old.name)} ({place(old)})"
                 raise InputError(_header(record), rule, "", shown(name), "Give it another name.")
-
-
-def folded(name: str) -> str:
-    """Letters and digits of a name in lower case: what two spellings of it have in common."""
-    return "".join(c for c in name.casefold() if c.isalnum())
 
 
 def _aliases(record: Record | FrictionTable) -> Sequence[str]:

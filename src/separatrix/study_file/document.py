@@ -11,7 +11,7 @@ from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.study_file.shipped import shipped_studies
 from separatrix.toml_text import label_of, path_text, read_toml
-from separatrix.toml_values import nearest
+from separatrix.toml_values import folded, nearest
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
@@ -211,7 +211,7 @@ def _kept(name: str, below: dict[str, Entry], above: dict[str, Entry]) -> dict[s
     if any(key in above for key in other):
         dropped.update(one)
     for (key, choice), keys in _MEANINGLESS.items() if name == "cage" else ():
-        if key in above and above[key].value == choice:
+        if key in above and folded(str(above[key].value)) == choice:
             dropped.update(keys)
     return {key: entry for key, entry in below.items() if key not in dropped}
 

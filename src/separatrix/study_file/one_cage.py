@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from separatrix.library import Library, folded
+from separatrix.library import Library
 from separatrix.study import BallBearing, CageDesign, Operation, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
 from separatrix.study_file.records import where
+from separatrix.toml_values import folded
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from separatrix.errors import InputError, together
-from separatrix.library import folded
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.distributions import Uncertain, gathered
@@ -19,6 +18,7 @@ from separatrix.study_file.tested_friction import (
     tests_file,
 )
 from separatrix.study_file.values import Reader
+from separatrix.toml_values import folded
 from separatrix.units import shown
 
 MOST_CANDIDATES = 1000

@@ -12,12 +12,12 @@ from separatrix.errors import InputError
 from separatrix.friction_file import read_friction
 from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
 from separatrix.friction_fit.records import CONDITIONS
-from separatrix.library import FrictionTable, folded
+from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
 from separatrix.study_file.records import where
-from separatrix.toml_values import nearest
+from separatrix.toml_values import folded, nearest
 from separatrix.units import shown
 
 SUFFIX = ".toml"
