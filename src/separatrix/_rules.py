@@ -48,15 +48,15 @@ def bore_too_wide(bearing: BallBearing) -> _check.Problems:
 
 
 def moment_and_tilt(operation: Operation) -> _check.Problems:
-    """A moment sets the tilt free; a given tilt takes any moment."""
-    if operation.tilt is not None and operation.moment != 0.0:
+    """A moment frees the ring to tilt; a held tilt takes any moment."""
+    if operation.tilt is not None and operation.moment is not None:
         yield _check.problem(operation, "tilt", "and moment exclude each other", "Give one of the two.")
 
 
 def nothing_presses(operation: Operation) -> _check.Problems:
-    """Without any load there is no contact to compute."""
-    if not any((operation.axial_load, operation.radial_load, operation.moment, operation.tilt)):
-        rule = "must be > 0 when there is no radial load, moment or tilt: nothing presses the balls"
+    """Without any load there is no contact to compute; a tilt alone leaves the inner ring afloat."""
+    if not any((operation.axial_load, operation.radial_load, operation.moment)):
+        rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
         yield _check.problem(operation, "axial_load", rule, "Give the preload.")
 
 

@@ -145,13 +145,17 @@ class BallBearing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Operation:
-    """Speeds and loads on the inner ring. With `tilt` the rings are held at that angle and `moment` is 0."""
+    """Speeds and loads on the inner ring.
+
+    The rings are held parallel, or at the angle `tilt`. With a `moment`, 0 included, the inner ring tilts
+    until the balls balance it.
+    """
 
     inner_speed: RadianPerSecond
     axial_load: Newton
     outer_speed: RadianPerSecond = 0.0
     radial_load: Newton = 0.0
-    moment: NewtonMetre = 0.0
+    moment: NewtonMetre | None = None
     tilt: Radian | None = None
     temperature: Kelvin | None = None
     fluid: str | None = None
@@ -173,6 +177,11 @@ class Operation:
             _check.between(self, "ramp_start", 0.0, 1.0, open_low=True, hint=_START_HINT),
         )
         _check.settle(_rules.moment_and_tilt(self), _rules.nothing_presses(self))
+
+    @property
+    def is_tilt_held(self) -> bool:
+        """Whether the housing and shaft hold the rings at an angle; else the inner ring tilts freely."""
+        return self.moment is None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

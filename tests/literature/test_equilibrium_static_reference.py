@@ -46,7 +46,10 @@ def solved(row: dict[str, str]) -> tuple[Equilibrium, float]:
     )
     nothing = 1e-9  # an operation needs some load of its own; B6 has its moment about the other axis
     operation = Operation(
-        inner_speed=0.0, axial_load=float(row["Fa_N"]) or nothing, radial_load=float(row["Fr_N"])
+        inner_speed=0.0,
+        axial_load=float(row["Fa_N"]) or nothing,
+        radial_load=float(row["Fr_N"]),
+        moment=0.0,  # the program's rings tilt freely
     )
     moment = float(row["M_Nmm"]) / 1e3
     model = KinematicModel.OUTER_RACE_CONTROL

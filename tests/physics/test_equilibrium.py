@@ -203,10 +203,25 @@ def test_ring_carries_its_loads(model: KinematicModel) -> None:
 def test_held_tilt_returns_its_moment() -> None:
     """Rings held at the tilt that a moment makes need that moment."""
     free = equilibrium(le7(), COMBINED, OUTER, 0.1)
-    held = dataclasses.replace(COMBINED, moment=0.0, tilt=free.tilt)
+    held = dataclasses.replace(COMBINED, moment=None, tilt=free.tilt)
     result = equilibrium(le7(), held, OUTER, 0.1)
     assert result.load_inner == pytest.approx(free.load_inner, rel=1e-6)
     assert result.moment == pytest.approx(1.0, rel=1e-5)
+
+
+def test_rings_are_held_parallel_unless_a_moment_frees_them() -> None:
+    """Without a moment the ring keeps its angle and takes a reaction; a moment of 0 tilts it."""
+    loaded = Operation(inner_speed=50_000 * RPM, axial_load=2670.0, radial_load=800.0)
+    held = equilibrium(le7(), loaded, OUTER, 0.1)
+    assert held.is_tilt_held
+    assert held.tilt == held.cross_tilt == 0.0
+    assert abs(held.moment) > 1.0
+    free = equilibrium(le7(), dataclasses.replace(loaded, moment=0.0), OUTER, 0.1)
+    assert not free.is_tilt_held
+    assert abs(free.tilt) > 1e-4
+    assert free.moment == 0.0
+    parallel = equilibrium(le7(), dataclasses.replace(loaded, tilt=0.0), OUTER, 0.1)
+    assert np.array_equal(parallel.load_inner, held.load_inner)
 
 
 def test_second_road_by_a_general_solver() -> None:

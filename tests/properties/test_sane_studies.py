@@ -41,5 +41,5 @@ def test_bearings_take_every_kind_of_load(tmp_path: Path) -> None:
     for seed in range(40):
         at, kind = bearing_study(seed, tmp_path).operation, LOADS[seed % len(LOADS)]
         assert (at.radial_load > 0.0) == (kind in ("radial", "combined"))
-        assert (at.moment > 0.0) == (kind == "moment")
+        assert ((at.moment or 0.0) > 0.0) == (kind == "moment")
         assert 0.0 <= at.inner_speed <= MOST_SPEED * math.pi / 30.0 * 1.0001

@@ -137,6 +137,7 @@ WRONG_RECORDS = [
     ),
     (lambda: Operation(inner_speed=1.0, axial_load=-1.0), "lifts the inner ring off its balls"),
     (lambda: Operation(inner_speed=1.0, axial_load=0.0), "nothing presses the balls"),
+    (lambda: Operation(inner_speed=1.0, axial_load=0.0, tilt=1e-3), "there is no radial load or moment"),
     (
         lambda: Operation(inner_speed=1.0, axial_load=1.0, moment=1.0, tilt=0.0),
         "tilt and moment exclude each other",
@@ -231,8 +232,8 @@ def test_balls_fit_up_to_touching():
 
 
 def test_no_speed_and_no_friction_are_allowed_where_they_mean_something():
-    """A static bearing; one loaded by a held tilt alone; a frictionless one under race control."""
-    assert Operation(inner_speed=0.0, axial_load=0.0, tilt=1e-3).tilt == 1e-3
+    """A static bearing; rings held at an angle; a frictionless one under race control."""
+    assert Operation(inner_speed=0.0, axial_load=1.0, tilt=1e-3).tilt == 1e-3
     assert study(operation=Operation(inner_speed=0.0, axial_load=1.0)).operation.inner_speed == 0.0
     controlled = study(film=Film(race_friction=0.0), kinematics=KinematicModel.OUTER_RACE_CONTROL)
     assert controlled.film.race_friction == 0.0
@@ -343,8 +344,9 @@ def test_absent_keys_have_the_documented_defaults(read):
     assert (given.operation.outer_speed, given.operation.radial_load, given.operation.moment) == (
         0.0,
         0.0,
-        0.0,
+        None,
     )
+    assert given.operation.is_tilt_held
     assert (given.cage.land_friction, given.cage.land_stiffness, given.cage.land_restitution) == (
         0.1,
         1e7,

@@ -2,6 +2,9 @@
 
 In the plane of a ball, (x, r) are the axial and outward components. V leads from the outer groove's centre of
 curvature to the ball centre, A to the inner groove's; A - V leads from the ball to the inner groove's centre.
+
+A groove is half a circle that goes on as two straight walls: no ball meets the missing half of the circle,
+and the room of a ball stays convex. Contact angles so steep are refused once a bearing is solved.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ class Touch(NamedTuple):
 
     sine: float
     cosine: float
-    length: float  # from ball centre to groove centre
+    length: float  # from ball centre to groove centre; infinite at a straight wall, where no angle changes
     load: float
     load_slope: float  # dQ/d(length)
     major_coefficient: float  # a = major_coefficient Q^(1/3)
@@ -31,6 +34,8 @@ def touch(p: Problem, side: float, axial: float, radial: float, guess: float) ->
     """Contact of a ball whose centre lies (axial, radial) from the groove's; side -1 inner, +1 outer."""
     D = p.ball_diameter
     f = p.inner_conformity if side < 0.0 else p.outer_conformity
+    at_wall = radial < 0.0
+    radial = max(radial, 0.0)
     length = math.hypot(axial, radial)
     approach = length - (f - 0.5) * D
     # Without contact the angle is only nominal: turn it towards the radial direction as the gap opens.
@@ -40,14 +45,17 @@ def touch(p: Problem, side: float, axial: float, radial: float, guess: float) ->
     rolling = 2.0 / (D * (1.0 + side * D * c / p.pitch_diameter))
     kappa, major, k = approach_coefficient(rolling, (2.0 - 1.0 / f) / D, p.modulus, guess)
     root = math.sqrt(max(approach, 0.0))
+    length = math.inf if at_wall else length
     return Touch(s, c, length, kappa * root * max(approach, 0.0), 1.5 * kappa * root, major, k)
 
 
 @kernel
 def static_split(p: Problem, axial: float, radial: float) -> tuple[float, float, float]:
     """Ball centre V and load where both contacts lie on one line (no inertia); A = (axial, radial)."""
-    D, length = p.ball_diameter, math.hypot(axial, radial)
-    s, c = axial / length, radial / length
+    D, below = p.ball_diameter, 0.5 * min(radial, 0.0)  # between straight walls any height balances
+    radial = max(radial, 0.0)
+    length = math.hypot(axial, radial)
+    s, c = (axial / length, radial / length) if length > 0.0 else (0.0, 1.0)
     approach = length - (p.inner_conformity + p.outer_conformity - 1.0) * D
     share = approach
     if approach > 0.0:
@@ -61,4 +69,4 @@ def static_split(p: Problem, axial: float, radial: float) -> tuple[float, float,
     else:
         load = 0.0
     reach = (p.outer_conformity - 0.5) * D + share
-    return reach * s, reach * c, load
+    return reach * s, reach * c + below, load

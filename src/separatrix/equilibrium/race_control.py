@@ -151,14 +151,12 @@ def _controlled_slopes(p: Problem, i: Touch, o: Touch, G: float, out: Work) -> N
 
 
 @kernel
-def rest_on_outer(p: Problem, A: Array, state: Array) -> bool:
-    """Put the ball at the bottom of the outer groove by its own inertia; True if it misses the inner race."""
-    bottom = (p.outer_conformity - 0.5) * p.ball_diameter
-    trial = 0.01 * bottom
-    load = touch(p, 1.0, 0.0, bottom + trial, 0.0).load
-    state[0], state[1] = 0.0, bottom
-    for _ in range(3):  # the orbit depends on the inner angle, that on the approach: a weak loop
-        i = touch(p, -1.0, A[0], A[1] - state[1], 0.0)
-        F, _ = _inertia_at(p, math.atan2(i.sine, i.cosine), 0.0, 0.0)
-        state[1] = bottom + trial * (F / load) ** (2.0 / 3.0)
-    return math.hypot(A[0], A[1] - state[1]) <= (p.inner_conformity - 0.5) * p.ball_diameter
+def inertia_pull(p: Problem, A: Array, state: Array, pull: Array) -> None:
+    """Centrifugal force and the friction that carries the gyroscopic moment, (axial, outward) [N]."""
+    i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
+    o = touch(p, 1.0, state[0], state[1], 0.0)
+    share, _ = inner_share(p, i.load)
+    F, G = _inertia_at(p, math.atan2(i.sine, i.cosine), math.atan2(o.sine, o.cosine), share)
+    T_i, T_o = share * G / p.ball_diameter, (2.0 - share) * G / p.ball_diameter
+    pull[0] = T_i * i.cosine - T_o * o.cosine
+    pull[1] = T_o * o.sine - T_i * i.sine + F

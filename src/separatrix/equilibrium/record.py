@@ -22,10 +22,12 @@ class Equilibrium:
     out of it, along the orbit. `spin_roll_ratio_*` are the paper's Eq. 16, `rolling_speed_*` the mean speed
     of both surfaces through the contact. `gyroscopic_moment` is a magnitude [N m].
 
-    A ball that does not touch the inner race has `inner_contact` False and `load_inner` 0; its inner angle,
-    orbit and spin are those it would have at the first touch. `axial_displacement` counts from first contact
-    at the free angle. `moment` is what the balls carry: the load, or the reaction to a held tilt; positive
-    loads the balls at azimuth 0, as positive `tilt` does. `cross_tilt` (about the radial load) and
+    A contact that carries nothing has `inner_contact` or `outer_contact` False and load 0. Its angle is
+    nominal: that of the line from the ball to the centre of the groove, turned towards the radial direction
+    as the gap opens, and within 90 degrees; orbit and spin are those of the first touch.
+    `axial_displacement` counts from first contact at the free angle. `moment` is what the balls carry: the
+    load, or the reaction to rings that are held (`is_tilt_held`, parallel or at a given tilt); positive loads
+    the balls at azimuth 0, as positive `tilt` does. `cross_tilt` (about the radial load) and
     `transverse_displacement` lie across the plane of the radial load. `residual` is the unbalanced force of
     the ring [N]. `race_control` says which race Jones's criterion would let control the ball.
     """
@@ -37,6 +39,7 @@ class Equilibrium:
     load_inner: Array
     load_outer: Array
     inner_contact: NDArray[np.bool_]
+    outer_contact: NDArray[np.bool_]
     orbital_speed: Array
     pitch_angle: Array
     yaw_angle: Array
@@ -52,6 +55,7 @@ class Equilibrium:
     radial_displacement: Metre
     transverse_displacement: Metre
     tilt: Radian
+    is_tilt_held: bool
     cross_tilt: Radian
     moment: NewtonMetre
     iterations: int

@@ -59,15 +59,16 @@ def push_on_ring(p: Problem, azimuth: float, push: Array, out: Array) -> None:
 def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array) -> None:
     """Ball without inertia: both contacts on one line; `by_ring` (5, 2) are the slopes of `push` with A."""
     state[0], state[1], load = static_split(p, A[0], A[1])
-    length = math.hypot(A[0], A[1])
-    s, c = A[0] / length, A[1] / length
+    at_wall = A[1] < 0.0
+    length = abs(A[0]) if at_wall else math.hypot(A[0], A[1])
+    s, c = (A[0] / length, 0.0 if at_wall else A[1] / length) if load > 0.0 else (0.0, 1.0)
     approach = length - (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
-    slope = 1.5 * load / approach if load > 0.0 else 0.0
+    slope, side = (1.5 * load / approach, 0.0 if at_wall else load / length) if load > 0.0 else (0.0, 0.0)
     push[:], by_ring[:, :] = 0.0, 0.0
     push[0], push[1] = load * s, load * c
-    by_ring[0, 0] = slope * s * s + load / length * c * c
-    by_ring[0, 1] = by_ring[1, 0] = (slope - load / length) * s * c
-    by_ring[1, 1] = slope * c * c + load / length * s * s
+    by_ring[0, 0] = slope * s * s + side * c * c
+    by_ring[0, 1] = by_ring[1, 0] = (slope - side) * s * c
+    by_ring[1, 1] = slope * c * c + side * s * s
 
 
 @kernel

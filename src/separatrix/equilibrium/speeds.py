@@ -17,7 +17,7 @@ from separatrix.equilibrium.ring import groove_vector
 from separatrix.hertz import elliptic_integrals
 from separatrix.units import Array
 
-COLUMNS = 18
+COLUMNS = 21
 """Columns of `ball_table`, in the order that `solve.finished` reads."""
 
 
@@ -41,6 +41,15 @@ def _speeds_at(p: Problem, side: float, t: Touch, state: Array) -> tuple[float, 
 
 
 @kernel
+def _edge(p: Problem, angle: float, t: Touch) -> float:
+    """Angle from the bottom of the groove to the far end of the ellipse on the ball; 0 without load."""
+    if not t.load > 0.0:
+        return 0.0
+    half_width = t.major_coefficient * t.load ** (1.0 / 3.0)
+    return abs(angle) + math.asin(min(2.0 * half_width / p.ball_diameter, 1.0))
+
+
+@kernel
 def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None:
     """Groove vector of a ball; one that floats at rest is put between the grooves at their first touch."""
     groove_vector(p, q, azimuth, A)
@@ -53,7 +62,11 @@ def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None
 
 @kernel
 def ball_table(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
-    """One row a ball: angles, loads, orbit, spin, pitch, yaw, ratios, rolling speeds, inertia, control."""
+    """One row a ball: angles, loads, orbit, spin, pitch, yaw, ratios, rolling speeds, inertia, control.
+
+    Then whether each race is touched, and the edge of each contact: the angle from the bottom of the groove
+    to the far end of the ellipse.
+    """
     table, A = np.empty((azimuths.size, COLUMNS)), np.empty(2)
     for j in range(azimuths.size):
         row, s = table[j], states[j]
@@ -74,7 +87,8 @@ def ball_table(p: Problem, q: Array, azimuths: Array, states: Array) -> Array:
         row[14], G = inertia_loads(p, s[2], math.hypot(s[4], s[5]))
         row[15] = abs(G)
         row[16] = _grip(o) * math.cos(row[0] - row[1]) - _grip(i)
-        row[17] = 1.0 if i.load > 0.0 else 0.0
+        row[17], row[18] = 1.0 if i.load > 0.0 else 0.0, 1.0 if o.load > 0.0 else 0.0
+        row[19], row[20] = _edge(p, row[0], i), _edge(p, row[1], o)
     return table
 
 

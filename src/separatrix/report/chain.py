@@ -26,8 +26,15 @@ def _ring(document: Document) -> list[tuple[str, str]]:
         ("Kinematics", document["model"]),
         ("Axial displacement", quantity(document["axial_displacement"], "m")),
         ("Radial displacement", quantity(document["radial_displacement"], "m")),
-        ("Tilt", quantity(document["tilt"], "rad")),
+        ("Tilt", f"{quantity(document['tilt'], 'rad')} ({_tilt_is(document)})"),
+        ("Moment of the balls", quantity(document["moment"], "N m")),
     ]
+
+
+def _tilt_is(document: Document) -> str:
+    if not document["is_tilt_held"]:
+        return "free: the inner ring tilts until the balls balance the moment"
+    return "the rings are held parallel" if document["tilt"] == 0.0 else "the rings are held at this angle"
 
 
 CONTACT_ROWS = (
@@ -62,8 +69,7 @@ def _balls(balls: Sequence[Document]) -> list[list[str]]:
 
 def _ball(ball: Document) -> list[str]:
     return [
-        number(degrees(ball["contact_angle_inner"]), 2),
-        number(degrees(ball["contact_angle_outer"]), 2),
+        *(_angle(ball, race) for race in ("inner", "outer")),
         number(ball["load_inner"], 1),
         number(ball["load_outer"], 1),
         number(ball["orbital_speed"], 1),
@@ -71,6 +77,11 @@ def _ball(ball: Document) -> list[str]:
         number(ball["spin_roll_ratio_inner"], 4),
         number(ball["spin_roll_ratio_outer"], 4),
     ]
+
+
+def _angle(ball: Document, race: str) -> str:
+    """Return the contact angle, or a dash where the ball does not touch this race."""
+    return number(degrees(ball[f"contact_angle_{race}"]) if ball[f"{race}_contact"] else None, 2)
 
 
 def traction(document: Document) -> list[str]:

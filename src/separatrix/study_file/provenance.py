@@ -18,7 +18,8 @@ _SCALED = "2.5 x cage speed x half the pocket clearance, at least 0.05 m/s"
 
 _WITHOUT = {
     "bearing.bore": "not given; only the DN figure needs it",
-    "operation.tilt": "default: the inner ring tilts until the moment balances",
+    "operation.moment": "not given: the rings are held and carry any moment",
+    "operation.tilt": "default: the rings are held parallel",
     "operation.temperature": "not given",
     "operation.fluid": "not given",
     "film.material": "default: bare races",
@@ -116,8 +117,15 @@ def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
     origin = study.origins.get(key)
     if origin is None:
         origin = "default" if study.origins else "given in Python"
-        origin = _WITHOUT.get(key, origin) if item.get("value", 0) in (None, []) else origin
+        origin = _absent(study, key, origin) if item.get("value", 0) in (None, []) else origin
     return {**item, "origin": origin}
+
+
+def _absent(study: Study, key: str, otherwise: str) -> str:
+    """What the absence of this value means here."""
+    if key == "operation.tilt" and not study.operation.is_tilt_held:
+        return "free: the inner ring tilts until the balls balance the moment"
+    return _WITHOUT.get(key, otherwise)
 
 
 def _uncertain_material(study: Study, section: str, name: str, material: Material) -> dict[str, Any]:

@@ -44,7 +44,7 @@ _WHOLE = {
     "bearing.radial_clearance": "diametral play; gives the angle acos(1 - play / (2 (f_i + f_o - 1) D))",
     "bearing.ball_material": _PLACE_OF_NAME,
     "bearing.ring_material": _PLACE_OF_NAME,
-    "operation.moment": "default 0; the inner ring tilts until it balances. Or instead of it tilt",
+    "operation.tilt": "default 0: the rings are held parallel, or at this angle. Or instead of it moment",
     "operation.ramp_time": "default 0: steady. Start-up: all speeds rise in this time, from ramp_start on",
     "operation.ramp_start": "default 0.1; share of the speeds at which the ramp begins",
     "film.material": "a name of the library, or instead of it elastic_modulus and poisson_ratio",
