@@ -315,13 +315,15 @@ def cage_state(
     return CageState(restitution=links, cage=cage, stability=settings, orbital_share=waves.share)
 
 
-_COMPUTED = {"moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"}
+_NOT_COPIED = {
+    *("moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
+}
 
 
 def _as_designed(design: CageDesign) -> dict[str, Any]:
-    """What the cage in the plane takes from the design as it is: fields of the same name."""
-    names = {f.name for f in fields(design)} & {f.name for f in fields(PlanarCage)} - _COMPUTED
-    return {name: getattr(design, name) for name in names}
+    """What the cage in the plane takes from the design as it is: all other fields, under the same names."""
+    return {f.name: getattr(design, f.name) for f in fields(design) if f.name not in _NOT_COPIED}
 
 
 def _hertz_coefficient(study: Study, links: RestitutionState) -> NewtonPerMetre1_5 | None:

@@ -27,6 +27,10 @@ COVERAGE = 2.0
 """What stands behind ``+-`` is an expanded uncertainty: so many standard deviations (GUM, 6.2 and 7.2)."""
 
 MOST_SAMPLES = 10_000
+
+LEAST, MOST = 1e-60, 1e60
+"""Magnitudes that a number of a distribution may have, besides 0: their ratios can be squared, and the square
+exponentiated with its root, without leaving what a computer can hold."""
 _TAIL = 0.5 * math.erfc(CUT / math.sqrt(2.0))
 
 
@@ -206,8 +210,8 @@ class Samples:
         if not 2 <= len(self.values) <= MOST_SAMPLES:
             rule = f"must hold 2 to {MOST_SAMPLES} values"
             raise InputError("Samples.values", rule, "", str(len(self.values)))
-        if bad := [value for value in self.values if not math.isfinite(value)]:
-            raise InputError("Samples.values", "must be finite numbers", "", shown(bad[0]))
+        for value in self.values:
+            _check_magnitude("Samples.values", value)
         if min(self.values) == max(self.values):
             cure = "Write the value alone if it is certain."
             raise InputError("Samples.values", "must differ: there is no spread in them", cure=cure)
@@ -281,9 +285,13 @@ def _standard_normal(probability: Array) -> Array:
 
 def _finite(record: object, *names: str) -> None:
     for name in names:
-        if not math.isfinite(getattr(record, name)):
-            where = f"{type(record).__name__}.{name}"
-            raise InputError(where, "must be a finite number", "", shown(getattr(record, name)))
+        _check_magnitude(f"{type(record).__name__}.{name}", getattr(record, name))
+
+
+def _check_magnitude(where: str, value: float) -> None:
+    if not (value == 0.0 or LEAST <= abs(value) <= MOST):
+        rule = f"must be a finite number: 0, or between {LEAST:g} and {MOST:g} in magnitude"
+        raise InputError(where, rule, "", shown(value))
 
 
 def _positive(record: object, *names: str) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -85,7 +86,7 @@ def lines_of_keys(text: str) -> dict[str, int]:
     lines: dict[str, int] = {}
     seen: dict[str, int] = {}
     prefix = ""
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in _statements(text):
         if header := _HEADER.match(line):
             name = _plain(header.group(2))
             if header.group(1) == "[[":
@@ -98,6 +99,23 @@ def lines_of_keys(text: str) -> dict[str, int]:
             for depth in range(1, min(len(parts), 4) + 1):
                 lines.setdefault(prefix + ".".join(parts[:depth]), number)
     return lines
+
+
+def _statements(text: str) -> Iterator[tuple[int, str]]:
+    """Yield number and text of each line that begins a statement: not inside a text or a bracket."""
+    lines, number, depth = text.split("\n"), 1, 0
+    yield number, lines[0]
+    for mark in re.findall(r"[\[{\]}\n\0]", _STRING_OR_COMMENT.sub(_continued, text)):
+        depth = max(0, depth + (mark in "[{") - (mark in "]}"))
+        if mark in "\n\0":
+            number += 1
+        if mark == "\n" and depth == 0:
+            yield number, lines[number - 1]
+
+
+def _continued(match: re.Match[str]) -> str:
+    """A text or a comment without its content, its ends of lines marked as inside."""
+    return "\0" * match.group().count("\n")
 
 
 def _plain(key: str) -> str:

@@ -11,6 +11,7 @@ from separatrix.distribution import Normal, Samples
 from separatrix.errors import InputError
 from separatrix.orbit import HIGHEST
 from separatrix.ranking.friction import conditions_of
+from separatrix.study import KinematicModel
 from separatrix.study_file import read_study
 from separatrix.study_numbers import study_numbers, value_of, with_distributions, with_values
 from separatrix.uncertainty import chain_samples as module
@@ -156,6 +157,31 @@ def test_a_stage_is_computed_again_only_where_its_inputs_differ(key, equilibria,
     assert found.solved.all()
     assert calls == {"bearing_state": equilibria, "traction_slope": 2 * tractions}
     assert len(np.unique(found.restitution_factor[:, 0])) == CHUNK
+
+
+def test_a_number_that_nobody_classified_touches_everything():
+    """A new key costs time until somebody says what it touches; it never shares a stage that it changes."""
+    for key in ("bearing.new", "operation.new", "lubricant.viscosity"):
+        assert module._stage(BASE, key) == module._EQUILIBRIUM
+
+
+@pytest.mark.parametrize("model", [KinematicModel.FREE, KinematicModel.OUTER_RACE_CONTROL])
+def test_stages_that_an_input_is_said_not_to_touch_stay_the_same(model):
+    """Every number of the study, changed a little: equilibrium and traction are equal to the last bit."""
+    study = replace(BASE, kinematics=model)
+    bearing = module._bearing(study)
+    traction = module._traction(study, bearing)
+    known = study_numbers(study)
+    changed = {key: value_of(study, known[key]) for key in known if module._stage(study, key) > 0}
+    for key, value in changed.items():
+        if not value:
+            continue
+        other = with_values(study, {key: value + 1 if known[key].is_whole else 1.01 * value})
+        again = module._bearing(other)
+        assert np.array_equal(again.equilibrium.load_inner, bearing.equilibrium.load_inner), key
+        assert np.array_equal(again.equilibrium.orbital_speed, bearing.equilibrium.orbital_speed), key
+        if module._stage(study, key) == module._LATER:
+            assert module._traction(other, again) == traction, key
 
 
 def test_the_mass_alone_acts_by_the_printed_formula():

@@ -374,3 +374,17 @@ def test_a_ball_that_rolls_without_spin_slides_by_the_closed_form():
     # The ball also pivots and its angles differ by a few degrees; the formula is for pure rolling.
     assert speed == pytest.approx(omega * d_m * (1.0 - gamma**2) / 4.0, rel=0.03)
     assert sliding_speed(np.array([[0.0, 0.0, 900.0], [3.0, 4.0, 0.0]]), 2.0) == pytest.approx([0.0, 5.0])
+
+
+@pytest.mark.parametrize("groups", [1, 2])
+def test_any_number_of_equal_tests_has_a_fit(groups):
+    """Their likelihood leaves one node of the scatter; the weights of the others are below all numbers."""
+    tests = [
+        FrictionTest(material="A", counterface=f"B{k}", medium="gas", friction=0.1)
+        for k in range(groups)
+        for _ in range(150)
+    ]
+    fit = fit_friction(tests)
+    for one in fit.groups.values():
+        assert exp(one.intercept.value) == pytest.approx(0.1, rel=1e-12)
+        assert 0.0 < one.scatter < 0.01

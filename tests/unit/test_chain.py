@@ -1,10 +1,11 @@
 """What the chain takes from a study, and what it refuses."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import pytest
 
-from separatrix.cage import settings_for
+from separatrix import chain
+from separatrix.cage import PlanarCage, settings_for
 from separatrix.chain import (
     bearing_state,
     cage_state,
@@ -225,3 +226,16 @@ def test_results_and_report_say_how_far_balls_lead_and_lag():
     alike = documents.cage(cage_state(STUDY))["chain"]
     assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)
     assert "Balls lead and lag by" not in dict(chain_facts(alike))
+
+
+def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():
+    """A field that is renamed on one side only is an error, not its default."""
+
+    @dataclass(frozen=True)
+    class Renamed:
+        mass: float = 0.025
+        pocket_clearances: float = 1e-4
+
+    assert chain._as_designed(Renamed()) == {"mass": 0.025, "pocket_clearances": 1e-4}
+    with pytest.raises(TypeError, match="pocket_clearances"):
+        PlanarCage(**chain._as_designed(Renamed()))

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -17,7 +19,8 @@ import pytest
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
 from separatrix.cli.files import staged, writable_folder
-from separatrix.errors import InputError
+from separatrix.cli.run import noted_warnings
+from separatrix.errors import InputError, ValidityWarning
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
@@ -311,3 +314,16 @@ def test_other_unraisable_errors_take_their_usual_way(monkeypatch):
         Fails()
     assert [one.exc_type for one in seen] == [ValueError]
     assert console.sys.unraisablehook == seen.append
+
+
+def test_warnings_of_many_threads_are_noted_once_each():
+    """Threads of a pool warn while the filter is in place: nothing is lost and nothing is twice."""
+    sentences = [f"sentence {i}" for i in range(50)]
+
+    def warn(_: int) -> None:
+        for sentence in sentences:
+            warnings.warn(sentence, ValidityWarning, stacklevel=2)
+
+    with noted_warnings() as notes, ThreadPoolExecutor(8) as pool:
+        list(pool.map(warn, range(32)))
+    assert sorted(notes) == sorted(sentences)

@@ -8,6 +8,7 @@ import pytest
 
 from separatrix.errors import InputError
 from separatrix.study_file import read_study, require
+from separatrix.toml_text import lines_of_keys
 
 VALID = """\
 title = "A valid study"
@@ -525,3 +526,41 @@ def test_a_verb_that_needs_a_section_says_which():
         require(read_study("le7"), "simulate", "bearing", "cage")
     with pytest.raises(InputError, match=r"\[cage\] and \[ranking\] are missing; `rank` needs them"):
         require(read_study("le7"), "rank", "cage", "ranking")
+
+
+SCANNED = '''title = """
+[cage]
+mass = 1
+"""
+samples = [
+  ["a"],
+  [ "b" ], # ]
+]
+after = 1 # [operation] \u2028
+[film]  # "a comment
+thickness = { a = 1 }
+note = \'\'\'
+race_friction = 2
+\'\'\'
+[[ranking.candidates]]
+name = "x"
+[[ranking.candidates]]
+material.density = 4
+'''
+
+
+def test_the_line_of_a_key_is_not_looked_for_in_texts_and_lists():
+    """What looks like a header or a key inside a text, a list or a comment is none; U+2028 ends no line."""
+    assert lines_of_keys(SCANNED) == {
+        "title": 1,
+        "samples": 5,
+        "after": 9,
+        "film": 10,
+        "film.thickness": 11,
+        "film.note": 12,
+        "ranking.candidates.0": 15,
+        "ranking.candidates.0.name": 16,
+        "ranking.candidates.1": 17,
+        "ranking.candidates.1.material": 18,
+        "ranking.candidates.1.material.density": 18,
+    }

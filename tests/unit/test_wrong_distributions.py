@@ -155,3 +155,24 @@ def test_a_wrong_distribution_is_refused_in_one_line(name, tmp_path):
     assert message.startswith("wrong.toml")
     for word in words:
         assert word in message, message
+
+
+TOO_FAR = {
+    "a log-normal width": film('"0.5 um +- 1e160 m"'),
+    "a log-uniform bound": friction("{ between = [1e-160, 1], log = true }"),
+    "samples of a friction": friction("[1e200, 1e-3]"),
+    "samples of a length": film('["1e308 m", "1.1e308 m"]'),
+    "samples of a count": f"[bearing]\nball_count = [12, 1{'0' * 300}]\n",
+    "a uniform bound": film('{ between = ["1 um", "1e299 m"] }'),
+    "a standard deviation": film('{ mean = "1 um", standard_deviation = "1e-200 m" }'),
+}
+
+
+@pytest.mark.parametrize("kind", TOO_FAR)
+def test_numbers_that_overflow_are_refused_in_one_line(kind, tmp_path):
+    """Where the mean, the deviation or the quantiles would leave what a computer can hold."""
+    path = tmp_path / "case.toml"
+    path.write_text(HEAD + TOO_FAR[kind])
+    with pytest.raises(InputError, match=r"case.toml, line \d+: .* must be") as error:
+        read_study(str(path))
+    assert "\n" not in str(error.value)

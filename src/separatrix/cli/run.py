@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+import threading
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -197,7 +198,7 @@ def grouped(notes: Iterable[str]) -> list[str]:
 def noted_warnings() -> Iterator[list[str]]:
     """Collect what is said about validity, each sentence once; other warnings take their usual way."""
     notes: list[str] = []
-    known: set[str] = set()
+    one_at_a_time = threading.Lock()  # threads of a pool warn too
     with warnings.catch_warnings():
         warnings.simplefilter("always", ValidityWarning)
         usual = warnings.showwarning
@@ -205,9 +206,10 @@ def noted_warnings() -> Iterator[list[str]]:
         def note(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
             if not issubclass(category, ValidityWarning):
                 usual(message, category, *place, **rest)
-            elif str(message) not in known:
-                known.add(str(message))
-                notes.append(str(message))
+                return
+            with one_at_a_time:
+                if str(message) not in notes:
+                    notes.append(str(message))
 
         warnings.showwarning = note  # put back by catch_warnings
         yield notes

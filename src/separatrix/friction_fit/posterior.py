@@ -21,6 +21,7 @@ OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
 _LOGS = np.linspace(-4.0, 4.0, 65)
+_LEAST = 1e-300
 _SHARES = np.sqrt((np.arange(8) + 0.5) / 8.0)
 """Shares of the variance that lie between samples, all as likely beforehand: one specimen run again differs
 less than two specimens do (density proportional to the share; a guess)."""
@@ -72,13 +73,12 @@ def posteriors(models: Sequence[LinearModel], default_scatter: Ratio) -> list[Po
     first = _normal(_LOGS[None, :], OF_THE_ASSUMPTION)[0]
     deviations = _nodes(default_scatter, first @ kernel)
     fits = [_fits(model, deviations) for model in models]
-    likelihoods = [_relative(fit, model) for fit, model in zip(fits, models, strict=True)]
-    messages = [np.log(kernel @ one.mean(axis=1)) for one in likelihoods]
+    logs = [_relative(fit, model) for fit, model in zip(fits, models, strict=True)]
+    messages = [_log(kernel @ np.exp(one).mean(axis=1)) for one in logs]
     found = []
-    for fit, likelihood, message in zip(fits, likelihoods, messages, strict=True):
-        others = np.log(first) + sum(messages) - message
-        prior = _normalised(np.exp(others - others.max())) @ kernel
-        weight = _normalised(likelihood * prior[:, None]).ravel()
+    for i, (fit, log_likelihood) in enumerate(zip(fits, logs, strict=True)):
+        prior = _normalised(sum([*messages[:i], *messages[i + 1 :]], _log(first))) @ kernel
+        weight = _normalised(log_likelihood + _log(prior)[:, None]).ravel()
         variance = np.repeat(deviations**2, len(_SHARES))
         found.append(Posterior(variance=variance, weight=weight, fit=fit))
     return found
@@ -97,12 +97,12 @@ def _fits(model: LinearModel, deviations: Array) -> Conditional:
 
 
 def _relative(fit: Conditional, model: LinearModel) -> Array:
-    """Likelihood over its largest value, shape (scatter, share); flat where the model fits exactly."""
+    """Log-likelihood less its largest value, shape (scatter, share); flat where the model fits exactly."""
     shape = (len(_LOGS), len(_SHARES))
     if model.freedom == 0:
-        return np.ones(shape)
-    likelihood: Array = np.exp(fit.log_likelihood - fit.log_likelihood.max())
-    return likelihood.reshape(shape)
+        return np.zeros(shape)
+    relative: Array = fit.log_likelihood - fit.log_likelihood.max()
+    return relative.reshape(shape)
 
 
 def _normal(distance: Array, deviation: float) -> Array:
@@ -112,6 +112,14 @@ def _normal(distance: Array, deviation: float) -> Array:
     return normal
 
 
-def _normalised(weight: Array) -> Array:
+def _log(weight: Array) -> Array:
+    """Logarithm; many equal tests leave weights too small for a number, which count as `_LEAST`."""
+    log: Array = np.log(np.maximum(weight, _LEAST))
+    return log
+
+
+def _normalised(log_weight: Array) -> Array:
+    """Weights of sum 1."""
+    weight = np.exp(log_weight - log_weight.max())
     normalised: Array = weight / weight.sum()
     return normalised

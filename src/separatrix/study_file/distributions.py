@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from separatrix.distribution import (
     COVERAGE,
@@ -19,6 +19,8 @@ from separatrix.distribution import (
 from separatrix.errors import InputError
 from separatrix.toml_values import Reader, nearest, ratio, whole
 from separatrix.units import parse, printable, shown
+
+Made = TypeVar("Made", bound=Distribution)
 
 _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
@@ -131,7 +133,7 @@ def _plus_minus(text: str, where: str, reader: Reader, unit: str) -> Distributio
         raise InputError(where, "needs a unit before +- too", "", shown(text), cure)
     mean = _written_number(parts[0], where, reader, unit)
     half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
-    return Normal(mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
+    return _made(Normal, where, mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
 
 
 def _sides(text: str) -> list[str]:
@@ -174,7 +176,7 @@ def _between(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Di
     if log and low <= 0.0:
         cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
         raise InputError(f"{where}.between", "must be > 0 with log = true", "", shown(bounds[0]), cure)
-    return (LogUniform if log else Uniform)(low=low, high=high, text=written(value))
+    return _made(LogUniform if log else Uniform, f"{where}.between", low=low, high=high, text=written(value))
 
 
 def _moments(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
@@ -186,7 +188,7 @@ def _moments(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Di
         deviation = _width(width, mean, str(value["mean"]), at, unit)
     else:
         deviation = _not_zero(reader(width, at), width, at)
-    return Normal(mean=mean, standard_deviation=deviation, text=written(value))
+    return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
 
 
 def _sampled(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
@@ -206,7 +208,15 @@ def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples
     if min(values) == max(values):
         cure = "Write the value alone if it is certain."
         raise InputError(where, "must differ: there is no spread in them", "", written(items), cure)
-    return Samples(values=values, text=text)
+    return _made(Samples, where, values=values, text=text)
+
+
+def _made(kind: type[Made], where: str, **values: Any) -> Made:
+    """Make a distribution; its refusals are given the place in the file."""
+    try:
+        return kind(**values)
+    except InputError as error:
+        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
 
 
 def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:

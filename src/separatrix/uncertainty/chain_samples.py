@@ -40,11 +40,11 @@ CHUNK = 32
 
 INTERRUPTED = "not computed: the work was interrupted"
 
-_EQUILIBRIUM, _TRACTION, _BLOW, _LATER = range(4)
-"""Stages, from the first that an input touches."""
+_EQUILIBRIUM, _TRACTION, _LATER = range(3)
+"""Stages, from the first that an input touches; what follows the traction is computed for each sample."""
 
-_NO_STAGE = ("bearing.bore", "operation.temperature", "operation.ramp_time", "operation.ramp_start")
-_OF_A_BLOW = ("cage.mass", "cage.ball_cage_stiffness", "cage.impact_speed", "cage.pocket_clearance")
+_UNUSED = ("bearing.bore", "operation.temperature", "operation.ramp_time", "operation.ramp_start")
+"""Numbers of bearing and operation that neither equilibrium nor traction takes."""
 
 _PER_SAMPLE = (
     "race_damping",
@@ -234,17 +234,13 @@ def chain_samples(
 
 
 def _stage(study: Study, key: str) -> int:
-    """First stage of the chain that an input touches."""
-    section, _, rest = key.partition(".")
-    if key in _NO_STAGE:
+    """First stage of the chain that an input touches; the first of all for one that is not known here."""
+    section = key.partition(".")[0]
+    if key in _UNUSED or section in ("cage", "stability", "ranking"):
         return _LATER
-    if key == "film.race_friction" and study.kinematics is KinematicModel.FREE:
-        return _EQUILIBRIUM
-    if section in ("bearing", "operation"):
-        return _EQUILIBRIUM
-    if section == "film":
+    if section == "film" and not (key == "film.race_friction" and study.kinematics is KinematicModel.FREE):
         return _TRACTION
-    return _BLOW if key in _OF_A_BLOW or ".material." in f".{rest}" else _LATER
+    return _EQUILIBRIUM
 
 
 def _is_friction(key: str) -> bool:
