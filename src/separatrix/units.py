@@ -53,6 +53,7 @@ NewtonSecondPerMetre = Annotated[float, "N s/m"]
 Pascal = Annotated[float, "Pa"]
 Kelvin = Annotated[float, "K"]
 Joule = Annotated[float, "J"]
+Watt = Annotated[float, "W"]
 
 QUANTITIES = {
     "m": "length",

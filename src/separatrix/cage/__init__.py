@@ -13,21 +13,22 @@ from separatrix.cage.linear import (
     turning_critical_friction,
 )
 from separatrix.cage.orbit import CageMotion
-from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
-from separatrix.cage.verdict import Judgement, growth_probability, judge
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
+from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability
 
 __all__ = [
     "CageMotion",
+    "Cause",
     "Ensemble",
     "History",
     "Judgement",
+    "KickCount",
     "PlanarCage",
     "RunOutcome",
     "Verdict",
     "blow_restitution",
     "drift_law",
     "follow",
-    "growth_probability",
     "judge",
     "linear_critical_friction",
     "linear_roots",
@@ -37,5 +38,6 @@ __all__ = [
     "settings_for",
     "simulate",
     "turning_critical_friction",
+    "whirl_probability",
     "wilson_interval",
 ]

@@ -18,12 +18,13 @@ from separatrix.cage.coefficients import (
     series_columns,
     time_unit,
 )
+from separatrix.cage.ending import run_limits
 from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.run import FIFTHS, Limits, random_start, run_chunk, series_of
+from separatrix.cage.run import random_start, run_chunk, series_of
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK
-from separatrix.units import Array, Joule, MetrePerSecond, Second
+from separatrix.units import Array, MetrePerSecond, Second
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -38,16 +39,14 @@ CHUNK_RADIANS = 200_000.0
 """Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
 second of work."""
 
+PER_MASS = [
+    *(slots.FORCE, slots.LAND_FORCE, slots.RUBBING_FORCE),
+    *(slots.END_ENERGY, slots.POCKET_POWER, slots.LAND_POWER),
+]
+"""Evidence that the kernels give over the mass."""
+
 MOST_RADIANS = 1e8
 """Longest run, in radians of the fastest motion."""
-
-GROWN, DEAD = 100.0, 1e-4
-"""A run ends early, as growing or dying, at these multiples of the energy scale; it changes no outcome."""
-
-GROWS_ON, GROWS_AT_ONCE, DIES_OUT = 10.0, 30.0, 1e-3
-"""A run also ends when its mean energy, look by look, stays above the first multiple of the energy scale;
-where only growth is asked for, also when one look is above the second, or looks stay below the third of the
-kick's; or when looks are alike (`run.watch`). benchmarks/early_ends.py counts what this changes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,21 +59,23 @@ class Ensemble:
         Speeds of the kicks, shape (kick,) [m/s].
     outcome : ndarray
         `RunOutcome` of each run, integer.
-    energy_growth : ndarray
-        Mean kinetic energy at the end (last fifth; what was run of the last window if ended early) over the
-        kick's [-].
+    cause : ndarray
+        `Cause` of each run that is unresolved, integer; 0 for the others.
+    end_energy : ndarray
+        Mean kinetic energy in the last part of the run: the last fifth, or the last window by which its end
+        was plain [J].
     growth_rate : ndarray
-        Half the logarithm of `energy_growth` over the time to the middle of that window; of the last fifth
-        where the run was ended in a steady whirl [1/s].
+        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the kick in
+        a run that ends within five looks [1/s].
     largest_offset : ndarray
         Largest offset of the cage centre [m].
     mean_offset, offset_spread : ndarray
-        Mean and standard deviation of the offset over the last window [m].
+        Mean and standard deviation of the offset over the last part [m].
     orbit_speed : ndarray
         Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
-        squared offset, over the last window; positive as the ball set turns [rad/s].
+        squared offset, over the last part; positive as the ball set turns [rad/s].
     drift_rate : ndarray
-        Growth rate of the mean offset between the last two fifths; 0 if the run ended early [1/s].
+        Growth rate of the mean offset between the last two fifths of the run [1/s].
     whirl_frequency, whirl_direction : ndarray
         Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
         its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
@@ -85,15 +86,22 @@ class Ensemble:
     energy_imbalance : ndarray
         What the ledger of sources and sinks leaves unexplained, over the work done [-]; 0 where none was
         kept.
-    cut : ndarray
-        Whether a run was ended as soon as it was known to die: what is said of its end is said of that time.
+    pocket_power, land_power : ndarray
+        Mean power that the friction of pockets and of the land feeds into the cage in the last part; 0 where
+        the run ended before it was known [W].
+    rubbing_force, rubbing_speed : ndarray
+        Mean normal force on the land over the last part [N], and the sliding speed there weighted with it
+        [m/s].
+    followed, judged_from : ndarray
+        Time up to which the run was judged, and at which its last part begins [s].
     duration : float
-        Length of a run that is not ended early [s].
+        Of a run whose end is plain by then; others go on, to `ending.LONGEST` times as long at most [s].
     """
 
     kicks: Array
     outcome: NDArray[np.int64]
-    energy_growth: Array
+    cause: NDArray[np.int64]
+    end_energy: Array
     growth_rate: Array
     largest_offset: Array
     mean_offset: Array
@@ -107,22 +115,17 @@ class Ensemble:
     pocket_impacts: NDArray[np.int64]
     land_impacts: NDArray[np.int64]
     energy_imbalance: Array
-    cut: NDArray[np.bool_]
+    pocket_power: Array
+    land_power: Array
+    rubbing_force: Array
+    rubbing_speed: Array
+    followed: Array
+    judged_from: Array
     duration: Second
 
     def count(self, outcome: RunOutcome) -> NDArray[np.int64]:
         """Runs that ended so at each kick, shape (kick,)."""
         return np.asarray(np.count_nonzero(self.outcome == outcome, axis=1), dtype=np.int64)
-
-    def share(self, doing: NDArray[np.bool_]) -> Array:
-        """Share of the runs at each kick that end so, shape (kick,) [-].
-
-        Of runs that were cut nobody knows: they count as those that do not grow and were not cut.
-        """
-        grows, told = self.outcome == RunOutcome.GROWS, ~self.cut
-        held = told & ~grows
-        among = np.sum(doing & held, axis=1) / np.maximum(held.sum(axis=1), 1)
-        return np.asarray((doing & grows).mean(axis=1) + (~grows).mean(axis=1) * among)
 
 
 def run_ensemble(
@@ -132,7 +135,6 @@ def run_ensemble(
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
     first_run: int = 0,
-    growth_only: bool = False,
     ledger: bool = True,
     jobs: int = 1,
 ) -> Ensemble:
@@ -148,11 +150,8 @@ def run_ensemble(
         Instead of those of the settings.
     first_run : int
         Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
-    growth_only : bool
-        End a run that dies as soon as it is known; its evidence, drift among it, is then that of the part
-        which was run.
     ledger : bool
-        Whether to keep the ledger of work, which takes half as long again; not if only growth is asked for.
+        Whether to keep the ledger of work from the start, which takes half as long again.
     jobs : int
         Threads. The result is the same to the last bit for any number.
 
@@ -170,14 +169,13 @@ def run_ensemble(
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
 
     def work(i: int, rows: slice) -> None:
-        run_rows(cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows],
-                 growth_only=growth_only, ledger=ledger)  # fmt: skip
+        run_rows(
+            cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows], ledger=ledger
+        )
 
     size = max(1, int(CHUNK_RADIANS / (settings.duration * fastest_rate(cage))))
     spread(work, len(speeds), runs, size, jobs)
-    return gathered(
-        speeds, evidence, hits if forward else other_way_round(hits), settings.duration, may_cut=growth_only
-    )
+    return gathered(speeds, evidence, hits if forward else other_way_round(hits), settings.duration)
 
 
 def run_rows(
@@ -188,23 +186,22 @@ def run_rows(
     evidence: Array,
     hits: NDArray[np.int64],
     *,
-    growth_only: bool = False,
     ledger: bool = True,
     rows: Array | None = None,
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
 
-    The motion is the same with the ledger of work and without it.
+    The motion is the same with the ledger of work and without it. With rows of a history a run goes on to
+    their last, whatever is plain before.
     """
     unit, balls = time_unit(cage), cage.ball_count
     p, drive = as_record(coefficients(cage, kick)), free_speeds(cage, np.array(cage.ball_angles))
     history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
-    limits = run_limits(cage, kick, growth_only=growth_only)
-    fifth = duration / FIFTHS / unit
+    limits = run_limits(cage, kick, duration, least=rows is not None)
+    look = duration / limits.looks / unit
     series = series_of(series_columns(cage))
-    run_chunk(p, drive, starts, kick * unit, series, fifth, limits, history, ledger and not growth_only,
-              evidence, hits)  # fmt: skip
-    evidence[:, [slots.FORCE, slots.LAND_FORCE]] *= cage.mass
+    run_chunk(p, drive, starts, kick * unit, series, look, limits, history, ledger, evidence, hits)
+    evidence[:, PER_MASS] *= cage.mass
 
 
 def check_length(cage: PlanarCage, duration: Second) -> None:
@@ -268,35 +265,6 @@ def chosen(
     return speeds, count
 
 
-def run_limits(cage: PlanarCage, kick: MetrePerSecond, *, growth_only: bool = False) -> Limits:
-    """Offset that is drift, and the energies at which a run's end is known.
-
-    The land holds a guided cage, so its offset is no drift. Only a cage that nothing drives can be known to
-    die from its energy at one time.
-    """
-    landless = math.isinf(cage.land_gap)
-    driven = not landless or cage.cage_speed != 0 or cage.gravity > 0
-    scale = energy_scale(cage, kick) / cage.mass * time_unit(cage) ** 2
-    given = 0.5 * (kick * time_unit(cage)) ** 2
-    return Limits(
-        drift=2.0 * cage.half_play if landless and cage.half_play > 0 else math.inf,
-        grows_above=GROWN * scale,
-        dies_below=-1.0 if driven else DEAD * scale,
-        mean_grows_above=GROWS_ON * scale,
-        mean_grows_at_once=GROWS_AT_ONCE * scale if growth_only else math.inf,
-        mean_dies_below=DIES_OUT * given if growth_only else -1.0,
-    )
-
-
-def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> Joule:
-    """Energy beside which growth is judged early [J].
-
-    The kick's, and what the frame and gravity do over the way that the cage has.
-    """
-    way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
-    return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
-
-
 def other_way_round(by_ball: NDArray[Scalar]) -> NDArray[Scalar]:
     """Columns of balls counted the other way round, shape (..., ball); ball 0 stays."""
     return np.roll(by_ball[..., ::-1], 1, axis=-1)
@@ -319,9 +287,7 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(
-    kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second, *, may_cut: bool
-) -> Ensemble:
+def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second) -> Ensemble:
     """Record of the evidence of all runs, shape (kick, run, evidence)."""
 
     def column(slot: int) -> Array:
@@ -330,7 +296,8 @@ def gathered(
     return Ensemble(
         kicks=kicks,
         outcome=column(slots.OUTCOME).astype(np.int64),
-        energy_growth=column(slots.GROWTH),
+        cause=column(slots.CAUSE).astype(np.int64),
+        end_energy=column(slots.END_ENERGY),
         growth_rate=column(slots.GROWTH_RATE),
         largest_offset=column(slots.LARGEST_OFFSET),
         mean_offset=column(slots.MEAN_OFFSET),
@@ -344,8 +311,11 @@ def gathered(
         pocket_impacts=hits,
         land_impacts=column(slots.LAND_IMPACTS).astype(np.int64),
         energy_imbalance=column(slots.IMBALANCE),
-        cut=may_cut
-        & (column(slots.OUTCOME) == RunOutcome.DIES)
-        & (column(slots.FOLLOWED) < (1.0 - 1e-9) * duration),
+        pocket_power=column(slots.POCKET_POWER),
+        land_power=column(slots.LAND_POWER),
+        rubbing_force=column(slots.RUBBING_FORCE),
+        rubbing_speed=column(slots.RUBBING_SPEED),
+        followed=column(slots.FOLLOWED),
+        judged_from=column(slots.JUDGED),
         duration=duration,
     )

@@ -40,6 +40,7 @@ from separatrix.cage.slots import (
     PENETRATION,
     PLAY,
     POCKET_FRICTION,
+    PRESSED,
     RACE_DAMPERS,
     RELEASED,
     ROW_BALLS,
@@ -47,9 +48,12 @@ from separatrix.cage.slots import (
     ROW_LAND_FORCE,
     ROW_POCKET_ENERGY,
     ROW_WORK,
+    RUBBED,
     SIDE,
     SINE,
+    SLIDING,
     SPEED_SQUARED,
+    STICK,
     SWEPT,
     TANGENT,
     TURNING,
@@ -79,8 +83,8 @@ NODES, WEIGHTS = _gauss(7)
 
 
 @inlined_kernel
-def enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tally, c):  # type: ignore[no-untyped-def]
-    """Add a step, up to `end`, to the tally of its window."""
+def enter_step(p, pockets, touch, w, count, land, deepest, h, end, after, tally, c):  # type: ignore[no-untyped-def]
+    """Add a step, up to `end`, to the tally of its look."""
     length = end * h
     ux, uy = w[0, VX], w[0, VY]
     gx, gy = (w[0, GX], w[0, GY]) if p.eccentricity != 0.0 else (w[0, X], w[0, Y])
@@ -122,14 +126,19 @@ def enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tal
     tally[MEAN_X], tally[MEAN_Y], tally[OFFSET_MAX] = mean_x, mean_y, farthest
     if p.hertz != 0.0 or p.stiffness * deepest > tally[FORCE_MAX]:
         enter_force(p, pockets, touch, w, count, end, tally, c)
-    if pressed:
+    if land != CLEAR and land != RELEASED:
         copy_column(w, NORMAL, c)
         tally[LAND_MAX] = max(tally[LAND_MAX], peak(c, 1.0, end))
+        for i in range(4):
+            impulse = FEW_WEIGHTS[i] * length * value(w, NORMAL, end * FEW_NODES[i])
+            tally[PRESSED] += impulse
+            if land != STICK:
+                tally[RUBBED] += impulse * abs(value(w, SLIDING, end * FEW_NODES[i]))
 
 
 @inner_kernel
 def enter_force(p, pockets, touch, w, count, end, tally, c):  # type: ignore[no-untyped-def]
-    """Add the largest forces of the pockets in touch, up to `end`, to the tally of its window."""
+    """Add the largest forces of the pockets in touch, up to `end`, to the tally of its look."""
     for i in range(count):
         j = touch[LIST, i]
         penetration(p, pockets, w, j, c)

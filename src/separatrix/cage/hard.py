@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from separatrix.cage import slots
+from separatrix.cage.ending import GROWN, energy_scale
 from separatrix.cage.ensemble import (
-    GROWN,
     Ensemble,
     chosen,
-    energy_scale,
     gathered,
     random_starts,
     spread,
 )
 from separatrix.cage.kicks import settings_for
-from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.slots import (
+    CAUSE,
     DIRECTION,
+    END_ENERGY,
     FORCE,
-    GROWTH,
     GROWTH_RATE,
     IMBALANCE,
     LARGEST_OFFSET,
@@ -55,9 +55,8 @@ X, Y, VX, VY, THETA, SPIN = range(6)
 TIME, WORK, DONE, FAR, LATE_ENERGY, SWEPT, AREA, PEAK = range(8)
 NOTES = 8
 UNKNOWN = -1
-DIES, GROWS, DRIFT, STALLED = (
-    int(outcome) for outcome in (RunOutcome.DIES, RunOutcome.GROWS, RunOutcome.DRIFT, RunOutcome.STALLED)
-)
+SETTLES, WHIRLS, DRIFTS, UNRESOLVED = (int(outcome) for outcome in RunOutcome)
+IMPACTS = int(Cause.IMPACTS)
 
 
 class Walls(NamedTuple):
@@ -185,14 +184,14 @@ def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # typ
             return UNKNOWN
         idle = idle + 1 if dt < 1e-9 * duration else 0
         if idle > STALL:
-            return STALLED
+            return UNRESOLVED
         if ball >= 0:
             u = s[Y] * cos[ball] - s[X] * sin[ball] + p.radius * s[THETA] - lead[ball]
             if p.half_play - side * u <= 1e-10 * p.half_play:
                 blow(p, cos[ball], sin[ball], s, note, side, eta, mass)
         if energy_of(p, s) > grows_above:
-            return GROWS
-    return STALLED
+            return WHIRLS
+    return UNRESOLVED
 
 
 @kernel
@@ -203,13 +202,14 @@ def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, ou
     start = energy_of(p, s)
     outcome = follow(p, cos, sin, lead, s, note, eta, mass, duration, limits[1])
     late = note[TIME] - 0.8 * duration
-    out[GROWTH] = (note[LATE_ENERGY] / late if late > 0.0 else energy_of(p, s)) / start
+    out[END_ENERGY] = note[LATE_ENERGY] / late if late > 0.0 else energy_of(p, s)
+    growth = out[END_ENERGY] / start  # walls have no scale of energy: what has grown goes on growing
     out[LARGEST_OFFSET] = np.sqrt(note[FAR])
-    out[GROWTH_RATE] = 0.5 * np.log(out[GROWTH]) / (0.9 * duration if late > 0.0 else note[TIME])
+    out[GROWTH_RATE] = 0.5 * np.log(growth) / (0.9 * duration if late > 0.0 else note[TIME])
     if outcome == UNKNOWN:
-        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[LARGEST_OFFSET] > limits[0] else DIES)
+        outcome = WHIRLS if growth > 1.0 else (DRIFTS if out[LARGEST_OFFSET] > limits[0] else SETTLES)
     whirl = note[SWEPT] / note[AREA] if note[AREA] > 0.0 else 0.0
-    out[OUTCOME] = outcome
+    out[OUTCOME], out[CAUSE] = outcome, IMPACTS if outcome == UNRESOLVED else 0
     out[WHIRL] = abs(whirl) / (2.0 * np.pi)
     out[DIRECTION] = np.sign(whirl)
     out[FORCE] = note[PEAK]
@@ -252,7 +252,7 @@ def run_hard_ensemble(
     -------
     Ensemble
         With the force that an undamped spring would reach at each blow, the whirl as the mean turning rate of
-        the offset, and no drift rate. Runs that meet too many events in no time are STALLED.
+        the offset, and no drift rate. Runs that meet too many events in no time are UNRESOLVED.
 
     Raises
     ------
@@ -277,7 +277,7 @@ def run_hard_ensemble(
 
     spread(work, speeds.size, runs, CHUNK_RUNS, jobs)
     hits = np.zeros((speeds.size, runs, cage.ball_count), dtype=np.int64)
-    return gathered(speeds, evidence, hits, settings.duration, may_cut=False)
+    return gathered(speeds, evidence, hits, settings.duration)
 
 
 def _walls(cage: PlanarCage, *, may_turn: bool) -> Walls:

@@ -9,10 +9,10 @@ import numpy as np
 from separatrix.cage import slots
 from separatrix.cage.coefficients import time_unit
 from separatrix.cage.ensemble import check_length, chosen, other_way_round, random_starts, run_rows
-from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
-from separatrix.units import Array, MetrePerSecond, Radian, Ratio, Second
+from separatrix.units import Array, Joule, MetrePerSecond, Newton, Radian, Ratio, Second, Watt
 
 MOST_SAMPLES = 1_000_000
 SOURCES = slots.SOURCES
@@ -27,7 +27,7 @@ class History:
     Attributes
     ----------
     time : ndarray
-        Shape (time,) [s]; a run that is decided early ends early, and a long flight is not sampled within.
+        Shape (time,) [s]; a run that grows without limit ends early, and a long flight is not sampled within.
     position, velocity : ndarray
         Geometric centre of the cage [m], and velocity of its centre of mass [m/s], shape (time, 2).
     rotation, rotation_rate : ndarray
@@ -41,9 +41,13 @@ class History:
     work : dict of str to ndarray
         Work done on the cage since the start by each of `SOURCES`, shape (time,) [J].
     outcome : RunOutcome
-        How the run ended; the same as in an ensemble with this kick, seed and run.
-    energy_growth, drift_rate : float
-        As in the ensemble [-] and [1/s].
+        Where the motion ends; the same as in an ensemble with this kick, seed and run.
+    cause : Cause
+        Why the run is unresolved, if it is.
+    judged_from, judged_until : float
+        The last part of the run, by which it was judged [s]; the history goes on to its duration.
+    end_energy, growth_rate, drift_rate, pocket_power, land_power, rubbing_force, rubbing_speed : float
+        As in the ensemble.
     """
 
     time: Array
@@ -61,8 +65,16 @@ class History:
     pocket_angle: Array
     half_play: Array
     outcome: RunOutcome
-    energy_growth: Ratio
+    cause: Cause
+    judged_from: Second
+    judged_until: Second
+    end_energy: Joule
+    growth_rate: float
     drift_rate: float
+    pocket_power: Watt
+    land_power: Watt
+    rubbing_force: Newton
+    rubbing_speed: MetrePerSecond
 
 
 def simulate(
@@ -156,10 +168,12 @@ def follow(
     check_length(cage, duration)
     angles = np.array(cage.ball_angles) if pocket_angle is None else pocket_angle
     starts = np.concatenate([[direction], lead, play, angles])[np.newaxis]
-    rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
-    rows[:, slots.CLOCK] = np.linspace(0.0, duration / time_unit(cage), samples)
     evidence = np.zeros((1, slots.EVIDENCE))
     hits = np.zeros((1, cage.ball_count), dtype=np.int64)
+    run_rows(cage, duration, kick, starts, evidence, hits, ledger=False)
+    length = max(duration, float(evidence[0, slots.FOLLOWED]))
+    rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
+    rows[:, slots.CLOCK] = np.linspace(0.0, length / time_unit(cage), samples)
     run_rows(cage, duration, kick, starts, evidence, hits, rows=rows)
     return _history(cage, rows[: int(evidence[0, slots.ROWS])], evidence[0], play, angles)
 
@@ -187,6 +201,14 @@ def _history(cage: PlanarCage, rows: Array, evidence: Array, play: Array, angles
         pocket_angle=angles,
         half_play=play,
         outcome=RunOutcome(int(evidence[slots.OUTCOME])),
-        energy_growth=float(evidence[slots.GROWTH]),
+        cause=Cause(int(evidence[slots.CAUSE])),
+        judged_from=float(evidence[slots.JUDGED]),
+        judged_until=float(evidence[slots.FOLLOWED]),
+        end_energy=float(evidence[slots.END_ENERGY]),
+        growth_rate=float(evidence[slots.GROWTH_RATE]),
         drift_rate=float(evidence[slots.DRIFT_RATE]),
+        pocket_power=float(evidence[slots.POCKET_POWER]),
+        land_power=float(evidence[slots.LAND_POWER]),
+        rubbing_force=float(evidence[slots.RUBBING_FORCE]),
+        rubbing_speed=float(evidence[slots.RUBBING_SPEED]),
     )

@@ -40,15 +40,12 @@ def settings_for(settings: StabilitySettings, cage: PlanarCage) -> StabilitySett
 def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilitySettings:
     """Return the settings with numbers for kicks and reference kick, from the pocket speed [m/s].
 
-    Without kicks they are 0.2, 1 and 4 times the reference kick, by default 2.5 times the pocket speed; of
-    given kicks the reference is the middle one, of an even number the lower of the two in the middle.
+    The reference kick is 2.5 times the pocket speed unless it is given, whatever the kicks: thresholds and
+    margins belong to the bearing, not to the list. Without kicks they are 0.2, 1 and 4 times it.
     """
-    if settings.kicks:
-        middle = settings.kicks[(len(settings.kicks) - 1) // 2]
-        return replace(settings, reference_kick=settings.reference_kick or middle)
     reference = settings.reference_kick or _rounded(REFERENCE * speed)
-    kicks = tuple(reference if part == 1.0 else _rounded(part * reference) for part in SPAN)
-    return replace(settings, kicks=kicks, reference_kick=reference)
+    spanned = tuple(reference if part == 1.0 else _rounded(part * reference) for part in SPAN)
+    return replace(settings, kicks=settings.kicks or spanned, reference_kick=reference)
 
 
 def _rounded(speed: MetrePerSecond) -> MetrePerSecond:

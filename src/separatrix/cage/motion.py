@@ -285,7 +285,7 @@ def advance(  # type: ignore[no-untyped-def]
     mode : ndarray
         How many pockets touch their balls, mode of the land, and rows of history filled.
     ledger, tally, hits : ndarray
-        Work since the start, integrals of this window, and impacts of every pocket.
+        Work since the start, integrals of this look, and impacts of every pocket.
     length, ceiling : float
         Time to advance, and the kinetic energy above which to stop.
     rows : ndarray
@@ -333,7 +333,7 @@ def advance(  # type: ignore[no-untyped-def]
         if books:
             enter_work(p, pockets, touch, w, count, land, now, h, end, sums, ledger, work)
         after = motion_at(w, end)
-        enter_step(p, pockets, touch, w, count, pressed, deepest, h, end, after, tally, c)
+        enter_step(p, pockets, touch, w, count, land, deepest, h, end, after, tally, c)
         finish_step(p, pockets, touch, w, s, count, h, end, after)
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind in (PART, TOUCH):

@@ -31,20 +31,30 @@ if TYPE_CHECKING:
 
 
 class RunOutcome(IntEnum):
-    """How one run ended."""
+    """Where the motion of one run ends, whatever the kick."""
 
-    DIES = 0
-    GROWS = 1
-    DRIFT = 2
-    STALLED = 3
+    SETTLES = 0
+    WHIRLS = 1
+    DRIFTS = 2
+    UNRESOLVED = 3
 
 
 OUTCOME_SENTENCES = {
-    RunOutcome.DIES: "The motion that the kick started has lost energy.",
-    RunOutcome.GROWS: "The motion has more energy than the kick gave it.",
-    RunOutcome.DRIFT: "The cage centre left its pockets' play although the energy did not grow.",
-    RunOutcome.STALLED: "Too many impacts in no time: the run was ended undecided.",
+    RunOutcome.SETTLES: "The cage comes to rest relative to the ball set, but for what its loads maintain.",
+    RunOutcome.WHIRLS: "Friction sustains the motion, or makes it grow.",
+    RunOutcome.DRIFTS: "The cage has no land, and its centre left the clearance of its pockets.",
+    RunOutcome.UNRESOLVED: "The run does not show where the motion ends.",
 }
+
+
+class Cause(IntEnum):
+    """Why a run is unresolved."""
+
+    NONE = 0
+    IMPACTS = 1
+    NO_CONTACT = 2
+    FALLING = 3
+    NOT_FINITE = 4
 
 
 class Verdict(Enum):

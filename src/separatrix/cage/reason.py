@@ -2,141 +2,117 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.cage.drive import drift_rate_law, drive_energy
-from separatrix.cage.orbit import LEFT, kick_energy
-from separatrix.cage.planar import PlanarCage, RunOutcome
-from separatrix.units import Array, RadianPerSecond, Ratio
+from separatrix.cage.drive import drift_rate_law, room
+from separatrix.cage.ending import LONGEST
+from separatrix.cage.orbit import LEFT, largest_room
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
+from separatrix.units import Array
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
+    from separatrix.cage.verdict import KickCount
 
-Counts = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-
-def at_every_kick(what: str, counts: Counts, runs: int) -> str:
-    """Return what the runs do and how many of them at least."""
-    least = int(counts.min())
-    share = "all" if least == runs else f"at least {100 * least // runs} %"
-    return f"{what} in {share} of the runs at every kick."
-
-
-def untouched(ensemble: Ensemble, quiet: Array) -> str:
-    """Return that nothing touches; a run may have ended before its time."""
-    return (
-        f"Too short to decide, or too weak a kick: from {quiet[0]:g} m/s nothing touches in any run "
-        f"(at most {ensemble.duration:.3g} s)."
-    )
+CAUSES = {
+    Cause.IMPACTS: "impacts accumulate without limit; raise [cage] land_restitution or soften the contacts",
+    Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
+    Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
+    Cause.NOT_FINITE: "the motion leaves the range of numbers; lower [stability] kicks or the stiffnesses",
+}
 
 
-def stalled(ensemble: Ensemble) -> str:
-    """Return how many runs were ended for meeting too many events in no time."""
-    count, total = int(ensemble.count(RunOutcome.STALLED).sum()), ensemble.outcome.size
-    return f"{count} of {total} runs met too many impacts in no time and were ended."
+def too_few(runs: int) -> str:
+    """Return that no count of so few runs would decide."""
+    return f"Too few runs for a verdict: {runs} at each kick; set [stability] runs to 4 or more."
 
 
-def too_weak(cage: PlanarCage, ensemble: Ensemble, driven: Mask) -> str:
-    """Return from which kicks the runs have more energy than the kick, but none that their drive lacks."""
-    i = int(np.argmax(driven.mean(axis=1)))
-    kick, drive = 1e3 * kick_energy(cage, ensemble)[i], 1e3 * drive_energy(cage)
-    harder = math.sqrt(2.0 * drive_energy(cage) / cage.mass)
-    return (
-        f"Too weak a kick to decide: from {ensemble.kicks[i]:g} m/s ({kick:.3g} mJ) "
-        f"{_percent(driven[i].mean())} of the runs end with more energy than the kick, but with no more than "
-        f"{_drives(cage)} can give without it ({drive:.3g} mJ, as a kick of {harder:.3g} m/s)."
-    )
+def settles(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
+    """Return from which kick fewest runs settle, and what rubs then."""
+    settled = ensemble.outcome[kick] == RunOutcome.SETTLES
+    first = f"{_share(settled)} of the runs settle from the worst kick, {ensemble.kicks[kick]:g} m/s"
+    force = float(np.median(ensemble.rubbing_force[kick][settled]))
+    if force <= 0.0:
+        return f"{first}."
+    speed = float(np.median(ensemble.rubbing_speed[kick][settled]))
+    power = cage.land_friction * force * speed
+    return f"{first}; the cage then rubs on its land with {force:.3g} N at {speed:.3g} m/s ({_watt(power)})."
 
 
-def _drives(cage: PlanarCage) -> str:
-    """Return what gives the cage energy without a kick."""
-    acting = {
-        "the turning frame": cage.cage_speed != 0.0,
-        "gravity": cage.gravity > 0.0,
-        "unbalance": cage.unbalance > 0.0,
-        "the lead and lag of the balls": any(cage.orbital_cosines) or any(cage.orbital_sines),
-    }
-    *others, last = [name for name, is_there in acting.items() if is_there]
-    return f"{', '.join(others)} and {last}" if others else last
+def whirls(ensemble: Ensemble, kick: int) -> str:
+    """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
+    whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
+    pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
+    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {pace:.3g} Hz"
+    fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
+    power = fed[whirling & (fed > 0.0)]
+    grown = int(np.count_nonzero(whirling & (fed <= 0.0)))
+    if power.size <= grown:
+        return f"{first}; the motion grows without limit."
+    return f"{first}; friction feeds the cage {_watt(float(np.median(power)))}."
 
 
-def keeps_circling(cage: PlanarCage, ensemble: Ensemble, sustained: Mask) -> str:
-    """Return how many runs neither die nor grow, how far from the axis, and how fast."""
-    i = int(np.argmax(sustained.mean(axis=1)))
-    offset = 1e3 * float(np.median(ensemble.mean_offset[i, sustained[i]]))
-    speed = float(np.median(ensemble.orbit_speed[i, sustained[i]]))
-    energy = _percent(np.median(ensemble.energy_growth[i, sustained[i]]))
-    return (
-        f"The motion neither dies nor grows in {_percent(sustained[i].mean())} of the runs from "
-        f"{ensemble.kicks[i]:g} m/s: the centre keeps circling {offset:.3g} mm off the axis, "
-        f"{_pace(cage, speed)}, on {energy} of the kick's energy."
-    )
-
-
-def _pace(cage: PlanarCage, orbit_speed: RadianPerSecond) -> str:
-    """Return how fast the centre orbits the axis, and which way."""
-    if cage.cage_speed == 0.0:
-        return f"at {orbit_speed:.4g} rad/s"
-    ratio = orbit_speed / abs(cage.cage_speed)  # runs are turned forward
-    return f"{abs(ratio):.3g} times as fast as the ball set turns{'' if ratio > 0.0 else ', backward'}"
+def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
+    """Return what the runs from the worst kick do, what the other kicks do, and what would decide."""
+    count = counts[kick]
+    parts = [(count.settles, "settle"), (count.whirls, "whirl"), (count.drifts, "drift")]
+    said = ", ".join(f"{n} {word}" for n, word in parts if n)
+    if count.unresolved:
+        said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
+        causes = ensemble.cause[kick][ensemble.cause[kick] > 0]
+        most = Cause(int(np.bincount(causes).argmax()))
+        followed = ensemble.followed[kick].max()
+        cure = f"{CAUSES[most]} (followed for {followed:.3g} s, at most {LONGEST} times the duration)"
+        return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
+    return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
 
 
 def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
     """Return how far off the centre ends."""
     offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
     return (
-        f"The motion dies, but the cage centre ends up to {offset:.3g} mm off in {int(left.sum())} of "
+        f"The motion settles, but the cage centre ends up to {offset:.3g} mm off in {int(left.sum())} of "
         f"{left.size} runs, more than {LEFT:g} times the half play of its pockets ({play:.3g} mm): the land "
         f"is too wide to guide it."
     )
 
 
-def drift(cage: PlanarCage, ensemble: Ensemble, measured: float) -> str:
-    """Return how many runs passed the play, and the rate of the drift as measured and by the linear law."""
-    passed, total = int(ensemble.count(RunOutcome.DRIFT).sum()), ensemble.outcome.size
-    seen = f"its offset passed the play of its pockets in {passed} of {total} runs"
+def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return how far the centre went beyond what land and pockets leave."""
+    offset, clearance = 1e3 * float(ensemble.largest_offset.max()), 1e3 * room(cage)
+    return (
+        f"The motion settles, but the cage centre reached {offset:.3g} mm, more than "
+        f"{1e3 * largest_room(cage):.3g} mm (clearance {clearance:.3g} mm): no cage survives that; lower "
+        f"[stability] kicks or check [cage] land_stiffness."
+    )
+
+
+def drift(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return how many runs left their pockets, and the rate of drift as measured and by the linear law."""
+    limit = 2.0 * cage.half_play
+    passed = int(np.count_nonzero(ensemble.largest_offset > limit))
+    seen = f"its offset passed {1e3 * limit:.3g} mm, the pocket clearance, in {passed} of "
+    seen += f"{ensemble.outcome.size} runs"
     rate = drift_rate_law(cage)
     if rate > 0.0:
-        return (
-            f"The motion dies, but the cage has no land and drifts: {seen}, and by the linear law it grows "
-            f"e-fold every {1.0 / rate:.3g} s (rate {rate:.3g} 1/s; measured {measured:.3g} 1/s)."
-        )
-    return f"The motion dies, but the cage has no land and drifts: {seen}."
+        measured = _median(ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS])
+        seen += f", and by the linear law it grows e-fold every {1.0 / rate:.3g} s"
+        seen += f" ({rate:.3g} 1/s; measured {measured:.3g} 1/s)"
+    return f"The cage has no land and drifts: {seen}."
 
 
-def mixed(kicks: Array, calm: Mask, wild: Mask, grows: Counts, explained: Counts, runs: int) -> str:
-    """Return that small kicks die and large ones grow, or what share grows from each kick.
-
-    Parameters
-    ----------
-    kicks : ndarray
-        Shape (kick,) [m/s].
-    calm, wild : ndarray
-        Whether nine in ten die, or grow beyond their drive, shape (kick,).
-    grows, explained : ndarray
-        Runs that grow, and those among them that their drive explains, shape (kick,).
-    runs : int
-        Runs at each kick.
-    """
-    below = max(kicks[calm], default=math.inf)
-    above = min(kicks[wild], default=-math.inf)
-    if below < above:
-        return f"Sub-critical: the motion dies from {below:g} m/s and grows from {above:g} m/s."
-    order = np.argsort(kicks)
-    shares = ", ".join(_grown(kicks[i], grows[i] / runs, explained[i] / runs) for i in order)
-    return f"No clear answer: the motion grows in {shares}."
+def _median(values: Array) -> float:
+    return float(np.median(values)) if values.size else 0.0
 
 
-def _grown(kick: float, share: Ratio, explained: Ratio) -> str:
-    """Return the share that grows from a kick, and the share that its drive alone explains."""
-    driven = f" (by the cage's drive alone: {_percent(explained)})" if explained else ""
-    return f"{_percent(share)} from {kick:g} m/s{driven}"
+def _share(runs: Mask) -> str:
+    return "All" if runs.all() else f"{100.0 * float(runs.mean()):.0f} %"
 
 
-def _percent(share: Ratio | np.floating) -> str:
-    return f"{100 * float(share):.0f} %"
+def _watt(power: float) -> str:
+    return f"{1e3 * power:.3g} mW" if power < 1.0 else f"{power:.3g} W"

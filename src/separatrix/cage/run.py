@@ -4,33 +4,55 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.random import Generator, Philox
 
+from separatrix.cage.ending import (
+    FEWEST_LOOKS,
+    MEMORY,
+    SETTLES,
+    UNKNOWN,
+    UNRESOLVED,
+    WHIRLS,
+    end_by_trend,
+    mean_energy,
+    plain_end,
+    wants_books,
+)
 from separatrix.cage.evidence import pocket_energy
 from separatrix.cage.motion import advance, kinetic, land_energy, make_room
-from separatrix.cage.planar import RunOutcome
+from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.cage.series import POWERS
 from separatrix.cage.slots import (
+    BALL_DRIVE,
+    BALL_WORK,
+    BOOKED,
+    CAUSE,
     CLEAR,
+    CLOCK,
     COSINE,
     DIRECTION,
     DRIFT_RATE,
     DRIVE,
+    END_ENERGY,
     FOLLOWED,
     FORCE,
     FORCE_MAX,
+    GRAVITY,
+    GRAVITY_WORK,
     GROSS,
-    GROWTH,
     GROWTH_RATE,
     IMBALANCE,
+    JUDGED,
     KINETIC,
     LAND_FORCE,
+    LAND_FRICTION,
     LAND_HITS,
     LAND_IMPACTS,
     LAND_MAX,
+    LAND_WORK,
     LARGEST_OFFSET,
     LEAD,
     LEDGER,
@@ -46,7 +68,14 @@ from separatrix.cage.slots import (
     OUTCOME,
     PENETRATION,
     PLAY,
+    POCKET_FRICTION,
+    POCKET_POWER,
+    POCKET_WORK,
+    PRESSED,
     ROWS,
+    RUBBED,
+    RUBBING_FORCE,
+    RUBBING_SPEED,
     SIDE,
     SINE,
     SPEED_SQUARED,
@@ -65,39 +94,10 @@ from separatrix.compiled import kernel
 if TYPE_CHECKING:
     from separatrix.units import Array
 
-FIFTHS = 5
-LOOKS = 20  # looks at the energy in each fifth
-LOOKS_ABOVE, LOOKS_BELOW, LOOKS_EVEN = 3, 10, 12
-"""Looks in a row, at the mean energy since the last, that tell how a run ends: beyond limits, or alike."""
-
-LONG_LOOK = 25.0
-"""Time between looks from which on they tell: some turns, in radians of the motion with one ball in touch."""
-
+DRIFTS = int(RunOutcome.DRIFTS)
+NONE, IMPACTS, NO_CONTACT, FALLING, NOT_FINITE = (int(cause) for cause in Cause)
 NOTHING_LEFT = 2.0**-104
 """Share of the kick's energy below which speeds are rounding: growth rates count no further."""
-
-EVEN, SURELY, WEAK = 0.15, 1.5, 0.5
-"""Share by which looks may differ that are alike; shares of the kick's energy beyond which they tell, where
-the last is no nearer to it than the first: a slow growth from little energy does not pass for a whirl."""
-
-UNKNOWN = -1
-DIES, GROWS, DRIFT, STALLED = (
-    int(RunOutcome.DIES),
-    int(RunOutcome.GROWS),
-    int(RunOutcome.DRIFT),
-    int(RunOutcome.STALLED),
-)
-
-
-class Limits(NamedTuple):
-    """Where a run is drift, or its end known before its time: an offset [m], and energies over the mass."""
-
-    drift: float
-    grows_above: float
-    dies_below: float
-    mean_grows_above: float  # of the mean since the last look
-    mean_grows_at_once: float  # of the same, at a single look
-    mean_dies_below: float
 
 
 @kernel
@@ -111,72 +111,82 @@ def held_energy(p, pockets, touch, count):  # type: ignore[no-untyped-def]
 
 @kernel
 def watch(  # type: ignore[no-untyped-def]
-    p, pockets, touch, s, w, mode, ledger, tally, hits, fifth, start, limits, rows, books, room
+    p, pockets, touch, s, w, mode, ledger, tally, hits, look, limits, rows, books, room
 ):
-    """Run until the outcome is known or the time is over; `start` is the kick's energy over the mass.
+    """Run, look by look, until the end of the motion is plain.
 
     Returns
     -------
     tuple
-        Outcome or `UNKNOWN`, the last window looked at, its length, and whether a steady whirl told it.
+        Outcome, the looks up to which it was judged, and the cause if it is unresolved.
     """
-    look = fifth / LOOKS
-    above = below = even = touches = 0
-    level, may_die = -1.0, limits.mean_dies_below > 0.0
-    for window in range(FIFTHS):
-        for part in range(LOOKS):
-            before = tally[window, KINETIC]
-            going = advance(
-                p,
-                pockets,
-                touch,
-                s,
-                w,
-                mode,
-                ledger,
-                tally[window],
-                hits,
-                look,
-                limits.grows_above,
-                rows,
-                books,
-                room,
-            )
-            if not going:
-                return STALLED, window, (part + 1) * look, False
-            energy = kinetic(p, s) + held_energy(p, pockets, touch, mode[0])
-            if energy > limits.grows_above:
-                return GROWS, window, (part + 1) * look, False
-            if energy < limits.dies_below:
-                return DIES, window, (part + 1) * look, False
-            if look < LONG_LOOK:
-                continue
-            mean = (tally[window, KINETIC] - before) / look
-            above = above + 1 if mean > limits.mean_grows_above else 0
-            below = below + 1 if mean < limits.mean_dies_below else 0
-            met = mode[0] > 0 or np.sum(hits) > touches
-            touches = np.sum(hits)
-            even = even + 1 if met and abs(mean - level) <= EVEN * level else 1
-            if even == 1:
-                level = mean
-            settled = even >= LOOKS_EVEN and limits.mean_grows_above < np.inf
-            if above == LOOKS_ABOVE or mean > limits.mean_grows_at_once:
-                return GROWS, window, (part + 1) * look, False
-            if settled and mean >= max(level, SURELY * start):
-                return GROWS, window, (part + 1) * look, True
-            if below == LOOKS_BELOW:
-                return DIES, window, (part + 1) * look, False
-            if settled and may_die and mean <= min(level, WEAK * start):
-                return DIES, window, (part + 1) * look, True
-    return UNKNOWN, FIFTHS - 1, fifth, False
+    memory = np.zeros(MEMORY)
+    outcome, judged, touches, mean = UNKNOWN, 0, 0, 0.0
+    for i in range(limits.most):
+        tally[i] = 0.0
+        booked = books or wants_books(memory, i, mean, limits)
+        pocket, land = ledger[POCKET_FRICTION], ledger[LAND_FRICTION]
+        ball, gravity = ledger[BALL_DRIVE], ledger[GRAVITY]
+        going = advance(
+            p, pockets, touch, s, w, mode, ledger, tally[i], hits, look, limits.grown, rows, booked, room
+        )
+        tally[i, POCKET_WORK] = ledger[POCKET_FRICTION] - pocket
+        tally[i, LAND_WORK] = ledger[LAND_FRICTION] - land
+        tally[i, BALL_WORK], tally[i, GRAVITY_WORK] = ledger[BALL_DRIVE] - ball, ledger[GRAVITY] - gravity
+        tally[i, BOOKED] = 1.0 if booked else 0.0
+        energy, mean = kinetic(p, s), tally[i, KINETIC] / look
+        held = held_energy(p, pockets, touch, mode[0])
+        if not (going and np.isfinite(energy + mean)):
+            cause = NOT_FINITE if going else IMPACTS
+            return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
+        hit = np.sum(hits)
+        met = mode[0] > 0 or hit > touches
+        touches = hit
+        if energy + held > limits.grown:
+            return (WHIRLS, i + 1, NONE) if outcome == UNKNOWN else (outcome, judged, NONE)
+        if outcome == UNKNOWN:
+            judged = i + 1
+            if energy + held < limits.still and touches > 0:
+                outcome = SETTLES
+            elif s[CLOCK] >= p.ramp_time:
+                outcome = plain_end(tally, i, look, met, limits, memory)
+            if outcome == UNKNOWN and judged == limits.most:
+                outcome = end_by_trend(tally, judged, look, limits)
+        if outcome != UNKNOWN and i + 1 >= limits.least:
+            break
+    if touches == 0 and np.sum(tally[:judged, LAND_HITS]) == 0.0:
+        return UNRESOLVED, judged, NO_CONTACT
+    return outcome, judged, FALLING if outcome == UNRESOLVED else NONE
 
 
 @kernel
-def drift_rate(tally, length):  # type: ignore[no-untyped-def]
-    """Growth rate of the mean offset between the last two fifths; 0 where there is no offset."""
-    last = np.hypot(tally[FIFTHS - 1, MEAN_X], tally[FIFTHS - 1, MEAN_Y])
-    before = np.hypot(tally[FIFTHS - 2, MEAN_X], tally[FIFTHS - 2, MEAN_Y])
-    return np.log(last / before) / length if last > 0.0 and before > 0.0 else 0.0
+def drift_rate(tally, end):  # type: ignore[no-untyped-def]
+    """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset."""
+    n = end // FEWEST_LOOKS
+    if n == 0:
+        return 0.0
+    last = np.hypot(np.sum(tally[end - n : end, MEAN_X]), np.sum(tally[end - n : end, MEAN_Y]))
+    before = np.hypot(
+        np.sum(tally[end - 2 * n : end - n, MEAN_X]), np.sum(tally[end - 2 * n : end - n, MEAN_Y])
+    )
+    return np.log(last / before) / n if last > 0.0 and before > 0.0 else 0.0
+
+
+@kernel
+def growth(tally, end, look, start):  # type: ignore[no-untyped-def]
+    """Half the logarithmic rate of the mean energy from half way to the last fifth.
+
+    From the kick's energy, `start`, in a run that ends within five looks.
+    """
+    n = max(1, end // FEWEST_LOOKS)
+    last = mean_energy(tally, end - n, end, look)
+    if end < FEWEST_LOOKS:
+        before, span = start, end - 0.5 * n
+    else:
+        first = end // 2 - n // 2
+        before, span = mean_energy(tally, first, first + n, look), end - n - first
+    least = NOTHING_LEFT * start
+    return 0.5 * np.log(max(last, least) / max(before, least)) / (span * look)
 
 
 @kernel
@@ -190,13 +200,13 @@ def imbalance(p, pockets, touch, s, w, mode, ledger, start):  # type: ignore[no-
 
 
 @kernel
-def run_one(p, pockets, direction, kick, w, fifth, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_one(p, pockets, direction, kick, w, look, limits, tally, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
-    `kick` and `fifth` are in units of the engine.
+    `kick` and `look` are in units of the engine; `tally` is room for the looks.
     """
     balls = pockets.shape[1]
-    s, ledger, tally = np.zeros(STATE), np.zeros(LEDGER), np.zeros((FIFTHS, TALLY))
+    s, ledger = np.zeros(STATE), np.zeros(LEDGER)
     touch, mode = np.zeros((2, balls), np.int64), np.zeros(3, np.int64)
     if p.gripped:
         touch[SIDE] = 2
@@ -205,52 +215,57 @@ def run_one(p, pockets, direction, kick, w, fifth, limits, rows, books, out, hit
         mode[0] = balls
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
     start = kinetic(p, s)
-    outcome, window, length, steady = watch(
-        p,
-        pockets,
-        touch,
-        s,
-        w,
-        mode,
-        ledger,
-        tally,
-        hits,
-        fifth,
-        start,
-        limits,
-        rows,
-        books,
-        make_room(balls),
+    outcome, end, cause = watch(
+        p, pockets, touch, s, w, mode, ledger, tally, hits, look, limits, rows, books, make_room(balls)
     )
-    end = tally[window]
-    out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:, OFFSET_MAX]))
-    mean = end[KINETIC] / length
-    out[GROWTH] = mean / start
-    # A steady whirl lasts: its energy is that of the last fifth.
-    middle = ((FIFTHS - 0.5) * fifth if steady else window * fifth + 0.5 * length) * p.unit
-    out[FOLLOWED] = (window * fifth + length) * p.unit
-    out[GROWTH_RATE] = 0.5 * np.log(max(out[GROWTH], NOTHING_LEFT)) / middle
-    if outcome == UNKNOWN:
-        out[DRIFT_RATE] = drift_rate(tally, length * p.unit)
-        outcome = GROWS if out[GROWTH] > 1.0 else (DRIFT if out[LARGEST_OFFSET] > limits.drift else DIES)
-    whirl = end[TURNING] / end[SPEED_SQUARED] / p.unit if end[SPEED_SQUARED] > 0.0 else 0.0
-    out[OUTCOME] = outcome
-    out[WHIRL] = abs(whirl) / (2.0 * np.pi)
-    out[DIRECTION] = np.sign(whirl)
-    force = 1.0 / p.unit**2
-    out[FORCE] = np.max(tally[:, FORCE_MAX]) * force
-    out[LAND_FORCE] = np.max(tally[:, LAND_MAX]) * force
+    out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:end, OFFSET_MAX]))
+    if limits.drifts and outcome == SETTLES:
+        outcome = DRIFTS
+    out[OUTCOME], out[CAUSE] = outcome, cause
     out[IMBALANCE] = imbalance(p, pockets, touch, s, w, mode, ledger, start) if books else 0.0
-    out[MEAN_OFFSET] = end[OFFSET] / length
-    out[OFFSET_SPREAD] = np.sqrt(max(0.0, end[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
-    orbit = end[SWEPT] / end[OFFSET_SQUARED] if end[OFFSET_SQUARED] > 0.0 else 0.0
-    out[ORBIT_SPEED] = (orbit + p.turning) / p.unit
-    out[LAND_IMPACTS] = np.sum(tally[:, LAND_HITS])
     out[ROWS] = mode[2]
+    if cause == NOT_FINITE:
+        out[LARGEST_OFFSET] = 0.0
+        return
+    out[FOLLOWED] = end * look * p.unit
+    out[GROWTH_RATE] = growth(tally, end, look, start) / p.unit
+    out[DRIFT_RATE] = drift_rate(tally, end) / (look * p.unit)
+    force = 1.0 / p.unit**2
+    out[FORCE] = np.max(tally[:end, FORCE_MAX]) * force
+    out[LAND_FORCE] = np.max(tally[:end, LAND_MAX]) * force
+    out[LAND_IMPACTS] = np.sum(tally[:end, LAND_HITS])
+    enter_end(p, tally, end, look, limits, out)
 
 
 @kernel
-def run_chunk(p, drive, starts, kick, w, fifth, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def enter_end(p, tally, end, look, limits, out):  # type: ignore[no-untyped-def]
+    """Write what the motion is in the looks by which it was judged: the last fifth, or the last window."""
+    n = max(1, end // FEWEST_LOOKS, min(end, limits.window))
+    first, length = end - n, n * look
+    last = np.zeros(TALLY)
+    for i in range(first, end):
+        last += tally[i]
+    out[JUDGED] = first * look * p.unit
+    out[END_ENERGY] = last[KINETIC] / length / p.unit**2
+    whirl = last[TURNING] / last[SPEED_SQUARED] / p.unit if last[SPEED_SQUARED] > 0.0 else 0.0
+    out[WHIRL] = abs(whirl) / (2.0 * np.pi)
+    out[DIRECTION] = np.sign(whirl)
+    out[MEAN_OFFSET] = last[OFFSET] / length
+    out[OFFSET_SPREAD] = np.sqrt(max(0.0, last[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
+    orbit = last[SWEPT] / last[OFFSET_SQUARED] if last[OFFSET_SQUARED] > 0.0 else 0.0
+    out[ORBIT_SPEED] = (orbit + p.turning) / p.unit
+    booked = last[BOOKED] * look
+    for k in range(2):
+        work = 0.0
+        for i in range(first, end):
+            work += tally[i, POCKET_WORK + k]
+        out[POCKET_POWER + k] = work / booked / p.unit**3 if booked > 0.0 else 0.0
+    out[RUBBING_FORCE] = last[PRESSED] / length / p.unit**2
+    out[RUBBING_SPEED] = last[RUBBED] / last[PRESSED] / p.unit if last[PRESSED] > 0.0 else 0.0
+
+
+@kernel
+def run_chunk(p, drive, starts, kick, w, look, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
@@ -259,12 +274,13 @@ def run_chunk(p, drive, starts, kick, w, fifth, limits, rows, books, out, hits):
     balls = hits.shape[1]
     pockets = np.zeros((DRIVE + drive.shape[0], balls))
     pockets[DRIVE:] = drive
+    tally = np.zeros((limits.most, TALLY))
     for i in range(starts.shape[0]):
         start = starts[i]
         angle = start[1 + 2 * balls :]
         pockets[COSINE], pockets[SINE], pockets[PENETRATION] = np.cos(angle), np.sin(angle), 0.0
         pockets[LEAD], pockets[PLAY] = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
-        run_one(p, pockets, start[0], kick, w, fifth, limits, rows, books, out[i], hits[i])
+        run_one(p, pockets, start[0], kick, w, look, limits, tally, rows, books, out[i], hits[i])
 
 
 @lru_cache(maxsize=512)

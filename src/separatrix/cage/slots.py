@@ -50,17 +50,20 @@ LEDGER = 9
 # Modes of the land.
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
 
-# Tally of a window: integrals over time of the kinetic energy, the offset and its square, of r x v, of
+# Tally of a look: integrals over time of the kinetic energy, the offset and its square, of r x v, of
 # |v|^2 times the turning of the velocity and of |v|^2, of x and y; largest squared offset and forces; steps
-# taken and touches of the land.
+# taken and touches of the land; integrals of the land's force and of that times the sliding on it; work of
+# both frictions, of balls that lead and lag, and of gravity, and whether that was booked.
 KINETIC, OFFSET, OFFSET_SQUARED, SWEPT, TURNING, SPEED_SQUARED, MEAN_X, MEAN_Y = range(8)
-OFFSET_MAX, FORCE_MAX, LAND_MAX, STEPS, LAND_HITS = range(8, 13)
-TALLY = 13
+OFFSET_MAX, FORCE_MAX, LAND_MAX, STEPS, LAND_HITS, PRESSED, RUBBED = range(8, 15)
+POCKET_WORK, LAND_WORK, BALL_WORK, GRAVITY_WORK, BOOKED = range(15, 20)
+TALLY = 20
 
 # Evidence of a run.
-OUTCOME, GROWTH, GROWTH_RATE, LARGEST_OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE = range(8)
-LAND_FORCE, IMBALANCE, MEAN_OFFSET, OFFSET_SPREAD, ORBIT_SPEED, LAND_IMPACTS, ROWS, FOLLOWED = range(8, 16)
-EVIDENCE = 16
+OUTCOME, CAUSE, END_ENERGY, GROWTH_RATE, LARGEST_OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE = range(9)
+LAND_FORCE, IMBALANCE, MEAN_OFFSET, OFFSET_SPREAD, ORBIT_SPEED, LAND_IMPACTS, ROWS, FOLLOWED = range(9, 17)
+JUDGED, POCKET_POWER, LAND_POWER, RUBBING_FORCE, RUBBING_SPEED = range(17, 22)
+EVIDENCE = 22
 
 # A row of a history: geometric centre, velocity, rotation slip and its rate, time, work, energies of
 # pockets and land, force of the land, then lead and force of every ball.

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from separatrix.cage import reason
 from separatrix.cage.drive import drift_rate_law, drifts, drive_energy
 from separatrix.cage.interval import mean_half_width, wilson_interval
-from separatrix.cage.orbit import CageMotion, cage_motion, driven, left_pockets, sustained
+from separatrix.cage.orbit import CageMotion, cage_motion, largest_room, left_pockets
 from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
-from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton, Ratio, Second
+from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton, Ratio, Second, Watt
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
 
-Counts = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 CLEAR = 0.9
@@ -26,32 +25,65 @@ FEW = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class KickCount:
+    """Where the runs from one kick end.
+
+    Attributes
+    ----------
+    kick : float
+        Speed [m/s].
+    settles, whirls, drifts, unresolved : int
+        Runs of each outcome.
+    probability_stable, probability_low, probability_high : float
+        Share of the runs that settle, and its 95 % Wilson interval [-].
+    """
+
+    kick: MetrePerSecond
+    settles: int
+    whirls: int
+    drifts: int
+    unresolved: int
+    probability_stable: Ratio
+    probability_low: Ratio
+    probability_high: Ratio
+
+    @property
+    def runs(self) -> int:
+        """Runs from this kick."""
+        return self.settles + self.whirls + self.drifts + self.unresolved
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
-    """Verdict on a cage with its evidence.
+    """Verdict on a cage with its evidence: that of the worst kick, but for what says "any run".
 
     Attributes
     ----------
     verdict : Verdict
         STABLE, UNSTABLE or UNDECIDED.
     probability_stable, probability_low, probability_high : float
-        Share of all runs that die, and its 95 % Wilson interval [-].
+        Share of the runs from the worst kick that settle, and its 95 % Wilson interval [-].
+    worst_kick : float
+        The kick from which fewest runs settle [m/s].
+    by_kick : tuple of KickCount
+        Where the runs from every kick end.
     reason : str
         One sentence.
-    cage_motion : CageMotion
-        STABLE, CIRCLING or UNSTABLE: what the centre does at the end of the runs from the worst kick.
+    cage_motion : CageMotion or None
+        What most runs from the worst kick end in; None if most are unresolved.
     growth_rate : float
-        Mean over the runs from `growth_kick` of half the logarithmic rate of the kinetic energy [1/s].
+        Mean over those runs of half the logarithmic rate of the kinetic energy in their second half [1/s].
     growth_rate_low, growth_rate_high : float or None
-        Student's 95 % interval of that mean; None where fewer than two runs tell none [1/s].
-    growth_kick : float
-        The kick with the largest mean growth rate [m/s].
-    largest_offset, mean_offset : float
-        Largest offset of the cage centre in any run; median over the runs of the mean offset at the end [m].
+        Student's 95 % interval of that mean; None with fewer than two runs [1/s].
+    largest_offset : float
+        Largest offset of the cage centre in any run [m].
+    mean_offset : float
+        Median of the mean offset in the last part of the runs [m].
     orbit_evenness : float
-        Median over the runs of the offset's spread over its mean: 0 on a circle about the axis, 0.52 in a
+        Median of the offset's spread over its mean there: 0 on a circle about the axis, 0.52 in a
         motion without any preferred radius [-].
     drift_rate, drift_rate_law : float
-        Median growth rate of the mean offset over the runs that went to the end, and the linear law's for a
+        Median growth rate of the mean offset of the runs that do not whirl, and the linear law's for a
         cage without a land; 0 with one [1/s].
     largest_contact_force, largest_land_force : float
         Largest force between a ball and its pocket, and of the land, in any run [N].
@@ -60,16 +92,23 @@ class Judgement:
     land_impact_share : float
         Share of the land in all impacts [-].
     whirl_frequency, whirl_direction
-        Medians over the runs that grow, over all runs if none does [Hz]; 1 forward, -1 backward, 0 none.
+        Medians over the runs that whirl, over all if none does [Hz]; 1 forward, -1 backward, 0 none.
     whirl_ratio : float or None
         Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
         over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
-    drive_energy : float
-        Kinetic energy that frame and loads can give the cage without a kick [J].
-    energy_growth, energy_imbalance : float
-        Median of the first over all runs, and the worst of the second over those whose ledger was kept [-].
-    duration : float
-        Of a run [s].
+    drive_energy, end_energy : float
+        Kinetic energy that frame and loads can give the cage without friction, and the median of what the
+        cage has in the last part of the same runs [J].
+    pocket_power, land_power : float
+        Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
+        takes from it [W].
+    rubbing_force, rubbing_speed, rubbing_power : float
+        Medians over the runs that settle, any kick: mean force on the land [N], sliding speed there [m/s],
+        and the power that rubbing turns to heat [W]; 0 if none rubs.
+    energy_imbalance : float
+        The worst over the runs whose ledger was kept [-].
+    duration, longest_run : float
+        Asked for, and of the longest run [s].
     runs : int
         Runs at each kick.
     """
@@ -78,12 +117,13 @@ class Judgement:
     probability_stable: Ratio
     probability_low: Ratio
     probability_high: Ratio
+    worst_kick: MetrePerSecond
+    by_kick: tuple[KickCount, ...]
     reason: str
-    cage_motion: CageMotion
+    cage_motion: CageMotion | None
     growth_rate: float
     growth_rate_low: float | None
     growth_rate_high: float | None
-    growth_kick: MetrePerSecond
     largest_offset: Metre
     mean_offset: Metre
     orbit_evenness: Ratio
@@ -97,78 +137,125 @@ class Judgement:
     whirl_direction: int
     whirl_ratio: Ratio | None
     drive_energy: Joule
-    energy_growth: Ratio
+    end_energy: Joule
+    pocket_power: Watt
+    land_power: Watt
+    rubbing_force: Newton
+    rubbing_speed: MetrePerSecond
+    rubbing_power: Watt
     energy_imbalance: Ratio
     duration: Second
+    longest_run: Second
     runs: int
 
 
-def growth_probability(ensemble: Ensemble) -> Array:
-    """Share of the runs that grow at each kick, shape (kick,) [-]."""
-    return np.asarray(ensemble.count(RunOutcome.GROWS) / ensemble.outcome.shape[1], dtype=np.float64)
+def whirl_probability(ensemble: Ensemble) -> Array:
+    """Share of the runs that whirl at each kick, shape (kick,) [-]."""
+    return np.asarray(ensemble.count(RunOutcome.WHIRLS) / ensemble.outcome.shape[1], dtype=np.float64)
+
+
+def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
+    """Where the runs from each kick end."""
+    runs, found = ensemble.outcome.shape[1], []
+    counted = np.stack([ensemble.count(outcome) for outcome in RunOutcome], axis=1)
+    for kick, counts in zip(ensemble.kicks.tolist(), counted.tolist(), strict=True):
+        settles, whirls, drifting, unresolved = counts
+        low, high = wilson_interval(settles, runs)
+        found.append(
+            KickCount(
+                kick=kick,
+                settles=settles,
+                whirls=whirls,
+                drifts=drifting,
+                unresolved=unresolved,
+                probability_stable=settles / runs,
+                probability_low=low,
+                probability_high=high,
+            )
+        )
+    return tuple(found)
+
+
+def worst(counts: tuple[KickCount, ...]) -> int:
+    """Place of the worst kick: of those from which most runs whirl, if any, the one that settles least."""
+    whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
+    return min(whirling or range(len(counts)), key=lambda i: (counts[i].settles, -counts[i].whirls, i))
 
 
 def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
-    """Judge a cage by its ensemble.
+    """Judge a cage by its ensemble, at the worst kick.
 
-    STABLE: at every kick at least 90 % of the runs die, the lower end of that share's 95 % interval is above
-    one half, and the cage neither drifts, nor keeps circling, nor ends outside its pockets' play. UNSTABLE:
-    at every kick the 95 % interval of the share that grows, beyond what frame and loads give by themselves,
-    lies above one half. UNDECIDED otherwise. The rule is ours; it asks more of a stable cage than of an
-    unstable one.
+    UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
+    settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
+    ends outside its pockets nor left its room. UNDECIDED otherwise. The rule is ours; it asks more of a
+    stable cage than of an unstable one.
     """
-    grows = ensemble.outcome == RunOutcome.GROWS
-    verdict, because = decide(cage, ensemble)
-    dies = int(ensemble.count(RunOutcome.DIES).sum())
-    low, high = wilson_interval(dies, ensemble.outcome.size)
-    told = ~ensemble.cut
-    whirling = grows if grows.any() else told
-    kick, rate, rate_low, rate_high = _fastest_growth(ensemble)
+    counts = kick_counts(ensemble)
+    verdict, because = decide(cage, ensemble, counts)
+    at = worst(counts)
+    outcome, settled = ensemble.outcome[at], ensemble.outcome == RunOutcome.SETTLES
+    whirling = outcome == RunOutcome.WHIRLS
+    shown = whirling if whirling.any() else np.ones_like(whirling)
+    rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
+
+    def median(name: str) -> float:
+        return float(np.median(getattr(ensemble, name)[at][shown]))
+
+    rubbing = {name: _median(getattr(ensemble, name)[settled]) for name in ("rubbing_force", "rubbing_speed")}
+    power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[settled])
     return Judgement(
         verdict=verdict,
-        probability_stable=dies / ensemble.outcome.size,
-        probability_low=low,
-        probability_high=high,
+        probability_stable=counts[at].probability_stable,
+        probability_low=counts[at].probability_low,
+        probability_high=counts[at].probability_high,
+        worst_kick=counts[at].kick,
+        by_kick=counts,
         reason=because,
-        cage_motion=cage_motion(cage, ensemble),
+        cage_motion=cage_motion(ensemble, at),
         growth_rate=rate,
         growth_rate_low=rate_low,
         growth_rate_high=rate_high,
-        growth_kick=kick,
         largest_offset=float(ensemble.largest_offset.max()),
-        mean_offset=float(np.median(ensemble.mean_offset[told])),
-        orbit_evenness=_evenness(ensemble),
-        drift_rate=drift_rate(ensemble),
+        mean_offset=median("mean_offset"),
+        orbit_evenness=_evenness(ensemble, at),
+        drift_rate=_median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         largest_land_force=float(ensemble.largest_land_force.max()),
         pocket_impact_shares=pockets,
         land_impact_share=land,
-        whirl_frequency=float(np.median(ensemble.whirl_frequency[whirling])),
-        whirl_direction=int(np.sign(np.median(ensemble.whirl_direction[whirling]))),
-        whirl_ratio=_whirl_ratio(cage, ensemble, whirling),
+        whirl_frequency=median("whirl_frequency"),
+        whirl_direction=int(np.sign(median("whirl_direction"))),
+        whirl_ratio=_whirl_ratio(cage, median("orbit_speed")),
         drive_energy=drive_energy(cage),
-        energy_growth=float(np.median(ensemble.energy_growth[told])),
+        end_energy=median("end_energy"),
+        pocket_power=median("pocket_power"),
+        land_power=median("land_power"),
+        rubbing_force=rubbing["rubbing_force"],
+        rubbing_speed=rubbing["rubbing_speed"],
+        rubbing_power=power,
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
+        longest_run=float(ensemble.followed.max()),
         runs=ensemble.outcome.shape[1],
     )
 
 
-def _fastest_growth(ensemble: Ensemble) -> tuple[float, float, float | None, float | None]:
-    """Kick with the largest mean growth rate, that mean, and its interval."""
-    means = ensemble.growth_rate.mean(axis=1)
-    worst = int(np.argmax(means))
-    mean, half = float(means[worst]), mean_half_width(ensemble.growth_rate[worst])
-    low, high = (None, None) if half is None else (mean - half, mean + half)
-    return float(ensemble.kicks[worst]), mean, low, high
+def _growth(rates: Array) -> tuple[float, float | None, float | None]:
+    """Mean growth rate of some runs, and its interval."""
+    mean, half = float(rates.mean()), mean_half_width(rates)
+    return (mean, None, None) if half is None else (mean, mean - half, mean + half)
 
 
-def _evenness(ensemble: Ensemble) -> Ratio:
+def _median(values: Array) -> float:
+    return float(np.median(values)) if values.size else 0.0
+
+
+def _evenness(ensemble: Ensemble, kick: int) -> Ratio:
     """Median of spread over mean of the offset, over the runs that left the axis at all."""
-    off = (ensemble.mean_offset > 0.0) & ~ensemble.cut
-    return float(np.median(ensemble.offset_spread[off] / ensemble.mean_offset[off])) if off.any() else 0.0
+    mean, spread = ensemble.mean_offset[kick], ensemble.offset_spread[kick]
+    return _median(spread[mean > 0.0] / mean[mean > 0.0])
 
 
 def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
@@ -178,81 +265,37 @@ def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
     return np.asarray(pockets / max(met, 1), dtype=np.float64), land / max(met + land, 1)
 
 
-def _whirl_ratio(cage: PlanarCage, ensemble: Ensemble, whirling: Mask) -> Ratio | None:
-    if cage.cage_speed == 0.0:
-        return None
-    return float(np.median(ensemble.orbit_speed[whirling])) / abs(cage.cage_speed)  # runs are turned forward
+def _whirl_ratio(cage: PlanarCage, orbit_speed: float) -> Ratio | None:
+    return orbit_speed / abs(cage.cage_speed) if cage.cage_speed != 0.0 else None  # runs are turned forward
 
 
-def drift_rate(ensemble: Ensemble) -> float:
-    """Median growth rate of the mean offset over the runs that do not grow; 0 if all do [1/s]."""
-    held = (ensemble.outcome != RunOutcome.GROWS) & ~ensemble.cut
-    return float(np.median(ensemble.drift_rate[held])) if held.any() else 0.0
-
-
-def decide(cage: PlanarCage, ensemble: Ensemble) -> tuple[Verdict, str]:
+def decide(
+    cage: PlanarCage, ensemble: Ensemble, counts: tuple[KickCount, ...] | None = None
+) -> tuple[Verdict, str]:
     """Verdict and the sentence that gives its reason: `judge` without the rest of the evidence."""
-    runs = ensemble.outcome.shape[1]
-    quiet = ensemble.kicks[~_touched(ensemble)]
-    if quiet.size:
-        return Verdict.UNDECIDED, reason.untouched(ensemble, quiet)
-    if wilson_interval(runs, runs)[0] <= FEW:
-        return Verdict.UNDECIDED, f"Too few runs to decide: {runs} at each kick."
-    explained = driven(cage, ensemble)
-    gains = ensemble.count(RunOutcome.GROWS) - explained.sum(axis=1)
-    if _mostly(gains, runs):
-        return Verdict.UNSTABLE, reason.at_every_kick("The motion grows", gains, runs)
-    why = _not_stable(cage, ensemble, explained)
-    dies = ensemble.count(RunOutcome.DIES)
-    if why:
-        return Verdict.UNDECIDED, why
-    return Verdict.STABLE, reason.at_every_kick("The motion dies", dies, runs)
+    counts = counts or kick_counts(ensemble)
+    at = worst(counts)
+    count = counts[at]
+    if _mostly(count.whirls, count.runs):
+        return Verdict.UNSTABLE, reason.whirls(ensemble, at)
+    if wilson_interval(count.runs, count.runs)[0] <= FEW:
+        return Verdict.UNDECIDED, reason.too_few(count.runs)
+    if not _clear(count.settles + count.drifts, count.runs):
+        return Verdict.UNDECIDED, reason.mixed(ensemble, counts, at)
+    if drifts(cage) or not _clear(count.settles, count.runs):
+        return Verdict.UNDECIDED, reason.drift(cage, ensemble)
+    left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
+    if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
+        return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
+    if ensemble.largest_offset.max() > largest_room(cage):
+        return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)
+    return Verdict.STABLE, reason.settles(cage, ensemble, at)
 
 
-def _not_stable(cage: PlanarCage, ensemble: Ensemble, explained: Mask) -> str:
-    """Return why a cage that does not grow at every kick is not stable either; empty if it is stable."""
-    runs = ensemble.outcome.shape[1]
-    dies, grows = ensemble.count(RunOutcome.DIES), ensemble.count(RunOutcome.GROWS)
-    if not _clear(runs - grows, runs):
-        by_drive = explained.sum(axis=1)
-        if _clear(runs - grows + by_drive, runs):
-            return reason.too_weak(cage, ensemble, explained)
-        calm, wild = dies / runs >= CLEAR, (grows - by_drive) / runs >= CLEAR
-        return reason.mixed(ensemble.kicks, calm, wild, grows, by_drive, runs)
-    if ensemble.count(RunOutcome.STALLED).any():
-        return reason.stalled(ensemble)
-    if drifts(cage) or not _clear(dies, runs):
-        return reason.drift(cage, ensemble, drift_rate(ensemble))
-    return _odd_end(cage, ensemble)
+def _mostly(count: int, runs: int) -> bool:
+    """Whether more than half of the runs do so, beyond the scatter of so few."""
+    return wilson_interval(count, runs)[0] > FEW
 
 
-def _odd_end(cage: PlanarCage, ensemble: Ensemble) -> str:
-    """Return what else keeps a motion that lost energy from being stable; empty if nothing does."""
-    runs = ensemble.outcome.shape[1]
-    circles, left = sustained(cage, ensemble), left_pockets(cage, ensemble)
-    if not _clear(_without(ensemble, circles), runs):
-        return reason.keeps_circling(cage, ensemble, circles)
-    if not _clear(_without(ensemble, left), runs):
-        return reason.out_of_pockets(cage, ensemble, left)
-    return ""
-
-
-def _without(ensemble: Ensemble, doing: Mask) -> Counts:
-    """Runs at each kick that do not end so, shape (kick,)."""
-    runs = ensemble.outcome.shape[1]
-    return np.asarray(runs - np.ceil(runs * ensemble.share(doing) - 1e-9), dtype=np.int64)
-
-
-def _touched(ensemble: Ensemble) -> Mask:
-    """Whether any run from each kick met a ball or the land, shape (kick,): flight alone decides nothing."""
-    met = (ensemble.largest_contact_force > 0.0) | (ensemble.largest_land_force > 0.0)
-    return np.asarray(met.any(axis=1))
-
-
-def _mostly(counts: Counts, runs: int) -> bool:
-    """Whether more than half of the runs do so at every kick, beyond the scatter of so few."""
-    return all(wilson_interval(int(n), runs)[0] > FEW for n in counts)
-
-
-def _clear(counts: Counts, runs: int) -> bool:
-    return _mostly(counts, runs) and all(n / runs >= CLEAR for n in counts)
+def _clear(count: int, runs: int) -> bool:
+    return _mostly(count, runs) and count / runs >= CLEAR

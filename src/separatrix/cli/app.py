@@ -66,8 +66,7 @@ EPILOGS = {
     "With --json and no --out nothing is kept.",
     "sensitivity": "Every number that the study writes with a distribution is drawn, and the frictions with "
     "their scatter: 9 % of the mean where none was measured, a guess.",
-    "simulate": "A run that ends early says why: decided, or STALLED (too many impacts in no time). "
-    "--animate mp4 needs the extra animation.",
+    "simulate": "An unresolved run says why. --animate mp4 needs the extra animation.",
     "tribometer": "What is read is shown before it is trusted: without --out nothing is written. A file that "
     "exists is never overwritten.",
     "stability": "Beside the curve: its sub-critical band, each kick's own curve, the linear and the "

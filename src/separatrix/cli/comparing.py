@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 VERBS = ("simulate", "rank")
-NUMBERS = ("kick", "run", "energy_growth", "largest_offset", "largest_contact_force", "outcome")
+NUMBERS = ("kick", "run", "end_energy", "largest_offset", "largest_contact_force", "outcome")
 """What a saved simulation says of itself in one value; not every version has each."""
 
 DRAWN: dict[str, int] = {

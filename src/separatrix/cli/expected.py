@@ -139,7 +139,7 @@ def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings, friction: Rati
     from separatrix.cage import run_ensemble
 
     cage = replace(cage, ball_cage_friction=friction)
-    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1, growth_only=True)
+    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1, ledger=False)
     begun = time.perf_counter()
-    run_ensemble(cage, settings, runs=SAMPLED, growth_only=True)
+    run_ensemble(cage, settings, runs=SAMPLED, ledger=False)
     return (time.perf_counter() - begun) / (SAMPLED * len(settings.kicks))

@@ -45,7 +45,7 @@ def milliseconds(data: xr.Dataset) -> Array:
 
 def is_logarithmic(*runs: xr.Dataset) -> bool:
     """Whether time is drawn logarithmic: a motion that dies does so early."""
-    return any(str(run["outcome"].values) == "DIES" and run.sizes["time"] > 2 for run in runs)
+    return any(str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 for run in runs)
 
 
 def time_limits(*runs: xr.Dataset) -> tuple[float, float]:

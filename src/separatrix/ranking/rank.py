@@ -327,7 +327,7 @@ def _row(
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
         verdict=judgement.verdict.name,
-        cage_motion=judgement.cage_motion.name,
+        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.label,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
         reason=reason(friction.mean, threshold, eta, judgement),
         pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),

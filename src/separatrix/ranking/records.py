@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from separatrix.cage import KickCount
 from separatrix.pocket_contact import PocketConditions
 from separatrix.stability import StabilityCurve
-from separatrix.units import Hertz, Joule, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Second
+from separatrix.units import (
+    Hertz,
+    Joule,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    Ratio,
+    Second,
+    Watt,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +47,7 @@ class RankedMaterial:
     margin : float or None
         Threshold less the chain's restitution factor [-].
     probability_stable, probability_low, probability_high : float or None
-        Share of the verdict's runs that die, and its 95 % interval [-].
+        Share of the runs from the worst kick that settle, and its 95 % interval [-].
     verdict : str or None
         STABLE, UNSTABLE or UNDECIDED.
     rank : int or None
@@ -46,11 +57,14 @@ class RankedMaterial:
     reason : str
         A sentence with the numbers.
     cage_motion : str or None
-        STABLE, CIRCLING or UNSTABLE, as in `Judgement`.
-    growth_rate, growth_rate_low, growth_rate_high, growth_kick, largest_offset, mean_offset, orbit_evenness
+        CENTRED, ON THE LAND, WHIRLING or DRIFTING, as in `Judgement`; None if most runs are unresolved.
+    by_kick : tuple of KickCount or None
+        Where the runs from every kick end.
+    worst_kick, growth_rate, growth_rate_low, growth_rate_high, largest_offset, mean_offset, orbit_evenness
     drift_rate, drift_rate_law, largest_contact_force, largest_land_force, pocket_impact_shares
-    land_impact_share, whirl_frequency, whirl_direction, whirl_ratio, drive_energy, energy_growth
-    energy_imbalance, duration, runs
+    land_impact_share, whirl_frequency, whirl_direction, whirl_ratio, drive_energy, end_energy
+    pocket_power, land_power, rubbing_force, rubbing_speed, rubbing_power, energy_imbalance, duration
+    longest_run, runs
         Evidence of the verdict's ensemble, as in `Judgement`.
     """
 
@@ -75,10 +89,11 @@ class RankedMaterial:
     within_reach: bool | None = None
     reason: str
     cage_motion: str | None = None
+    by_kick: tuple[KickCount, ...] | None = None
+    worst_kick: MetrePerSecond | None = None
     growth_rate: float | None = None
     growth_rate_low: float | None = None
     growth_rate_high: float | None = None
-    growth_kick: MetrePerSecond | None = None
     largest_offset: Metre | None = None
     mean_offset: Metre | None = None
     orbit_evenness: Ratio | None = None
@@ -92,9 +107,15 @@ class RankedMaterial:
     whirl_direction: int | None = None
     whirl_ratio: Ratio | None = None
     drive_energy: Joule | None = None
-    energy_growth: Ratio | None = None
+    end_energy: Joule | None = None
+    pocket_power: Watt | None = None
+    land_power: Watt | None = None
+    rubbing_force: Newton | None = None
+    rubbing_speed: MetrePerSecond | None = None
+    rubbing_power: Watt | None = None
     energy_imbalance: Ratio | None = None
     duration: Second | None = None
+    longest_run: Second | None = None
     runs: int | None = None
 
 

@@ -125,10 +125,8 @@ def _ended(document: Document) -> list[tuple[str, str]]:
         ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
         ("Pocket friction", friction_text(document)),
         ("Ended", f"{end} {document['outcome_sentence']}"),
-        (
-            "Energy growth",
-            f"{significant(document['energy_growth'])}, mean energy at its end over the kick's",
-        ),
+        ("Friction power", power_text(document)),
+        *rubbing_facts(document),
     ]
 
 
@@ -201,28 +199,53 @@ def judgement_facts(found: Document) -> list[tuple[str, str]]:
     """
     return [
         ("Verdict", f"{found['verdict']}. {found['reason']}"),
-        ("Motion", f"{found['cage_motion']}: {MOTIONS[found['cage_motion']]}"),
+        ("Motion", motion_text(found["cage_motion"])),
         ("P(stable)", _between(found, "probability_stable", "probability", 2)),
-        ("Growth rate", f"{growth_text(found)}, from {found['growth_kick']:g} m/s, the worst kick"),
+        ("Growth rate", f"{growth_text(found)}, from {found['worst_kick']:g} m/s, the worst kick"),
         ("Offset", offset_text(found)),
         ("Drift rate", drift_text(found)),
         ("Largest forces", forces_text(found)),
         ("Impacts", impacts_text(found)),
         ("Whirl", whirl_text(found)),
         (
-            "Energy growth",
-            f"{significant(found['energy_growth'], 2)}; frame and loads alone can give "
+            "Energy at the end",
+            f"{1e3 * found['end_energy']:.3g} mJ; frame and loads alone can give "
             f"{1e3 * found['drive_energy']:.3g} mJ",
         ),
-        ("Runs", f"{found['runs']} from each kick, of {quantity(found['duration'], 's')}"),
+        ("Friction power", power_text(found)),
+        *rubbing_facts(found),
+        ("Runs", f"{found['runs']} from each kick, of up to {quantity(found['longest_run'], 's')}"),
     ]
 
 
 MOTIONS = {
-    "STABLE": "the centre stays near the axis, or rests where its loads hold it",
-    "CIRCLING": "the centre circles the axis at an even distance",
-    "UNSTABLE": "the cage gains energy, or its centre leaves the play of its pockets",
+    "CENTRED": "the cage rests among its balls, clear of its land",
+    "ON THE LAND": "the cage rests on its land, or rides on it as its loads make it",
+    "WHIRLING": "friction sustains the motion, or makes it grow",
+    "DRIFTING": "the cage has no land, and its centre leaves the clearance of its pockets",
 }
+
+
+def motion_text(motion: str | None) -> str:
+    """Return the class of a motion and what it means."""
+    return f"{motion}: {MOTIONS[motion]}" if motion else "unresolved in most runs"
+
+
+def power_text(found: Document) -> str:
+    """Return the power that friction feeds into the cage at the end, or takes from it."""
+    powers = {name: found[f"{name}_power"] for name in ("pocket", "land")}
+    verbs = {name: "feeds" if watt > 0.0 else "takes" for name, watt in powers.items()}
+    return ", ".join(f"{name} {verbs[name]} {quantity(abs(watt), 'W')}" for name, watt in powers.items())
+
+
+def rubbing_facts(found: Document) -> list[tuple[str, str]]:
+    """Return force, speed and power of the rubbing on the land, if the cage rubs there at the end."""
+    force, speed = found["rubbing_force"], found["rubbing_speed"]
+    if force <= 0.0:
+        return []
+    power = found.get("rubbing_power")
+    heat = "" if power is None else f", {quantity(power, 'W')} of heat"
+    return [("Rubbing on the land", f"{quantity(force, 'N')} at {quantity(speed, 'm/s')}{heat}")]
 
 
 def growth_text(found: Document) -> str:

@@ -22,7 +22,7 @@ Document = Mapping[str, Any]
 
 ROWS = (
     ("kick", "m/s", "kick"),
-    ("energy_growth", "-", "energy growth"),
+    ("end_energy", "J", "energy at the end"),
     ("largest_offset", "m", "largest offset"),
     ("largest_contact_force", "N", "largest pocket force"),
     ("largest_land_force", "N", "largest land force"),

@@ -141,21 +141,26 @@ def simulation(record: Any) -> Document:
         {
             "kick": record.kick,
             "run": record.run,
-            "outcome_sentence": outcome_sentence(history.outcome),
+            "outcome_sentence": outcome_sentence(history),
             "largest_offset": plain(np.hypot(*history.position.T).max()),
             "largest_contact_force": plain(np.abs(history.contact_force).max()),
             "drift_rate_law": plain(drift_rate_law(record.cage.cage)),
+            "rubbing_power": plain(
+                record.cage.cage.land_friction * history.rubbing_force * history.rubbing_speed
+            ),
         }
         | plain_record(history, "history")
         | cage(record.cage)
     )
 
 
-def outcome_sentence(outcome: Any) -> str:
-    """Return how a run ended, in words."""
+def outcome_sentence(history: Any) -> str:
+    """Return where the motion of a run ends, in words."""
     from separatrix.cage.planar import OUTCOME_SENTENCES
+    from separatrix.cage.reason import CAUSES
 
-    return OUTCOME_SENTENCES[outcome]
+    cause = CAUSES.get(history.cause)
+    return OUTCOME_SENTENCES[history.outcome] + (f" Cause: {cause}." if cause else "")
 
 
 def ranking(record: Any) -> Document:

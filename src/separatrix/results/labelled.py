@@ -141,6 +141,8 @@ def _flatten_one(key: str, value: Any) -> Columns:
         return _prefixed(group.prefix, _stack(group, value))
     if isinstance(value, list):
         return {key: (LISTS.get(key, (key,)), value)}
+    if value is None and group.dimension:
+        return {}  # records that others have
     return {key: ((), value)}
 
 
@@ -158,10 +160,10 @@ def _stack(group: Group, records: Sequence[Mapping[str, Any]]) -> Columns:
     bare = [{key: value for key, value in record.items() if key != group.label} for record in ordered]
     rows = [_flatten(record) for record in bare]
     columns: Columns = {}
-    for name in rows[0]:
-        dims, whole = max((row[name] for row in rows), key=lambda column: len(column[0]))
+    for name in dict.fromkeys(name for row in rows for name in row):
+        dims, whole = max((row[name] for row in rows if name in row), key=lambda column: len(column[0]))
         is_label = (name,) == dims
-        stacked = ((group.dimension, *dims), [_whole(row[name], dims, whole) for row in rows])
+        stacked = ((group.dimension, *dims), [_whole(row.get(name, ((), None)), dims, whole) for row in rows])
         columns[name] = (dims, whole) if is_label else stacked
     if group.label:
         columns[group.dimension] = ((group.dimension,), [record[group.label] for record in ordered])

@@ -48,6 +48,7 @@ GROUPS = {
     "environments": Group("environment", label="name"),
     "materials": Group("material", "material_", label="name"),
     "overall": Group("material", "overall_", label="name"),
+    "by_kick": Group("kick", "by_kick_", label="kick"),
 }
 """Key of a document: what becomes of the records under it. A key that is missing here is its own prefix."""
 
@@ -102,7 +103,7 @@ RECORD_CLASSES = {
     "traction": "TractionCurve ShearField",
     "restitution": "Restitution",
     "chain": "RaceContact",
-    "cage": "PlanarCage Judgement History",
+    "cage": "PlanarCage Judgement KickCount History",
     "stability": "CriticalFriction StabilityCurve",
     "stability.map_records": "MapPoint Stopping Inference",
     "ranking": "RankedMaterial Ranking",

@@ -25,11 +25,11 @@ INTERRUPTED = "interrupted before this was computed"
 
 
 EVIDENCE = (
-    *("verdict", "cage_motion", "growth_rate", "growth_rate_low", "growth_rate_high", "growth_kick"),
+    *("verdict", "cage_motion", "growth_rate", "growth_rate_low", "growth_rate_high", "worst_kick"),
     *("largest_offset", "mean_offset", "orbit_evenness", "drift_rate", "drift_rate_law"),
     *("largest_contact_force", "largest_land_force", "land_impact_share"),
     *("whirl_frequency", "whirl_direction", "whirl_ratio"),
-    *("drive_energy", "energy_growth", "energy_imbalance", "runs", "duration"),
+    *("drive_energy", "end_energy", "pocket_power", "energy_imbalance", "runs", "duration"),
 )
 """What a row takes from the single runs with every input at its central value."""
 

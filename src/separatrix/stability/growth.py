@@ -14,9 +14,8 @@ from separatrix.stability.pool import Stopped
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
 
-STALLS = (
-    "Curve: {} of {} runs from {:g} m/s at friction {:.3g} met too many impacts in no time; "
-    "they count as not growing."
+UNRESOLVED = (
+    "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
 )
 
 ALIKE = 24
@@ -100,11 +99,12 @@ class GrowthCounter:
                 raise Stopped
             cage = self.cage_at(restitution_factor, friction)
             found = run_ensemble(
-                cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, growth_only=True
+                cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, ledger=False
             )
-            if stalled := int(found.count(RunOutcome.STALLED)[0]):
-                warnings.warn(STALLS.format(stalled, runs, kick, friction), ValidityWarning, stacklevel=2)
-            self._counts[key] = Count(int(found.count(RunOutcome.GROWS)[0]), runs)
+            if open_ends := int(found.count(RunOutcome.UNRESOLVED)[0]):
+                note = UNRESOLVED.format(open_ends, runs, kick, friction)
+                warnings.warn(note, ValidityWarning, stacklevel=2)
+            self._counts[key] = Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
         return self._counts[key]
 
     def counts(self, restitution_factor: Ratio | None, kick: MetrePerSecond) -> dict[Ratio, Count]:

@@ -67,7 +67,7 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
             rubbing, numbered, kicks=(settings.middle_kick,), runs=runs, may_turn=False,
             restitution=restitution_factor,
         )  # fmt: skip
-        return Count(int(found.count(RunOutcome.GROWS)[0]), runs)
+        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
 
     found = Response(look, settings.runs).crossing(0.5, settings.runs, LADDER[-24])
     return HardLimit(

@@ -11,8 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, run_ensemble, wilson_interval
-from separatrix.cage.orbit import driven
-from separatrix.cage.verdict import decide, drift_rate
+from separatrix.cage.verdict import decide
 from separatrix.chain import (
     CageState,
     TractionState,
@@ -196,31 +195,29 @@ def decided_ensemble(
     """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
 
     def run(first: int, count: int) -> Ensemble:
-        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first, growth_only=True)
+        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first, ledger=False)
 
     ensemble = run(0, first_look(runs))
-    if _agree(cage, ensemble):
+    if _agree(ensemble):
         return ensemble
-    while not settled(now := _tally(cage, ensemble), runs) and now.runs < runs:
+    while not settled(now := _tally(ensemble), runs) and now.runs < runs:
         ensemble = joined([ensemble, run(now.runs, further(now.runs, runs))])
     return ensemble
 
 
-def _agree(cage: PlanarCage, ensemble: Ensemble) -> bool:
-    """Whether all runs end alike, and for growing ones whether their drive explains all of them or none."""
-    by_drive = driven(cage, ensemble)
-    return bool((ensemble.outcome == ensemble.outcome[0, 0]).all() and (by_drive == by_drive[0, 0]).all())
+def _agree(ensemble: Ensemble) -> bool:
+    """Whether all runs end alike."""
+    return bool((ensemble.outcome == ensemble.outcome[0, 0]).all())
 
 
-def _tally(cage: PlanarCage, ensemble: Ensemble) -> Tally:
-    grown, by_drive = int(ensemble.count(RunOutcome.GROWS)[0]), int(driven(cage, ensemble).sum())
-    dead = int(ensemble.count(RunOutcome.DIES)[0])
-    return Tally(runs=ensemble.outcome.shape[1], grown=grown, gained=grown - by_drive, dead=dead)
+def _tally(ensemble: Ensemble) -> Tally:
+    whirls, settles = (int(ensemble.count(end)[0]) for end in (RunOutcome.WHIRLS, RunOutcome.SETTLES))
+    return Tally(runs=ensemble.outcome.shape[1], whirls=whirls, settles=settles)
 
 
 def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
     decision, reason = decide(cage, ensemble)
-    grown, runs = int(ensemble.count(RunOutcome.GROWS)[0]), ensemble.outcome.shape[1]
+    grown, runs = int(ensemble.count(RunOutcome.WHIRLS)[0]), ensemble.outcome.shape[1]
     low, high = wilson_interval(grown, runs)
     return MapPoint(
         x=x,
@@ -233,7 +230,7 @@ def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble
         grown=grown,
         growth_rate=growth_rate(ensemble),
         largest_offset=float(ensemble.largest_offset.max()),
-        drift_rate=drift_rate(ensemble),
+        drift_rate=float(np.median(ensemble.drift_rate)),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         restitution_factor=eta,
         reason=reason,

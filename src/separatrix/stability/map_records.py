@@ -43,7 +43,7 @@ class MapPoint:
     largest_offset, largest_contact_force : float or None
         Of the cage centre [m], and between a ball and its pocket [N], in any run as far as it was run.
     drift_rate : float or None
-        Median over the runs that do not grow; 0 for one that was ended early [1/s].
+        Median over the runs [1/s].
     restitution_factor : float or None
         Eta of the chain at this point, or that of the axis [-].
     margin : float or None

@@ -73,12 +73,11 @@ def _is_wild(gained: int, runs: int) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tally:
-    """What the runs of a point did: how many were made, grew, grew beyond their drive, and died."""
+    """What the runs of a point did: how many were made, whirl, and settle."""
 
     runs: int
-    grown: int
-    gained: int
-    dead: int
+    whirls: int
+    settles: int
 
 
 def settled(now: Tally, most: int) -> bool:
@@ -88,16 +87,16 @@ def settled(now: Tally, most: int) -> bool:
     settled, for that asks for more than counts.
     """
     left = most - now.runs
-    calmest = Tally(runs=most, grown=now.grown, gained=now.gained, dead=now.dead + left)
-    wildest = Tally(runs=most, grown=now.grown + left, gained=now.gained + left, dead=now.dead)
-    if _is_calm(calmest.dead, most):
+    calmest = Tally(runs=most, whirls=now.whirls, settles=now.settles + left)
+    wildest = Tally(runs=most, whirls=now.whirls + left, settles=now.settles)
+    if _is_calm(calmest.settles, most):
         return left == 0
     return _answer(now) == _answer(calmest) == _answer(wildest)
 
 
 def _answer(tally: Tally) -> tuple[int, bool]:
     """Side of one half, and whether the point is unstable."""
-    return side(*wilson_interval(tally.grown, tally.runs)), _is_wild(tally.gained, tally.runs)
+    return side(*wilson_interval(tally.whirls, tally.runs)), _is_wild(tally.whirls, tally.runs)
 
 
 def further(made: int, most: int) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from math import isfinite
 from threading import Event
 from typing import Any
 
@@ -16,18 +15,12 @@ from separatrix.study import StabilitySettings
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
-LEDGERS, FOLLOWED = 2, 4
-"""Runs from each kick whose ledger of work is kept, and those that are followed to their end also where it is
-known to be rest on the land: the fewest whose Wilson interval lies above one half, 0.51 to 1, if all end
-alike."""
+LEDGERS = 2
+"""Runs from each kick whose ledger of work is kept from their start."""
 
 
 def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -> Ensemble:
-    """Every run of the settings from every kick.
-
-    The first `LEDGERS` have their ledger, the first `FOLLOWED` are followed to their end. Where a land holds
-    the cage, which cannot drift then, the others end as soon as it is known how (`Ensemble.cut`): fewer than
-    one outcome in 1000 changes by it (`ensemble.DIES_OUT`).
+    """Every run of the settings from every kick, the first `LEDGERS` of each with their ledger.
 
     Raises
     ------
@@ -39,13 +32,9 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
     while first < settings.runs:
         if stop.is_set():
             raise Stopped
-        runs, cut = min(size, settings.runs - first), first >= FOLLOWED and isfinite(cage.land_gap)
-        found = run_ensemble(
-            cage, settings, runs=runs, first_run=first, growth_only=cut, ledger=first < LEDGERS
-        )
-        parts.append(found)
-        first += runs
-        size = FOLLOWED - first if first < FOLLOWED else PART
+        runs = min(size, settings.runs - first)
+        parts.append(run_ensemble(cage, settings, runs=runs, first_run=first, ledger=first < LEDGERS))
+        first, size = first + runs, PART
     return joined(parts)
 
 

@@ -361,9 +361,9 @@ def _run(
                 kicks=(kick,),
                 runs=1,
                 first_run=first + k,
-                growth_only=True,
+                ledger=False,
             )
-            grew[k] = found.outcome[0, 0] == RunOutcome.GROWS
+            grew[k] = found.outcome[0, 0] == RunOutcome.WHIRLS
         return len(part)
 
     done = work_through(work, parts, jobs=jobs, progress=progress, stop=stop)

@@ -1,0 +1,203 @@
+"""Where the motion of a run ends, and when that is plain: by its energy and by the work of friction.
+
+A look is a hundredth of the duration. What frame and loads can give the cage without friction is its drive
+energy; a motion with more of it that neither falls nor is fed by the loads is a whirl, and so is one with
+less that pocket friction feeds (docs/theory/cage.md).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from separatrix.cage.coefficients import time_unit
+from separatrix.cage.drive import drifts, drive_energy, room
+from separatrix.cage.planar import RunOutcome
+from separatrix.cage.slots import (
+    BALL_WORK,
+    BOOKED,
+    GRAVITY_WORK,
+    KINETIC,
+    LAND_WORK,
+    OFFSET,
+    POCKET_WORK,
+)
+from separatrix.compiled import kernel
+
+if TYPE_CHECKING:
+    from separatrix.cage.planar import PlanarCage
+    from separatrix.units import MetrePerSecond, Second
+
+LOOKS, FEWEST_LOOKS = 100, 5
+"""Looks in the duration of a run, and the fewest of a very short one."""
+
+LONG_LOOK = 25.0
+"""Shortest look, in radians of the motion with one ball in touch: some turns of a whirl."""
+
+LONGEST = 4
+"""A run whose end is not plain after its duration goes on, to this multiple of it at most."""
+
+WINDOW = 10
+"""Looks, and at least a turn of the ball set, over which the work of friction is weighed."""
+
+LOOKS_ABOVE, LOOKS_EVEN, EVEN, FAR_ABOVE = 3, 12, 0.03, 3.0
+"""Looks in a row at high energy, or alike within this share at this multiple of the drive energy or more,
+that make a whirl plain. A whirl whose energy wanders, or one near the drive energy, is followed on: some die
+after a second."""
+
+GROWN, GROWS_ON, GROWS_AT_ONCE = 100.0, 10.0, 30.0
+"""Multiples of the energy scale (kick's, and what the frame does) beyond which a growing motion does not turn
+back: at any time, in the mean of `LOOKS_ABOVE` looks, in the mean of one."""
+
+STILL = 1e-4
+"""Share of the energy of the kick, and of an impact as deep as the clearance, at which an undriven cage is at
+rest."""
+
+FALLS = 2.0 / 3.0
+"""Energy in the last fifth of the longest run over that half way, below which the motion still falls."""
+
+PLACE = 0.02
+"""Share of its room by which the mean offset of a cage in its place may change in half a window."""
+
+UNKNOWN = -1
+SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
+UNRESOLVED = int(RunOutcome.UNRESOLVED)
+
+# What is remembered from look to look.
+ABOVE, ALIKE, LEVEL, QUIET = range(4)
+MEMORY = 4
+
+
+class Limits(NamedTuple):
+    """How long a run is, in looks, and its limits: energies are over the mass, in the engine's units."""
+
+    looks: int  # in the duration
+    most: int
+    least: int  # made even where the end is plain before
+    window: int
+    place: float  # change of the mean offset that is none, in half a window; below 0 where nothing holds it
+    drifts: bool  # nothing holds the centre
+    drive: float
+    still: float
+    grown: float
+    grows_on: float
+    grows_at_once: float
+
+
+def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, least: bool = False) -> Limits:
+    """Limits of a run; `least` follows it over its whole duration even where its end is plain before.
+
+    The land holds a guided cage, so its offset is no drift.
+    """
+    unit, landless = time_unit(cage), math.isinf(cage.land_gap)
+    looks = max(FEWEST_LOOKS, min(LOOKS, int(duration / (LONG_LOOK * unit))))
+    per_mass = unit**2 / cage.mass
+    scale = energy_scale(cage, kick) * per_mass
+    drive = drive_energy(cage) * per_mass
+    turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (duration / looks)) if cage.cage_speed else 0
+    blow = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
+    given = 0.5 * (kick * unit) ** 2
+    return Limits(
+        looks=looks,
+        most=LONGEST * looks,
+        least=looks if least else 0,
+        window=min(max(WINDOW, turn), looks),
+        place=-1.0 if drifts(cage) else PLACE * room(cage),
+        drifts=drifts(cage),
+        drive=drive,
+        still=-1.0 if drive > 0.0 or not landless else STILL * min(given, blow or given),
+        grown=GROWN * scale,
+        grows_on=GROWS_ON * scale,
+        grows_at_once=GROWS_AT_ONCE * scale,
+    )
+
+
+def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
+    """Energy beside which growth is judged early [J].
+
+    The kick's, and what the frame and gravity do over the way that the cage has.
+    """
+    way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
+    return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
+
+
+@kernel
+def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
+    """Mean kinetic energy of the looks from `first` to before `last`."""
+    return np.sum(tally[first:last, KINETIC]) / ((last - first) * look)
+
+
+@kernel
+def fed(tally, first, last):  # type: ignore[no-untyped-def]
+    """Work of pocket friction, and of friction on the land, in the booked looks; and whether each feeds it.
+
+    Returns
+    -------
+    tuple
+        Pocket friction's work; whether pocket friction gives more than half of what is put in; whether both
+        frictions together do.
+    """
+    pocket = land = loads = 0.0
+    for i in range(first, last):
+        if tally[i, BOOKED] > 0.0:
+            pocket += tally[i, POCKET_WORK]
+            land += tally[i, LAND_WORK]
+            loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
+    given = max(0.0, pocket) + max(0.0, land) + loads
+    return pocket, pocket > 0.5 * given, max(0.0, pocket) + max(0.0, land) > 0.5 * given
+
+
+@kernel
+def wants_books(memory, i, mean, limits):  # type: ignore[no-untyped-def]
+    """Whether the work of the next look is wanted: where friction may decide."""
+    late = i >= limits.most - limits.most // FEWEST_LOOKS
+    return late or mean <= limits.drive or memory[ALIKE] >= LOOKS_EVEN // 2
+
+
+@kernel
+def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-def]
+    """Outcome that is plain before the duration is over; `UNKNOWN` if none is."""
+    mean = tally[i, KINETIC] / look
+    memory[ABOVE] = memory[ABOVE] + 1 if mean > limits.grows_on else 0
+    if memory[ABOVE] >= LOOKS_ABOVE or mean > limits.grows_at_once:
+        return WHIRLS
+    if met and abs(mean - memory[LEVEL]) <= EVEN * memory[LEVEL]:
+        memory[ALIKE] += 1
+    else:
+        memory[ALIKE], memory[LEVEL] = 1, mean
+    driven = mean <= limits.drive
+    memory[QUIET] = memory[QUIET] + 1 if driven and tally[i, BOOKED] > 0.0 else 0
+    if memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]:
+        return WHIRLS if fed(tally, i + 1 - LOOKS_EVEN // 2, i + 1)[2] else UNKNOWN
+    if memory[QUIET] >= limits.window and (i + 1 >= limits.looks or arrived(tally, i + 1, look, limits)):
+        first = i + 1 - limits.window
+        work, feeds, _ = fed(tally, first, i + 1)
+        if not feeds or work < mean_energy(tally, first, i + 1, look):
+            return SETTLES
+        memory[QUIET] = 0
+    return UNKNOWN
+
+
+@kernel
+def arrived(tally, end, look, limits):  # type: ignore[no-untyped-def]
+    """Whether the mean offset is the same in both halves of the last window: the cage is in its place."""
+    half = limits.window // 2
+    late = np.sum(tally[end - half : end, OFFSET]) / (half * look)
+    early = np.sum(tally[end - 2 * half : end - half, OFFSET]) / (half * look)
+    return abs(late - early) <= limits.place
+
+
+@kernel
+def end_by_trend(tally, end, look, limits):  # type: ignore[no-untyped-def]
+    """Outcome of the longest run, by its last fifth and the looks half way."""
+    n, middle = end // FEWEST_LOOKS, end // 2
+    last = mean_energy(tally, end - n, end, look)
+    before = mean_energy(tally, middle - n // 2, middle - n // 2 + n, look)
+    work, pocket_feeds, friction_feeds = fed(tally, end - n, end)
+    if last <= limits.drive:
+        return WHIRLS if pocket_feeds and work > last else SETTLES
+    if last >= FALLS * before:
+        return WHIRLS if friction_feeds else SETTLES
+    return SETTLES if limits.drive == 0.0 else UNRESOLVED
