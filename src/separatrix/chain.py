@@ -15,6 +15,7 @@ from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
 from separatrix.cage_choice import cage_candidate
 from separatrix.cage_choice import known_friction as known_friction
 from separatrix.cage_choice import pocket_friction as pocket_friction
+from separatrix.contact_limits import beyond_contacts
 from separatrix.creep import Creep, contact_creep
 from separatrix.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.errors import InputError, ValidityWarning
@@ -105,13 +106,21 @@ class CageState:
 
 
 def bearing_state(study: Study) -> BearingState:
-    """Equilibrium and contacts of a study's bearing."""
-    found = equilibrium(study.bearing, study.operation, study.kinematics, study.film.race_friction)
-    return BearingState(
-        equilibrium=found,
-        inner=_race_contact(study, found, Race.INNER),
-        outer=_race_contact(study, found, Race.OUTER),
-    )
+    """Equilibrium and contacts of a study's bearing.
+
+    Warns
+    -----
+    ValidityWarning
+        A contact leaves what races bear or what the model holds: `contact_limits`.
+    """
+    bearing, operation = study.bearing, study.operation
+    found = equilibrium(bearing, operation, study.kinematics, study.film.race_friction)
+    inner, outer = (_race_contact(study, found, race) for race in Race)
+    ellipses = {Race.INNER: inner.ellipse, Race.OUTER: outer.ellipse}
+    turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
+    for sentence in beyond_contacts(bearing, found, ellipses, turns=turns):
+        warnings.warn(sentence, ValidityWarning, stacklevel=2)
+    return BearingState(equilibrium=found, inner=inner, outer=outer)
 
 
 def _race_contact(study: Study, found: Equilibrium, race: Race) -> RaceContact:

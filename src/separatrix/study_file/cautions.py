@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.study import Guidance, Material, Study
+from separatrix.study_file.plausible import beyond_bearings
 from separatrix.units import format_quantity
 
 JUDGED_FROM = 0.8
@@ -23,6 +24,7 @@ def cautions(study: Study) -> Iterator[str]:
     yield from _fluid(study)
     yield from _land(study)
     yield from _leaning_pocket(study)
+    yield from beyond_bearings(study)
 
 
 def _ramp(study: Study) -> Iterator[str]:
