@@ -6,6 +6,9 @@ from separatrix.errors import InputError
 from separatrix.study import Candidate, Friction, RankingQuestion, Study
 from separatrix.units import Ratio, shown
 
+NAMELESS = "given in the study"
+"""Name of a material in place that has none."""
+
 
 def cage_candidate(study: Study) -> Candidate | None:
     """Candidate that [cage] material names, else the only one; None if the study does not say."""
@@ -102,4 +105,4 @@ def _name(study: Study) -> str:
     if study.cage is None:
         return ""
     material = study.cage.material
-    return study.cage.material_name or (material.name if material else "")
+    return study.cage.material_name or (material.name if material and material.name != NAMELESS else "")

@@ -288,7 +288,10 @@ def test_shipped_studies_are_found_by_name_even_beside_a_folder_of_that_name(tmp
     monkeypatch.chdir(tmp_path)
     (tmp_path / "le7").mkdir()
     assert read_study("le7").name == "le7"
-    assert set(shipped_studies()) == {"ball-218", "cryogenic-turbopump", "le7"}
+    assert set(shipped_studies()) == {
+        *("ball-218", "cryogenic-turbopump", "le7"),
+        *("lox-turbopump", "lox-turbopump-radial", "momentum-wheel"),
+    }
 
 
 def test_a_file_of_that_very_name_comes_before_a_shipped_study(tmp_path, monkeypatch):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+from separatrix.cage_choice import NAMELESS
 from separatrix.errors import InputError, together
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
@@ -82,7 +84,10 @@ def _candidate(document: Document, item: Any, number: int) -> Candidate:
     for key, one in found.items():
         named = f"ranking.{given['name']}.{key.removeprefix('friction.')}"
         document.distributions[named] = one
-    return values.build(Candidate, given, at)
+    candidate = values.build(Candidate, given, at)
+    if candidate.material is None or candidate.material.name != NAMELESS:
+        return candidate
+    return replace(candidate, material=replace(candidate.material, name=candidate.name))
 
 
 def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate:

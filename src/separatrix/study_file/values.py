@@ -8,6 +8,7 @@ from contextvars import ContextVar
 from typing import Any
 
 from separatrix import study
+from separatrix.cage_choice import NAMELESS
 from separatrix.distribution import Normal
 from separatrix.errors import InputError
 from separatrix.library import Library
@@ -153,7 +154,7 @@ def known_name(name: str, kind: str, where: str, more: str = "") -> str:
     )
 
 
-def material_in_place(value: Any, where: str, name: str = "given in the study") -> Material | Uncertain:
+def material_in_place(value: Any, where: str, name: str = NAMELESS) -> Material | Uncertain:
     """Material from a table with elastic_modulus, poisson_ratio and perhaps density, name and source."""
     readers: dict[str, Reader] = {
         "elastic_modulus": number(quantity("Pa"), "Pa"),
