@@ -155,6 +155,9 @@ LONGEST = 60
 _QUANTITY = re.compile(
     r"([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?) ?([A-Za-z\u00b5\u03bc\u00b0].*)?"
 )
+_GROUPS = re.compile(r"(?<![0-9.])[0-9]{1,3}(?:['\u2019][0-9]{3})+(?![0-9'\u2019])")
+"""Digits in groups of three, with apostrophes between: 40'000."""
+
 _SPELLINGS = str.maketrans(
     {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b7": " ", "*": " ", "^": None}
 )
@@ -186,7 +189,7 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
     """
     if not isinstance(text, str):
         raise _needs_unit(text, unit, where)
-    stripped = text.strip(" ")
+    stripped = _GROUPS.sub(lambda groups: re.sub("[^0-9]", "", groups[0]), text.strip(" "), count=1)
     match = _QUANTITY.fullmatch(stripped) if len(stripped) <= LONGEST else None
     if match is None:
         raise _refusal(text, unit, where)
@@ -274,7 +277,10 @@ def _refusal(text: str, unit: str, where: str) -> InputError:
             where, f"must be one number and one unit in at most {LONGEST} characters", "", value
         )
     if comma := re.match(r"\s*([+-]?[0-9]+),([0-9]+)(.*)", text):
-        cure = f'Write "{printable("{}.{}{}".format(*comma.groups()))}".'
+        whole, part, rest = comma.groups()
+        cure = f'Write "{printable(f"{whole}.{part}{rest}")}".'
+        if len(part) == 3 and whole.strip("+-0"):  # perhaps thousands
+            cure = f'Write "{printable(whole + part + rest)}" or "{printable(f"{whole}.{part}{rest}")}".'
         return InputError(where, "needs a decimal point, not a comma", "", value, cure)
     if re.match(r"\s*[+-]?(nan|inf)", text, re.IGNORECASE):
         return InputError(where, "must be a finite number with a unit", "", value)

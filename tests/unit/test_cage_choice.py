@@ -113,6 +113,7 @@ def test_a_name_that_nobody_has_is_refused(tmp_path):
         '[kinematics]\nmodel = "Outer-race control"\n',
         '[film]\nmaterial = "ptfe transfer film"\n',
         '[ranking]\nfriction = "Pin-on-disk 77K"\nmaterials = ["vespel SP211"]\n',
+        '[operation]\ninner_speed = "40\'000 rpm"\n',
     ],
 )
 def test_common_spellings_are_taken(tmp_path, text):

@@ -214,3 +214,22 @@ def test_values_are_shown_in_the_unit_an_engineer_would_choose(value, unit, text
 def test_a_rounded_zero_has_no_sign():
     """-0 is a puzzle for a reader."""
     assert format_number(-0.0) == "0"
+
+
+@pytest.mark.parametrize("text", ["40'000 rpm", "40\u2019000 rpm", "40000 rpm"])
+def test_digits_may_stand_in_groups(text):
+    """With apostrophes, as some countries write thousands."""
+    assert units.parse(text, "rad/s") == units.parse("4e4 rpm", "rad/s")
+
+
+@pytest.mark.parametrize("text", ["40'00 rpm", "4'0000 rpm", "'400 rpm", "1.5'000 rpm", "40'000'0 rpm"])
+def test_other_groups_are_refused(text):
+    """Not of three digits: nobody knows what was meant."""
+    with pytest.raises(InputError, match="must be one number and one unit"):
+        units.parse(text, "rad/s")
+
+
+def test_a_comma_that_may_part_thousands_is_refused_with_both_spellings():
+    """40,000 is forty thousand to some and forty to others."""
+    with pytest.raises(InputError, match=r'Write "40000 rpm" or "40\.000 rpm"'):
+        units.parse("40,000 rpm", "rad/s")
