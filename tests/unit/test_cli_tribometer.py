@@ -84,7 +84,8 @@ def rank_beside(logs):
 
 
 @pytest.mark.parametrize(
-    ("files", "words"), [(["a.csv"], "1 test from 1 log as"), (["a.csv", "b.csv"], "2 tests from 2 logs as")]
+    ("files", "words"),
+    [(["a.csv"], "Read 1 test from 1 log\n"), (["a.csv", "b.csv"], "Read 2 tests from 2 logs\n")],
 )
 def test_one_log_is_no_logs(logs, capsys, files, words):
     """The heading counts tests and logs in singular and plural."""
@@ -107,7 +108,7 @@ def test_json_is_one_document_and_writes_nothing(logs, capsys):
 def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, capsys):
     """Without a map: a table without materials; with --out a refusal that says where to say it."""
     assert main(["tribometer", "a.csv"]) == 0
-    assert "No friction file was asked for" in capsys.readouterr().out
+    assert "Nothing written; use --out friction.toml" in capsys.readouterr().out
     assert main(["tribometer", "a.csv", "b.csv", "--out", "friction.toml"]) == 2
     line = capsys.readouterr().err
     assert line.startswith("separatrix: a.csv does not say: material, counterface, medium.")
@@ -133,7 +134,7 @@ def test_the_end_of_running_in_may_be_given(logs, capsys):
 
 WRONG = {
     "no such file": (["nofile.csv"], ("nofile.csv cannot be read",)),
-    "a folder": (["."], (": . is a folder",)),
+    "a folder without logs": (["more2"], ("more2 is a folder without a log",)),
     "a folder for a map": (["a.csv", "--map", "."], (": . is a folder",)),
     "the same file twice": (["a.csv", "./a.csv"], ("a.csv is named twice",)),
     "a copy of a file": (["a.csv", "copy.csv"], ("copy.csv has the same content as a.csv",)),
@@ -174,6 +175,7 @@ def test_a_wrong_call_is_one_line_and_writes_nothing(logs, capsys, name):
     """Exit status 2, one line on standard error, nothing on standard output, no new file."""
     arguments, words = WRONG[name]
     (logs / "more").mkdir()
+    (logs / "more2").mkdir()
     for copy in ("copy.csv", "more/a.csv", "x,1.csv", "x,2.csv"):
         (logs / copy).write_bytes((logs / "a.csv").read_bytes())
     (logs / "wrong.toml").write_text('[test]\nmateral = "X"\n')

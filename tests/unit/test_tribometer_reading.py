@@ -414,7 +414,8 @@ def test_umt_keys_without_units_are_not_conditions(tmp_path):
     """``Velocity = 240`` could be rpm or mm/s: it is said and not used."""
     log = read(tmp_path, raw_logs.umt(FRICTION, TIME))
     assert log.conditions.slip_speed is None
-    assert any('"Velocity 240" has no unit' in note for note in log.notes)
+    assert 'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]' in log.notes
+    assert 'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]' in log.notes
 
 
 def test_rtec_steps_are_logs_of_their_own(tmp_path):
@@ -653,9 +654,9 @@ def test_a_condition_that_cannot_be_read_is_said(tmp_path):
     head = ["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]
     log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, head=head))
     assert log.conditions.normal_force == 50.0
-    said = '"Pin diameter 1/4 in" is not understood and is not used; below [test]: pin_diameter = ...'
+    said = 'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its unit under [test]'
     assert said in log.notes
-    assert any(note.startswith('"Speed as usual" is not understood') for note in log.notes)
+    assert any(note.startswith("Speed as usual is not understood") for note in log.notes)
 
 
 def test_description_shows_columns_units_and_reasons(tmp_path):

@@ -310,9 +310,13 @@ def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"[columns\n", "map.toml is not valid TOML"),
-        (b"\xff\xfe[", "map.toml must be UTF-8 text"),
-        (b"#" * 1_000_001, "is too large for a column map"),
+        (b"[columns\n", "map.toml, line 1 is not valid TOML"),
+        (b"\xff\xfe[", "map.toml, line 1 is not UTF-8 text"),
+        (b"#" * 1_000_001, "is larger than a column map can be, 256 kB"),
+        (b"a = " + b"[" * 500, "nests brackets more than 16 deep"),
+        (b"a" + b".a" * 100_000 + b" = 1", "line 1 is longer than 4000 characters"),
+        (b"[format]\nheader_line = 0x" + b"f" * 3900, "must be the number of a line"),
+        (b"[columns]\nfriction = 0x" + b"f" * 3900, "must be the number of a column"),
     ],
 )
 def test_a_file_that_is_no_column_map_is_refused(tmp_path, content, words):

@@ -226,7 +226,11 @@ def _compare(
 
 def _tribometer(
     files: Annotated[
-        list[Path], typer.Argument(metavar="FILES...", help="Raw logs of a tribometer; the format is told.")
+        list[Path],
+        typer.Argument(
+            metavar="FILES...",
+            help="Raw tribometer logs, or folders of them; the format is recognised.",
+        ),
     ],
     out: Annotated[
         str | None,
@@ -234,7 +238,7 @@ def _tribometer(
     ] = None,
     column_map: Annotated[
         Path | None,
-        typer.Option("--map", metavar="FILE", help="What the logs do not say: columns, units, conditions."),
+        typer.Option("--map", metavar="FILE", help="Column map (TOML) for what the logs do not state."),
     ] = None,
     plots: Annotated[
         str | None,
@@ -246,6 +250,9 @@ def _tribometer(
         str | None,
         typer.Option(metavar="END", help='Where running-in ends, for instance "200 m" [default: found].'),
     ] = None,
+    join: Annotated[
+        bool, typer.Option("--join", help="The logs of one folder are strokes or parts of one test.")
+    ] = False,
     json: Json = False,
     quiet: Quiet = False,
     jobs: Jobs = None,
@@ -257,6 +264,7 @@ def _tribometer(
         map=column_map,
         plots=None if plots is None else Path(named(plots, "--plots", "a folder")),
         run_in=run_in,
+        join=join,
         json=json,
         quiet=quiet,
         jobs=threads(jobs),

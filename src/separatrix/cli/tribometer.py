@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import json
+from collections import Counter
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from separatrix.cli.console import answer, progress_bar
 from separatrix.cli.files import staged, writable_folder
@@ -19,10 +20,18 @@ if TYPE_CHECKING:
     from separatrix.friction_fit import FrictionTest
     from separatrix.friction_fit.fit import FrictionFit
     from separatrix.tribometer.column_map import ColumnMap
+    from separatrix.tribometer.log import RawLog
     from separatrix.tribometer.options import ReductionOptions
     from separatrix.tribometer.reduction import Reduction
 
+_T = TypeVar("_T")
+
 SUFFIX = ".toml"
+OTHERS = frozenset(
+    {".toml", ".md", ".json", ".nc", ".png", ".jpg", ".jpeg", ".pdf", ".py", ".svg", ".gif", ".docx"}
+)
+"""Ends of names of files in a folder that are no logs."""
+
 MOST_FILES = 10_000
 
 
@@ -34,6 +43,7 @@ class TribometerOptions:
     map: Path | None
     plots: Path | None
     run_in: str | None
+    join: bool
     json: bool
     quiet: bool
     jobs: int
@@ -60,6 +70,7 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
     InputError
         An option or a file is wrong: the first one, and how many others are; nothing is written.
     """
+    paths = _files(paths)
     _refuse(paths, options)
     chosen = _column_map(options.map)
     idle = [] if chosen is None else chosen.unused(paths)
@@ -120,25 +131,97 @@ def _reduction_options(options: TribometerOptions) -> ReductionOptions:
         raise InputError("--run-in", error.rule, error.unit, error.value, error.cure) from None
 
 
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """The files named, and those in the folders named, in the order of their names and numbers.
+
+    Raises
+    ------
+    InputError
+        A folder holds no file that may be a log.
+    """
+    from separatrix.tribometer.joining import in_order
+
+    found: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        inside = [one for one in path.iterdir() if one.is_file() and not one.name.startswith(".")]
+        logs = [one for one in inside if one.suffix.lower() not in OTHERS]
+        if not logs:
+            raise InputError(printable(str(path), 200), "is a folder without a log", cure="Name another.")
+        found += sorted(logs, key=lambda one: in_order(one.name))
+    return found
+
+
 def _reductions(
     paths: Sequence[Path], chosen: ColumnMap | None, how: ReductionOptions, options: TribometerOptions
 ) -> list[Reduction]:
     """Every test of every file, in their order; or the refusal of the first that is wrong."""
-    found: list[list[Reduction]] = []
-    wrong: list[InputError] = []
+    from separatrix.tribometer.siblings import with_outliers
+
     with progress_bar("tribometer", quiet=options.quiet) as progress, _threads(options.jobs) as pool:
-        attempts = [pool.submit(_of_file, path, chosen, how) for path in paths]
-        for done, attempt in enumerate(attempts, 1):
-            try:
-                found.append(attempt.result())
-            except InputError as error:
-                wrong.append(error)
-            if progress is not None:
-                progress(done, len(paths))
-    if wrong:
-        raise _with_others(wrong)
-    _refuse_copies(paths, found)
-    return [one for of_file in found for one in of_file]
+
+        def each(jobs: Sequence[Future[_T]], start: float) -> list[_T]:
+            found: list[_T] = []
+            wrong: list[InputError] = []
+            for done, job in enumerate(jobs, 1):
+                try:
+                    found.append(job.result())
+                except InputError as error:
+                    wrong.append(error)
+                if progress is not None:
+                    progress(round(start + 500 * done / len(jobs)), 1000)
+            if wrong:
+                raise _with_others(wrong)
+            return found
+
+        read = each([pool.submit(_read, path, chosen) for path in paths], 0)
+        _refuse_copies(paths, read)
+        tests = _tests_of(list(zip(paths, read, strict=True)), options)
+        reduced = each([pool.submit(_reduced, path, log, chosen, how) for path, log in tests], 500)
+    return with_outliers(reduced)
+
+
+def _read(path: Path, chosen: ColumnMap | None) -> tuple[RawLog, ...]:
+    from separatrix.tribometer.reading import read_log
+
+    return read_log(path, chosen)
+
+
+def _tests_of(
+    files: Sequence[tuple[Path, Sequence[RawLog]]], options: TribometerOptions
+) -> list[tuple[Path, RawLog]]:
+    """Logs of tests, each with its first file: parts joined as asked, or as their headers say."""
+    from separatrix.tribometer.joining import by_series, joined
+
+    home = {log.source: path for path, logs in files for log in logs}
+    every = [log for _, logs in files for log in logs]
+    if options.join:
+        folders: dict[Path, list[RawLog]] = {}
+        for path, logs in files:
+            folders.setdefault(path.absolute().parent, []).extend(logs)
+        groups = list(folders.values())
+    else:
+        groups = by_series(every)
+    tests = [joined(parts) for parts in groups]
+    if not options.join:
+        tests = _with_strokes_told(tests, options)
+    return [(home[parts[0].source], log) for parts, log in zip(groups, tests, strict=True)]
+
+
+def _with_strokes_told(logs: Sequence[RawLog], options: TribometerOptions) -> list[RawLog]:
+    """The logs; where several are parts of one test by their header, a note, or a refusal with --out."""
+    counts = Counter(log.series for log in logs if log.series)
+    found = []
+    for log in logs:
+        count = counts[log.series]
+        if count > 1 and options.out is not None:
+            rule = f"is one of {count} strokes or parts of one test by the header"
+            raise InputError(log.source, rule, cure="Add --join: a test counts once.")
+        note = f"one of {count} parts of one test by the header: --join counts them as one"
+        found.append(replace(log, notes=(*log.notes, note)) if count > 1 else log)
+    return found
 
 
 @contextlib.contextmanager
@@ -151,15 +234,13 @@ def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _of_file(path: Path, chosen: ColumnMap | None, how: ReductionOptions) -> list[Reduction]:
-    from separatrix.tribometer.reading import read_log
+def _reduced(path: Path, log: RawLog, chosen: ColumnMap | None, how: ReductionOptions) -> Reduction:
     from separatrix.tribometer.reduction import reduction
 
     said = None if chosen is None else chosen.run_in_end(path)
     key = "--run-in" if how.run_in_end is not None else "run_in_end"
     try:
-        cut = how if how.run_in_end is not None else replace(how, run_in_end=said)
-        return [reduction(log, cut) for log in read_log(path, chosen)]
+        return reduction(log, how if how.run_in_end is not None else replace(how, run_in_end=said))
     except InputError as error:
         if not error.where.startswith("ReductionOptions."):
             raise
@@ -176,15 +257,15 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     return InputError(first.where, first.rule, first.unit, first.value, f"{first.cure} {more}".strip())
 
 
-def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[Reduction]]) -> None:
+def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> None:
     """Refuse the same content in two files: it would count as a repeated test."""
     first: dict[str, Path] = {}
     for path, (one, *_) in zip(paths, found, strict=True):
-        if one.log.checksum in first:
-            same = printable(str(first[one.log.checksum]), 200)
+        if one.checksum in first:
+            same = printable(str(first[one.checksum]), 200)
             cure = "A test counts once; leave one of them out."
             raise InputError(printable(str(path), 200), f"has the same content as {same}", cure=cure)
-        first[one.log.checksum] = path
+        first[one.checksum] = path
 
 
 def _tests(reductions: Sequence[Reduction], *, required: bool) -> list[FrictionTest] | None:

@@ -36,7 +36,7 @@ def tribometer(document: Document, *, plots: str | None) -> str:
     """Return the answer as text."""
     tests, files = document["tests"], document["files"]
     blocks = [
-        heading(f"{_counted(len(tests), 'test')} from {_counted(len(files), 'log')} as read below"),
+        heading(f"Read {_counted(len(tests), 'test')} from {_counted(len(files), 'log')}"),
         section("What was read", *("\n".join(file["described"]) + "\n" for file in files)),
         section("Tests", _tests(tests), *_flags(tests), LEGEND),
         *_fits(document),
@@ -46,8 +46,7 @@ def tribometer(document: Document, *, plots: str | None) -> str:
 
 
 LEGEND = "\n" + paragraph(
-    "friction: mean of the steady part, with its 95 % interval, in which neighbouring values count as far as "
-    "they are independent."
+    "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
 )
 FIT_LEGEND = "\n" + paragraph(
     "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
@@ -154,5 +153,5 @@ def _where(document: Document, plots: str | None) -> list[str]:
     lines += [f"{written} is written; a study reads it with [ranking] friction."] if written else []
     lines += [f"A page of plots for each test is in {plots}/"] if plots else []
     if not written:
-        lines.append("No friction file was asked for: --out friction.toml writes one.")
+        lines.append("Nothing written; use --out friction.toml")
     return ["\n".join(lines)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
@@ -11,7 +10,7 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of, unreadable
+from separatrix.toml_text import Kind, read_toml
 from separatrix.tribometer.dialect import MISSING, SEPARATORS
 from separatrix.tribometer.encoding import ENCODINGS
 from separatrix.tribometer.log import MEANINGS
@@ -19,8 +18,10 @@ from separatrix.tribometer.names import known_units, scale_of
 from separatrix.tribometer.options import place
 from separatrix.units import printable, shown
 
-LARGEST = 1_000_000
-"""Bytes that a column map may have."""
+KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
+
+MOST = 1_000_000_000
+"""Number of a column or a line, at most."""
 
 QUANTITIES = {
     "temperature": "K",
@@ -123,7 +124,8 @@ def read_column_map(path: str | Path) -> ColumnMap:
     """
     path = Path(path)
     name = printable(path.name or str(path), 100)
-    return column_map(_document(path, name), name)
+    document, _ = read_toml(path, KIND)
+    return column_map(document, name)
 
 
 def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
@@ -164,20 +166,6 @@ def _pattern(text: str, where: str) -> str:
     return text
 
 
-def _document(path: Path, name: str) -> dict[str, Any]:
-    size = size_of(path, name)
-    if size > LARGEST:
-        raise InputError(name, "is too large for a column map", "", f"{size} bytes")
-    try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        raise InputError(name, "must be UTF-8 text") from None
-    except tomllib.TOMLDecodeError as problem:
-        raise InputError(name, "is not valid TOML", "", printable(str(problem), 200)) from None
-    except OSError as error:
-        raise unreadable(name, error) from None
-
-
 def _columns(given: Mapping[str, Any], where: str) -> dict[str, ColumnChoice]:
     _known(given, tuple(MEANINGS), where, "column")
     return {meaning: _choice(meaning, value, f"{where} {meaning}") for meaning, value in given.items()}
@@ -191,7 +179,7 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
         value = "" if name is None else shown(name)
         raise InputError(where, "must name a column, or give its number", "", value, cure)
-    if isinstance(name, int) and name < 1:
+    if isinstance(name, int) and not 1 <= name <= MOST:
         raise InputError(where, "must be the number of a column, counted from 1", "", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):
         raise InputError(f"{where} sign", "must be 1 or -1", "", shown(sign))
@@ -285,7 +273,9 @@ def _one_of(given: Mapping[str, Any], key: str, options: Mapping[str, str], wher
 
 def _line(given: Mapping[str, Any], key: str, where: str) -> int | None:
     value = given.get(key)
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST:
         raise InputError(f"{where} {key}", "must be the number of a line, counted from 1", "", shown(value))
     return value
 

@@ -119,9 +119,18 @@ def _number_from_metadata(key: str, text: str, beside: str, conditions: list[str
                 found.add(condition, size, f'"{printable(key)}" in the file')
                 return
     if conditions[0] not in found.values:
-        why = "has no unit" if match and not unit else "is not understood"
-        shown = f'"{printable(key)} {printable(text)}"'
-        found.notes.append(f"{shown} {why} and is not used; below [test]: {conditions[0]} = ...")
+        found.notes.append(
+            _unused(key, text, match[1].lstrip("+-") if match and not unit else "", conditions[0])
+        )
+
+
+def _unused(key: str, text: str, number: str, condition: str) -> str:
+    """A sentence on a value that is not used, with the line that gives it; a number without unit keeps it."""
+    shown = f"{printable(key)} {printable(text)}"
+    if not number:
+        return f'{shown} is not understood; put {condition} = "..." with its unit under [test]'
+    unit = "mm" if condition in ("track_radius", "pin_diameter") else "<unit>"
+    return f'{shown} has no unit; put {condition} = "{number} {unit}" under [test]'
 
 
 def _from_column(key: str, column: Array, found: Found) -> None:

@@ -29,6 +29,9 @@ HALF = 0.5
 FEW_ROWS = 36
 """Rows below which nothing can be said of running-in."""
 
+RESOLVED = 5.0
+"""Rows an oscillation below which it may be the image of a faster one."""
+
 HIGH = 1.0
 """Friction above which a wrong column or unit is likelier than a contact."""
 
@@ -98,9 +101,14 @@ def drift_flag(mean: SteadyMean, length: float, axis: str, options: ReductionOpt
 
 
 def oscillation_flag(
-    found: Oscillation, mean: float, axis: str, is_cycle_known: bool, options: ReductionOptions
+    found: Oscillation,
+    mean: float,
+    axis: str,
+    is_cycle_known: bool,
+    spacing: float,
+    options: ReductionOptions,
 ) -> Iterator[str]:
-    """Tell of an oscillation that is large enough and stands out of the noise."""
+    """Report an oscillation that is large enough and stands out of the noise, of rows at a spacing."""
     small = found.amplitude < options.stick_slip_ratio * abs(mean)
     if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
         return
@@ -110,6 +118,12 @@ def oscillation_flag(
     what = (
         "stick-slip" if is_cycle_known else "stick-slip, or once per turn or stroke (no cycle time is known)"
     )
+    rows = 1.0 / (found.frequency * spacing)
+    if rows < RESOLVED:
+        what = (
+            f"with only {format_number(rows, 2)} rows an oscillation it may be stick-slip, run-out or the "
+            "image of something faster (aliasing); log more rows to tell them apart"
+        )
     yield (
         f"Friction oscillates {where[axis]} by {format_number(found.amplitude, 2)} from peak to peak, "
         f"{100 * found.amplitude / abs(mean):.0f} % of its mean, with {power} times "

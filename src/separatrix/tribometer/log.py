@@ -133,6 +133,8 @@ class RawLog:
     columns: tuple[ColumnRead, ...] = ()
     metadata: Mapping[str, str] = field(default_factory=dict)
     conditions: Conditions = field(default_factory=Conditions)
+    series: str = ""
+    """What the header says of the test that this is a part of; empty where it says nothing."""
     notes: tuple[str, ...] = ()
     """What the reading did that a user should know, a sentence each."""
 

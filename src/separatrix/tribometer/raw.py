@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -68,7 +69,9 @@ def raw_log(
     rotation = _speed_from_rotation(arrays, given, notes)
     metadata = _without_stroke_speed(table, arrays, notes)
     conditions, sentences = conditions_of(given, metadata, arrays | rotation, source)
-    fields = {meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"}
+    fields: dict[str, Any] = {
+        meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"
+    }
     return RawLog(
         source=source,
         checksum=checksum,

@@ -135,11 +135,19 @@ def _from_text(raw: bytes, file: _File) -> tuple[RawLog, ...]:
     text, encoding = text_of(raw, file.name, form.encoding)
     if not text[:65536].strip():
         raise InputError(file.name, "is empty")
-    layout = layout_of(text[:20_000].decode(errors="ignore"))
+    head = text[:20_000].decode(errors="ignore")
+    layout = layout_of(head)
     wanted, headless = _wanted(file, layout), _by_number(file.chosen)
     tables, dialect = read_tables(text, file.name, form, layout, wanted, headless=headless)
     tables = named(joined(tables, _abscissae(file, layout)))
-    return _logs(tables, file, f"{layout.name} ({encoding}, {dialect.words})", layout)
+    logs = _logs(tables, file, f"{layout.name} ({encoding}, {dialect.words})", layout)
+    series = layout.series(head)
+    return tuple(replace(log, series=_series(log, series, layout)) for log in logs) if series else logs
+
+
+def _series(log: RawLog, series: str, layout: Layout) -> str:
+    """What the parts of one test share: the words of the head, and settings of the step but for the sign."""
+    return " ".join([series, *(log.metadata.get(key, "").lstrip("+-") for key in layout.same)])
 
 
 def _understood(

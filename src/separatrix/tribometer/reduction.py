@@ -133,7 +133,10 @@ def _steady(
     """
     notes: tuple[str, ...] = ()
     if stretch.done is not None and not stretch.holds_cycles():
-        stretch, notes = stretch.of_rows(), (_few(*stretch.cycles()),)
+        notes = (_few(*stretch.cycles()),)
+        stretch = stretch.of_rows()
+        if options.cut is None:  # within a cycle friction may change as it likes
+            return stretch, None, RunIn(end=0.0, rest=0.0, ends=True, level=True), notes
     cut, found = _cut(log, stretch, kept, options)
     if stretch.done is not None and not stretch.holds_cycles(cut):
         notes = (_few(*stretch.cycles(cut)),)
@@ -248,7 +251,10 @@ class _Parts:
         yield from flags.rise_flag(self.told(rise), self.mean.mean, is_end_given=self.run_in is None)
         yield from flags.drift_flag(self.mean, high - low, self.axis, self.options)
         known = self.clock.cycle is not None
-        yield from flags.oscillation_flag(self.oscillation, self.mean.mean, self.axis, known, self.options)
+        spacing = (high - low) / max(self.friction.size - 1, 1)
+        yield from flags.oscillation_flag(
+            self.oscillation, self.mean.mean, self.axis, known, spacing, self.options
+        )
         spikes = [e for e in self.events if e.kind == "spike" and low <= self.along[e.row] <= high]
         largest = max(spikes, key=lambda event: event.size, default=None)
         yield from flags.spike_flag(spikes, "" if largest is None else self.told_row(largest.row))

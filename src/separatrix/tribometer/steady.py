@@ -194,8 +194,10 @@ def last_digit(rows: Array) -> tuple[Ratio, Ratio]:
     values = np.unique(rows)
     if values.size < 2:
         return 0.0, 0.0
-    step = float(np.diff(values).min())
-    noise = max(0.0, float(rows.var()) / step**2 - 1.0 / 12.0)
+    step, scatter = float(np.diff(values).min()), float(rows.std())
+    if scatter > 10.0 * step:
+        return step, 0.0  # to the last bit
+    noise = max(0.0, (scatter / step) ** 2 - 1.0 / 12.0)
     return step, float(step / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise))
 
 

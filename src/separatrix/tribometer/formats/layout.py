@@ -15,6 +15,10 @@ def _no_name(lines: list[str]) -> str:  # noqa: ARG001  one signature for all
     return ""
 
 
+def _no_series(head: str) -> str:  # noqa: ARG001  one signature for all
+    return ""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layout:
     """Facts of one format that its files do not say themselves."""
@@ -36,5 +40,9 @@ class Layout:
     """A line of keys stands above one of values, even if there are only two of them."""
     table_name: Callable[[list[str]], str] = _no_name
     """Name of a table from the lines before it."""
+    series: Callable[[str], str] = _no_series
+    """What the head of a file says of the test that it is a part of."""
+    same: tuple[str, ...] = ()
+    """Keys of metadata whose values, but for the sign, all parts of a test share."""
     split_by: tuple[str, ...] = ()
     """Headers, as the file writes them, whose change begins a new table; the first that is there counts."""
