@@ -352,7 +352,7 @@ def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
     data = page_data(reduction(one))
     labelled.save(data, tmp_path / "test.nc")
     figure = page(labelled.load(tmp_path / "test.nc"))
-    assert len(figure.axes) == 6
+    assert len(figure.axes) == 5
     for axes in figure.axes:
         assert "[" in axes.get_xlabel()
         assert "[" in axes.get_ylabel()

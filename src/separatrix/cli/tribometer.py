@@ -143,7 +143,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
     found: list[Path] = []
     for path in paths:
-        if not path.is_dir():
+        if not _is_folder(path):
             found.append(path)
             continue
         inside = [one for one in path.iterdir() if one.is_file() and not one.name.startswith(".")]
@@ -152,6 +152,13 @@ def _files(paths: Sequence[Path]) -> list[Path]:
             raise InputError(printable(str(path), 200), "is a folder without a log", cure="Name another.")
         found += sorted(logs, key=lambda one: in_order(one.name))
     return found
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:
+        return False  # who reads it says why
 
 
 def _reductions(

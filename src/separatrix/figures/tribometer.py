@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from separatrix.figures.heading import LINE
 from separatrix.figures.literal import literal
@@ -26,6 +27,9 @@ WIDTH = 136
 
 MOST_LINES = 3
 """Lines that one flag may take."""
+
+WHITE: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
+"""Look of a legend that lies over lines."""
 
 NAMES = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}
 
@@ -61,19 +65,18 @@ def _page(data: xr.Dataset) -> Figure:
     """Return the page, not laid out yet."""
     beside = [name for name in BESIDE if f"trace_{name}" in data][:3]
     lines = heading(data)
-    height = 2.4 + 2 * ROWS + (0.8 * ROWS if beside else 0.0)
+    height = 2.4 + ROWS + (0.8 * ROWS if beside else 0.0)
     figure = Figure(figsize=(PAGE, height + LINE * len(lines)), layout="constrained")
-    panels: list[Any] = [["trace"] * 6, ["histogram"] * 3 + ["lags"] * 3, ["cosines"] * 3 + ["spectrum"] * 3]
+    panels: list[Any] = [["trace"] * 6, ["histogram"] * 2 + ["lags"] * 2 + ["spectrum"] * 2]
     if beside:
         panels.append([name for name in beside for _ in range(6 // len(beside))])
-    heights = [2.4, ROWS, ROWS, 0.8 * ROWS][: len(panels)]
+    heights = [2.4, ROWS, 0.8 * ROWS][: len(panels)]
     axes = figure.subplot_mosaic(panels, height_ratios=heights)
     _trace(axes["trace"], data)
     _distribution(axes["histogram"], data)
     _correlation(axes["lags"], data)
-    _cosines(axes["cosines"], data)
     _spectrum(axes["spectrum"], data)
-    for letter, name in zip("fgh", beside, strict=False):
+    for letter, name in zip("efg", beside, strict=False):
         _beside(axes[name], data, name, letter)
     figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
     return figure
@@ -144,18 +147,18 @@ def _trace(axes: Axes, data: xr.Dataset) -> None:
     along = np.asarray(data["trace"].values) / size
     start, end = float(data["run_in_end"]) / size, float(data["steady_end"]) / size
     first, last = along[0], along[-1]
-    axes.fill_between(along, data["trace_low"], data["trace_high"], color=SKY, alpha=0.5, lw=0, label="rows")
-    axes.plot(along, data["trace_mean"], color=SKY, lw=0.5)
+    axes.fill_between(along, data["trace_low"], data["trace_high"], color=SKY, alpha=0.35, lw=0, label="rows")
     cycles = float(data["span_cycles"])
     name = (
         "means of spans"
         if not cycles
         else f"means of {format_number(cycles, 2)} cycle{'s' if cycles > 1 else ''}"
     )
-    axes.plot(data["span"] / size, data["span_mean"], ".", color=BLUE, ms=2.5, mew=0, label=name)
+    axes.plot(along, data["trace_mean"], color=BLUE, lw=0.6, zorder=2.5)
+    axes.plot(data["span"] / size, data["span_mean"], ".", color=BLUE, ms=3, mew=0, zorder=2.6, label=name)
     mean, half = float(data["friction"]), float(data["half_width"])
     drift = float(data["drift_rate"]) * size * (end - start) / 2
-    axes.fill_between([start, end], mean - half, mean + half, color=VERMILION, alpha=0.35, lw=0)
+    axes.fill_between([start, end], mean - half, mean + half, color=VERMILION, alpha=0.2, lw=0)
     axes.plot([start, end], [mean, mean], color=VERMILION, lw=1.2, label="steady mean, 95 % interval")
     axes.plot([start, end], [mean - drift, mean + drift], color=GREEN, lw=0.9, ls=(0, (5, 2)), label="drift")
     outside = [(a, b) for a, b in ((first, start), (end, last)) if b - a > 2e-3 * (last - first)]
@@ -182,11 +185,12 @@ def _distribution(axes: Axes, data: xr.Dataset) -> None:
     if "cycle_share" in data:
         axes.stairs(100 * data["cycle_share"].values, edges, color=BLUE, lw=1.0, label="whole cycles")
     mean, half = float(data["friction"]), float(data["half_width"])
-    axes.axvspan(mean - half, mean + half, color=VERMILION, alpha=0.35, lw=0)
+    axes.axvspan(mean - half, mean + half, color=VERMILION, alpha=0.2, lw=0)
     axes.axvline(mean, color=VERMILION, lw=1.0, label="mean")
-    axes.set(xlabel="friction [-]", ylabel="share in the steady part [%]", title="b  Distribution")
-    axes.set_ylim(0.0, 1.3 * axes.get_ylim()[1])
-    axes.legend(loc="upper right", ncols=3, handlelength=1.2, fontsize=6.5)
+    axes.set(xlabel="friction [-]", ylabel="share of the steady part [%]", title="b  Distribution")
+    axes.set_ylim(0.0, 1.45 * axes.get_ylim()[1])
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.legend(loc="upper center", ncols=3, handlelength=1.0, columnspacing=1.0, fontsize=6.5, **WHITE)
 
 
 def _correlation(axes: Axes, data: xr.Dataset) -> None:
@@ -194,41 +198,25 @@ def _correlation(axes: Axes, data: xr.Dataset) -> None:
     size, label = scale(data)
     lag = np.asarray(data["lag"].values) / size
     bound = 2.0 / np.sqrt(data.sizes["span"])
-    axes.axhspan(-bound, bound, color=GREY, alpha=0.15, lw=0, label="of white noise, 95 %")
+    axes.axhspan(-bound, bound, color=GREY, alpha=0.15, lw=0, label="white noise, 95 %")
     axes.vlines(lag, 0.0, data["correlation"].values, color=BLUE, lw=0.8)
     axes.axhline(0.0, color=GREY, lw=0.5)
     length = float(data["correlation_length"]) / size
     if length > lag[1] / 4:
-        axes.axvline(length, color=ORANGE, lw=1.0, label="fitted time of correlation")
+        axes.axvline(length, color=ORANGE, lw=1.0, label="correlation time")
     axes.set_xlabel(f"lag in {label}")
-    axes.set(ylabel="autocorrelation [-]", ylim=(-0.6, 1.35), xlim=(0.0, lag[-1]))
-    axes.set_title("c  Autocorrelation of the spans")
-    axes.legend(loc="upper right", fontsize=6.5, handlelength=1.4)
-
-
-def _cosines(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the squares of the projections on cosines, and those that give the standard error."""
-    number, power = np.asarray(data["cosine"].values), np.asarray(data["cosine_power"].values)
-    axes.set(xlabel="half turns over the steady part [-]", ylabel="power of the spans [-]")
-    axes.set_title("d  Low end of the spectrum, for the error")
-    if not power.any():
-        axes.text(0.5, 0.5, "no noise", transform=axes.transAxes, ha="center", color=GREY)
-        return
-    used = int(data["cosines_used"])
-    floor = 1e-4 * float(power.max())
-    axes.plot(number, np.maximum(power, floor), ".", color=GREY, ms=2.5, mew=0, label="cosines")
-    axes.plot(number[:used], np.maximum(power[:used], floor), "o", color=BLUE, ms=3, mew=0, label="used")
-    axes.plot(number, np.maximum(data["cosine_fit"].values, floor), color=ORANGE, lw=1.0, label="fitted")
-    axes.set(xscale="log", yscale="log")
-    axes.set_ylim(0.5 * floor, 30.0 * float(power.max()))
-    axes.legend(loc="upper right", ncols=3, fontsize=6.5, handlelength=1.2)
+    axes.set(ylabel="autocorrelation [-]", ylim=(-0.6, 1.6), xlim=(0.0, lag[-1]))
+    axes.set_title("c  Autocorrelation")
+    axes.legend(
+        loc="upper right", fontsize=6.5, handlelength=1.4, frameon=True, framealpha=0.9, edgecolor="none"
+    )
 
 
 def _spectrum(axes: Axes, data: xr.Dataset) -> None:
     """Draw the spectrum of the rows, the cycle's frequency and the strongest oscillation."""
     unit = {"time": "Hz", "distance": "1/m", "cycles": "1/cycle"}[str(data.attrs["axis"])]
     frequency = np.asarray(data["frequency"].values)
-    axes.set(xlabel=f"frequency [{unit}]", title="e  Spectrum of the rows")
+    axes.set(xlabel=f"frequency [{unit}]", title="d  Spectrum of the rows")
     axes.set_ylabel(f"density [{'1/Hz' if unit == 'Hz' else 'm' if unit == '1/m' else 'cycle'}]")
     if frequency.size < 3 or not data["cosine_power"].any():
         words = "too few rows" if frequency.size < 3 else "no noise"
