@@ -9,6 +9,7 @@ from pathlib import Path
 
 from separatrix.errors import InputError
 from separatrix.regular_file import size_of, unreadable
+from separatrix.tribometer.clock import CLOCK
 from separatrix.tribometer.column_map import ColumnMap
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, ColumnRead, RawLog, RawTable, Wanted
@@ -83,6 +84,7 @@ def shown_header(column: ColumnRead) -> str:
 
 def _column(column: ColumnRead) -> str:
     unit = f" in {column.unit}" if column.unit.strip("- ") else ""
+    unit = ", clock times," if column.unit == CLOCK else unit
     return f"column {shown_header(column)}{unit} ({column.why})"
 
 

@@ -41,7 +41,7 @@ COSINES = 8
 CHANCE = 1e-3
 """Probability with which the difference of two tails exceeds noise on one side without running-in."""
 
-WORTH = 0.01
+WORTH = 0.0075
 """Change of the mean, as a share of it, for which nothing is cut."""
 
 SEEN = 0.05

@@ -26,6 +26,7 @@ SPEEDS = ("slip_speed", "rotational_speed")
 POSITIONS = frozenset(
     {"position", "linear position", "lin position", "rotary position", "angular position", "x position"}
     | {"y position", "lateral position", "slide position", "stroke position", "stroke", "angle"}
+    | {"pos", "x pos", "y pos", "lin pos", "linear pos", "travel", "carriage position"}
     | {"rotation angle", "winkel", "drehwinkel", "hubposition", "position lineaire", "angle de rotation"}
 )
 """Names of a column of position along the track."""
@@ -43,7 +44,7 @@ RAMP = 0.9
 """Share of the speed behind a ramp at which the ramp ends."""
 
 BEHIND = 0.05
-"""Share of the rows behind a ramp that say to which speed it leads, 20 at least."""
+"""Share of the rows, 20 at least, behind which as many say to which speed a ramp leads."""
 
 LONGEST_RAMP = 0.2
 """Share of the rows that a ramp has at most."""
@@ -172,7 +173,7 @@ def _ramp(speed: Array, slides: Rows) -> int:
     """Rows at the start in which the speed has not reached that behind them."""
     first = int(np.argmax(slides))
     reach = max(20, int(BEHIND * speed.size))
-    behind = float(np.median(speed[first : first + reach]))
+    behind = float(np.median(speed[first + reach : first + 2 * reach])) if speed.size > first + reach else 0.0
     end = first + int(np.argmax(speed[first:] >= RAMP * behind))
     return end if end <= first + LONGEST_RAMP * speed.size else first
 

@@ -1,0 +1,297 @@
+"""Logs as instruments write them: small files of the same layout, read without a word from the user."""
+
+from __future__ import annotations
+
+import json
+from datetime import datetime, timedelta
+
+import numpy as np
+import openpyxl
+import pytest
+
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.tribometer.clock import is_clock, seconds
+from separatrix.tribometer.column_map import column_map
+from separatrix.tribometer.reading import read_log
+from separatrix.tribometer.reduction import reduce_log
+
+ROWS = 240
+RNG = np.random.default_rng(6)
+NOISE = 0.004 * RNG.standard_normal(ROWS)
+STEADY = 0.12
+
+
+def read(tmp_path, text, columns=None, name="log.txt"):
+    """The logs of a file with that text."""
+    path = tmp_path / name
+    path.write_bytes(text.encode("cp1252"))
+    return read_log(path, None if columns is None else column_map(columns))
+
+
+def te67(rows=ROWS):
+    """Phoenix TE67: clock times, decimal commas, no units, a standstill and a ramp of the speed, a footer."""
+    begin = datetime(2026, 4, 9, 23, 58)  # the test passes midnight
+    names = "Time;This Step;Step Time;Test Time;Sliding Velocity;Load;Radius;Friction Force;"
+    lines = ["Data file\t\tX.TSV", "", f"Test started at {begin:%H:%M:%S} on 2026-04-09"]
+    lines.append("\t" + (names + "Friction Coefficient;Friction Force").replace(";", "\t") + "\t")
+    for i in range(rows):
+        speed = 0.15 * min(1.0, max(0.0, (i - 9) / 20.0))
+        friction = STEADY + NOISE[i % ROWS] if speed else 0.01
+        row = (
+            f"{begin + timedelta(seconds=i):%H:%M:%S};2;1800,;{i},;{speed:.3f};60,000;14;{60 * friction:.2f};"
+        )
+        lines.append(
+            "\t" + (row + f"{friction:.5f};{60 * friction:.2f}").replace(".", ",").replace(";", "\t")
+        )
+        lines[-1] += "\t"
+    return "\r\n".join([*lines, "Test completed at 00:30:00 on 2026-04-10", ""])
+
+
+def test_te67_is_read_at_once_without_its_standstill_and_ramp(tmp_path):
+    """Clock times are seconds, past midnight too; rows before the speed is reached do not count."""
+    (log,) = read(tmp_path, te67(), name="log.tsv")
+    assert log.time[-1] == ROWS - 1.0
+    assert log.rows == ROWS - 27  # ten at rest, and seventeen until 90 % of the speed are reached
+    assert any("27 of 240 rows are left out: standstill, reversals or ramps" in note for note in log.notes)
+    assert reduce_log(log).friction == pytest.approx(STEADY, abs=4 * 0.004 / ROWS**0.5)  # 4 standard errors
+
+
+def test_pcs_mtm_is_read_at_once(tmp_path):
+    """Traction coefficient and step time stand twice, empty columns between them: the twin is checked."""
+    head = "MTM311 Test Data File\n\nTest started at 19/08/2016 09:39:32\n\n"
+    head += "Step 1 started at 19/08/2016 09:48:51\nStep type\tBOD_TIMED\tStep duration\t02:46:40\n"
+    head += "Step Time (s)\tTraction Coeff (-)\t\tStep Time (s)\tSliding Speed (mm/s)\tTraction Coeff (-)\t\n"
+    rows = [
+        f"{10 * i}\t{STEADY + NOISE[i]:.4f}\t\t{10 * i}\t100.0\t{STEADY + NOISE[i]:.4f}\t"
+        for i in range(ROWS)
+    ]
+    tail = "\n\nAll steps completed, test completed normally at 19/08/2016 12:35:32"
+    (log,) = read(tmp_path, head + "\n".join(rows) + tail)
+    assert log.source == "log.txt, step 1"
+    assert log.format.startswith("PCS Instruments text")
+    assert log.conditions.slip_speed == pytest.approx(0.1, rel=1e-12)
+    assert reduce_log(log).friction == pytest.approx(STEADY, abs=4 * 0.004 / ROWS**0.5)
+    with pytest.raises(InputError, match=r"2 columns that could be the friction.*friction = 2 or 6"):
+        read(tmp_path, head + "\n".join([*rows[:-1], rows[-1].rpartition("0.1")[0] + "0.9\t"]) + tail)
+
+
+def lvm(count=6):
+    """LabVIEW measurement file: two segments of the same numbers, a name of comments without a column."""
+    head = "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2017/09/20\nTime\t11:29:14.71\n"
+    head += "***End_of_Header***\t\n\t\n"
+    block = "Channels\t2\t\t\t\nSamples\t2000\t2000\t\t\nX0\t0.0E+0\t0.0E+0\t\t\nDelta_X\t0.1\t0.1\t\t\n"
+    block += "***End_of_Header***\t\t\t\t\nX_Value\tfx_N\tfz_N\tComment\n"
+    block += "".join(f"{0.1 * i:.6f}\t{-0.2 - 0.01 * (i % 2):.6f}\t10.000000\n" for i in range(count))
+    return head + block + "\n" + block
+
+
+def test_labview_text_is_read_at_once_and_a_copy_of_a_table_counts_once(tmp_path):
+    """The first good row is a row; friction is |fx|/fz; six rows give a mean with a wide interval."""
+    (log,) = read(tmp_path, lvm())
+    assert log.format.startswith("LabVIEW text")
+    assert log.rows == 6
+    assert any("has the same numbers and is left out" in note for note in log.notes)
+    test = reduce_log(log)
+    assert test.friction == pytest.approx(0.0205, rel=1e-9)
+    assert any("has 6 rows: too few to see running-in" in flag for flag in test.flags)
+
+
+def test_an_srv_workbook_with_units_in_brackets_is_read_at_once(tmp_path):
+    """A row of units [s], [N], [-] below the names."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(["Time", "Load", "COF", "Temperature"])
+    sheet.append(["[s]", "[N]", "[-]", "[\u00b0C]"])
+    for i in range(60):
+        sheet.append([float(i), 200.0, STEADY + NOISE[i], 50.0])
+    book.save(tmp_path / "srv.xlsx")
+    (log,) = read_log(tmp_path / "srv.xlsx")
+    assert log.conditions.normal_force == 200.0
+    assert log.conditions.temperature == pytest.approx(323.15)
+
+
+def test_rtec_without_step_and_brackets_is_read_at_once(tmp_path):
+    """``Timestamp,DAQ.COF,Rotary.Position``: the timestamp is in seconds."""
+    rows = "".join(f"{0.1 * i:.1f},{STEADY + NOISE[i]:.5f},{0.02 * i % 1.0:.3f}\n" for i in range(ROWS))
+    (log,) = read(tmp_path, f"Timestamp,DAQ.COF,Rotary.Position\n{rows}")
+    assert log.rows == ROWS
+    assert log.time[-1] == pytest.approx(23.9)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "gap"),
+    [
+        ("2026-02-01T10:00:00Z", "2026-02-01T10:00:00.25Z", 0.25),
+        ("31/01/2026 23:59:59", "01/02/2026 00:00:01", 2.0),
+        ("1/31/2026 11:59:59 PM", "2/1/2026 12:00:01 AM", 2.0),
+        ("31.01.2026 23:59:59,5", "01.02.2026 00:00:00", 0.5),
+        ("19-Aug-2016 09:00:00", "19-Aug-2016 09:00:01", 1.0),
+        ("23:59:58", "00:00:01", 3.0),
+        ("00:00:10.5", "00:01:00", 49.5),
+    ],
+)
+def test_times_as_text_become_seconds(first, second, gap):
+    """Times of day, durations, dates in the usual orders, past midnight and the end of a month."""
+    assert is_clock(first)
+    assert seconds([first, second]).tolist() == [0.0, gap]
+
+
+@pytest.mark.parametrize(
+    ("names", "rows"),
+    [
+        ("datetime,friction_coefficient", "2026-03-31T23:59:{0:02d}.500,0.1{0:02d}"),
+        ("Date;Time;COF", "31.03.2026;10:00:{0:02d};0,1{0:02d}"),
+        ("Time (hh:mm:ss)\tCOF", "00:00:{0:02d}\t0.1{0:02d}"),
+        ("Elapsed [mm:ss];mu", "01:{0:02d};0,1{0:02d}"),
+        ("# time(s) friction(mu) load(N)", "{0} 0.1{0:02d} 5.0"),
+        ("Time, s\tCoefficient of Friction, \u00b5", "{0}\t0.1{0:02d}"),
+        ("Time [s];\u00c2\u00b5", "{0};0,1{0:02d}"),
+    ],
+)
+def test_columns_of_other_programs_are_understood(tmp_path, names, rows):
+    """Times as text with and without dates, units wherever they stand, a Greek letter in a wrong code."""
+    (log,) = read(tmp_path, "\n".join([names, *(rows.format(i) for i in range(60))]) + "\n")
+    assert log.time.tolist() == [float(i) for i in range(60)]
+    assert log.friction.tolist() == [float(f"0.1{i:02d}") for i in range(60)]
+
+
+FORCE_ONLY = "Laps\tFrictionForce\t?\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\t{0.4}\n" for i in range(60))
+
+
+def test_a_force_without_unit_is_not_offered_as_the_friction(tmp_path):
+    """The mangled letter is; who names the force all the same is refused, and told the two forces."""
+    with pytest.raises(InputError, match=r'got columns "\?"\. Say which .* friction = "\?"') as refusal:
+        read(tmp_path, FORCE_ONLY)
+    assert "FrictionForce" not in str(refusal.value)
+    (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": "?"}})
+    assert set(log.friction.tolist()) == {0.4}
+    with pytest.raises(InputError, match=r'"FrictionForce" is a force by its name.*normal_force = "10 N"'):
+        read(tmp_path, FORCE_ONLY, {"columns": {"friction": "FrictionForce"}})
+
+
+def test_a_friction_above_one_is_flagged(tmp_path):
+    """Whoever insists that newtons are a coefficient reads it in the answer."""
+    given = {"columns": {"friction": {"name": "FrictionForce", "unit": "-"}}}
+    (log,) = read(tmp_path, FORCE_ONLY, given)
+    assert any("is above 1, which dry sliding seldom reaches" in flag for flag in reduce_log(log).flags)
+
+
+def stroke(number, sign=1.0, level=0.75, moving=60, set_force=-200):
+    """One step of a UMT file: at rest, turning, sliding, at rest again with the force held."""
+    rng = np.random.default_rng(number)
+    slides = level + 0.02 * rng.standard_normal(moving)
+    size = np.concatenate([np.full(8, 0.04), [0.2, 0.5], slides, 0.6 - 0.0005 * np.arange(20)])
+    rows = [
+        f"{sign * 200 * f:.4f},{set_force:.4f},{0.02 * i:.4f},{200 * f:.4f},{f:.5f}"
+        for i, f in enumerate(size)
+    ]
+    keys = f"Step No. {number}\n\nRadius = 3.9\nVelocity = {240 * sign:g}\nSet Force = {set_force}\n\n"
+    return f"{keys}Fx,Fz,T,Ff,COF\ng,g,sec,g,\n\n" + "\n".join(rows) + "\n\n"
+
+
+def umt(number, **settings):
+    """A UMT file of one stroke there and back, numbered as one of a test."""
+    head = f"Created by CETR UMT\nC:\\data\\disk 7_{number:03d}.tst\n\nRun # 1\nScript file C:\\wear.cts\n"
+    return head + stroke(2 * number, 1.0, **settings) + stroke(2 * number + 1, -1.0, level=0.85, **settings)
+
+
+def test_standstill_and_reversal_of_a_stroke_are_not_sliding(tmp_path):
+    """Neither the rest with its held force nor the turn moves the mean: 0.75 and not 0.6."""
+    logs = read(tmp_path, umt(1))
+    assert [reduce_log(log).friction for log in logs] == pytest.approx([0.75, 0.85], abs=0.015)  # 4 errors
+    assert all(55 <= log.rows <= 64 for log in logs)  # of 90; 60 slide
+
+
+@pytest.fixture
+def strokes(tmp_path, monkeypatch):
+    """A folder of six files of strokes."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wear").mkdir()
+    for number in range(1, 7):
+        (tmp_path / "wear" / f"disk-{number}.csv").write_text(umt(number))
+    (tmp_path / "wear" / "notes.md").write_text("no log")
+    return tmp_path
+
+
+def answer(capsys, *arguments):
+    """The JSON document of a call."""
+    assert main(["tribometer", *arguments, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys):
+    """Twelve strokes in six files of a folder are one test, of the mean of both directions."""
+    (test,) = answer(capsys, "wear")["tests"]
+    assert test["source"] == "disk-1.csv, run 1, step 2 and 11 more"
+    assert test["friction"] == pytest.approx(0.8, abs=0.01)
+    assert test["cycles"] == 6
+
+
+def test_strokes_of_one_file_are_told_and_joined_if_asked(strokes, capsys):
+    """Alone they are two tests with a note; --join makes them one, and --out refuses them apart."""
+    found = answer(capsys, "wear/disk-1.csv")
+    assert len(found["tests"]) == 2
+    assert "one of 2 parts of one test by the header: --join counts them as one" in found["files"][0]["notes"]
+    assert len(answer(capsys, "wear/disk-1.csv", "--join")["tests"]) == 1
+    assert main(["tribometer", "wear/disk-1.csv", "--out", "f.toml"]) == 2
+    assert "is one of 2 strokes or parts of one test by the header. Add --join" in capsys.readouterr().err
+
+
+def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
+    """A step at twice the load: the header keeps them apart, and --join refuses."""
+    (strokes / "wear" / "disk-9.csv").write_text(umt(9, set_force=-400))
+    assert len(answer(capsys, "wear")["tests"]) == 3
+    assert main(["tribometer", "wear", "--join"]) == 2
+    assert "cannot be one test: their normal force differs" in capsys.readouterr().err
+
+
+def test_a_folder_without_a_log_is_refused(tmp_path, capsys):
+    """With its name."""
+    assert main(["tribometer", str(tmp_path)]) == 2
+    assert "is a folder without a log" in capsys.readouterr().err
+
+
+def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
+    """0.4 among five of 0.12: three times the median of the others; the others draw no flag."""
+    monkeypatch.chdir(tmp_path)
+    for number, level in enumerate([0.12, 0.125, 0.118, 0.4, 0.121]):
+        rows = "".join(f"{i},{level + NOISE[i]:.5f}\n" for i in range(ROWS))
+        (tmp_path / f"{number}.csv").write_text(f"time [s],COF\n{rows}")
+    tests = answer(capsys, *(f"{i}.csv" for i in range(5)))["tests"]
+    told = [
+        [flag for flag in test["flags"] if "times the median of the other 4 tests" in flag] for test in tests
+    ]
+    assert [len(one) for one in told] == [0, 0, 0, 1, 0]
+
+
+def test_an_oscillation_of_few_rows_is_not_called_stick_slip(tmp_path):
+    """2.2 a turn at 7.6 rows a turn: it may be the image of something faster."""
+    laps = np.arange(0.0, 300.0, 1.0 / 7.6)
+    friction = 0.4 + 0.05 * np.sin(2.0 * np.pi * 2.2 * laps)
+    rows = "".join(f"{lap:.4f},{f:.5f}\n" for lap, f in zip(laps, friction, strict=True))
+    (log,) = read(tmp_path, f"laps,COF\n{rows}")
+    flag = next(flag for flag in reduce_log(log).flags if flag.startswith("Friction oscillates"))
+    assert "with only 3.5 rows an oscillation it may be stick-slip, run-out or the image" in flag
+
+
+def test_a_step_that_underflows_is_reduced(tmp_path):
+    """Two values of 1e-200: the square of their difference is zero, and nothing is divided by it."""
+    rows = [f"{i},0.{100 + i % 7}" for i in range(60)]
+    rows[30:32] = ["30,1e-200", "31,2e-200"]
+    (log,) = read(tmp_path, "time [s],COF\n" + "\n".join(rows) + "\n")
+    assert 0.09 < reduce_log(log).friction < 0.11
+
+
+def test_a_number_of_many_digits_takes_no_time():
+    """Digits and a letter: a pattern that tried every split of them took the square of their number."""
+    from separatrix.tribometer.dialect import is_number
+
+    assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
+
+
+def test_more_tables_than_any_test_has_are_refused(tmp_path):
+    """Each would be kept: twenty thousand took 1.7 GB."""
+    one = "time [s],COF\n0,0.1\n1,0.1\n2,0.1\n"
+    with pytest.raises(InputError, match="has more than 2000 tables"):
+        read(tmp_path, one * 2100)
