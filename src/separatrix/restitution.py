@@ -64,6 +64,11 @@ class Restitution:
     damping_ratio_free_spin: Ratio
     restitution_factor_free_spin: Ratio
 
+    @property
+    def least_damping(self) -> NewtonSecondPerMetre:
+        """C_mu from which a blow returns anything, sqrt(k M)/2; below it the blow is overdamped."""
+        return 0.5 * sqrt(self.ball_cage_stiffness * self.cage_mass)
+
 
 def contact_damping(slope: Ratio, load: Newton, rolling_speed: MetrePerSecond) -> NewtonSecondPerMetre:
     """One race's share of C_mu, alpha N / V (Eq. 18)."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from separatrix.chain import bearing_state
+from separatrix.cli import answers
 from separatrix.errors import ValidityWarning
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study
@@ -15,6 +16,7 @@ from separatrix.study_file.plausible import beyond_bearings, plausible_cage_mass
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage
 assert CAGE is not None
+WORK = answers.Work(jobs=1, progress=None, folder=None, quiet=True)
 
 
 def operated(**changes: float) -> Study:
@@ -92,3 +94,14 @@ def test_balls_that_the_inner_race_hardly_touches_skid() -> None:
     assert "below the limit of 1 %" in note
     still = Operation(inner_speed=0.0, axial_load=0.1, radial_load=1.0)
     assert notes(replace(SHIPPED, operation=still)) == []
+
+
+def test_an_overdamped_impact_is_called_so() -> None:
+    """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
+    slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
+    with pytest.warns(ValidityWarning, match=r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every"):
+        found = answers.restitution(slippery, WORK).state.restitution
+    assert found.race_damping < found.least_damping
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert answers.restitution(SHIPPED, WORK).state.restitution.restitution_factor > 0.0

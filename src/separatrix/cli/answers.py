@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from separatrix.errors import SeparatrixError, ValidityWarning
+from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -204,13 +205,34 @@ def shear(study: Study, at: RaceContact) -> ShearField:
 
 
 def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
-    """Restitution factor from the traction slopes, and what other films would give."""
+    """Restitution factor from the traction slopes, and what other films would give.
+
+    Warns
+    -----
+    ValidityWarning
+        The factor is 0: the blow is overdamped.
+    """
     from separatrix.chain import lubrication, restitution_state
 
     state = restitution_state(study)
+    _say_if_overdamped(state)
     return RestitutionAnswer(
         state=state, film_thickness=study.film.thickness or 0.0, lubrication=lubrication(study, state)
     )
+
+
+def _say_if_overdamped(state: RestitutionState) -> None:
+    """Warn that eta is 0 and what follows from it."""
+    found = state.restitution
+    if found.restitution_factor == 0.0:
+        damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
+        warnings.warn(
+            f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
+            f"= {least}; every material has its full threshold as margin. C_mu falls as race friction falls "
+            "and as speed rises. Test experience may differ: docs/theory/restitution.md.",
+            ValidityWarning,
+            stacklevel=2,
+        )
 
 
 def stability(study: Study, work: Work) -> StabilityAnswer:
@@ -267,5 +289,6 @@ def rank(study: Study, work: Work) -> RankingAnswer:
     seen = cage_seen(study, marked=True)
     own = reference_candidate(study, question)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, question))
+    _say_if_overdamped(state.restitution)
     work.progress.expect(lambda: expected_ranking(study, jobs=work.jobs))
     return RankingAnswer(cage=state, ranking=rank(study, jobs=work.jobs, progress=work.progress))
