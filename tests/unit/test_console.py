@@ -177,7 +177,7 @@ def test_what_a_verb_will_take_is_printed_before_it_starts(capsys):
         life.expect(lambda: 61.0, at_most=True)
     assert capsys.readouterr().err.splitlines() == [
         "separatrix: rank case takes about 38 s.",
-        "separatrix: rank case takes about 3 min.",
+        "separatrix: rank case takes about 3.3 min.",
         "separatrix: rank case takes about 2.5 h.",
         "separatrix: rank case takes at most about 61 s.",
     ]

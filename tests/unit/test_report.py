@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from separatrix.report import ranking, whereabouts
+from separatrix.report import ranking, report, whereabouts
 from separatrix.report.sensitivity import _marks
 
 
@@ -50,7 +50,7 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
 
 def document(*rows: dict) -> dict:
     """Return what the verdicts are made of: one environment and the same rows overall."""
-    asked = {"runs": 64, "duration": 0.3, "kicks": [0.1, 2.0]}
+    asked = {"runs": 64, "duration": 0.3, "kicks": [0.1, 2.0], "environment": "air"}
     return {"environments": [{"name": "air", "materials": rows}], "overall": rows, **asked}
 
 
@@ -72,7 +72,7 @@ def test_frictions_that_were_not_tested_are_marked_and_explained_once():
     text = ranking._table([*rows, row("C", 3)])
     assert [line.split()[2][-1] for line in text.splitlines()[-3:]] == ["*", "*", "0"]
     (_, note) = ranking.footnotes(rows)
-    assert note == "  * not tested as the pocket rubs: too fast. too hot (A)."
+    assert note == "  * extrapolated beyond the tests: too fast. too hot (A)."
     assert ranking.footnotes([row("C", 3)]) == []
 
 
@@ -118,7 +118,7 @@ def test_no_verdict_is_shown_without_its_evidence():
 def test_the_first_is_shown_in_detail_if_it_has_a_verdict():
     """All the facts of the one at the top; none of one that was not measured."""
     (text,) = ranking._first([row("A", 1), row("B", 2)])
-    assert text.startswith("A, overall, in detail")
+    assert text.startswith("A in detail")
     assert "64 from each kick, of 300 ms" in text
     assert ranking._first([row("A", None, None)]) == []
 
@@ -146,17 +146,68 @@ def test_candidates_with_one_reason_share_it():
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
-        ([row("A", 1), row("B", 2)], "A is first overall: STABLE, with a margin of +0.30"),
         (
-            [row("A", 1), row("B", 1, verdict="UNDECIDED")],
-            "A and B are tied first overall: STABLE, UNDECIDED",
+            [row("A", 1), row("B", 2), row("C", 3, verdict="UNSTABLE"), row("D", None, None)],
+            "A ranks first in air: STABLE. It tolerates a restitution factor up to 0.60; this bearing with "
+            "its pocket has 0.30 (margin +0.30). The others: STABLE B; UNSTABLE C; not measured D.",
         ),
-        ([row("A", None, None)], "no candidate was ranked."),
+        (
+            [row("A", 1), row("B", 1, verdict="UNDECIDED", margin=0.2, restitution_factor=0.4)],
+            "2 materials tie for first in air (A, B): STABLE, UNDECIDED. They tolerate a restitution factor "
+            "up to 0.60; this bearing and their pockets have 0.30 to 0.40 (margin +0.20 to +0.30).",
+        ),
+        ([row("A", None, None)], "No candidate was ranked in air."),
     ],
 )
 def test_the_answer_in_short(rows, said):
-    """Who is first, with the verdict; nobody if nothing was measured."""
-    assert ranking._in_short(document(*rows)).startswith(said)
+    """Who is first, with the verdict and the margin, and what the others are; nobody if none was measured."""
+    assert ranking._in_short(document(*rows)) == said
+
+
+def test_a_ranking_fits_a_screen():
+    """Seven materials in four environments: 60 lines at most, the own environment alone, a reason once."""
+    rows = [
+        row(
+            f"Material {i}",
+            i + 1,
+            extrapolation=["too fast"],
+            verdict="UNDECIDED",
+            reason="No clear answer " * 12,
+        )
+        for i in range(7)
+    ]
+    names = ("liquid nitrogen", "air", "vacuum", "helium")
+    asked = document(*rows) | {
+        "environments": [{"name": name, "materials": rows} for name in names],
+        "title": "A bearing",
+        "warnings": ["A note."],
+    }
+    text = report("rank", asked)
+    assert len(text.splitlines()) <= 60
+    assert max(map(len, text.splitlines())) <= 96
+    assert text.index("Material 0 ranks first in air") < text.index("Air\n---")
+    assert "Liquid nitrogen\n---" not in text
+    assert " ".join(text.split()).count("No clear answer " * 12) == 1
+    for words in ("64 runs of 300 ms from each kick", "largest", "drift", "pocket", "land", "Note: A note."):
+        assert words in text
+
+
+def test_quiet_leaves_the_table():
+    """The bearing's own environment and nothing else: no notes, no evidence."""
+    asked = document(row("A", 1)) | {"title": "A bearing", "warnings": ["A note."]}
+    text = report("rank", asked, quiet=True)
+    assert text.startswith("Air\n---")
+    assert len(text.splitlines()) == 6
+    assert "A note" not in text
+
+
+def test_a_candidate_that_was_not_finished_is_a_row():
+    """After an interrupt: the word in place of a verdict, no evidence, no failure."""
+    left = dict.fromkeys(set(row("A", 1)) - {"name", "friction", "extrapolation"})
+    cut = [{**left, "name": "A", "friction": 0.1, "extrapolation": [], "reason": "interrupted"}]
+    text = report("rank", document(*cut) | {"title": "A bearing", "warnings": []})
+    assert "not finished" in text
+    assert "none: no verdict was finished" in text
 
 
 def test_check_does_not_promise_figures():

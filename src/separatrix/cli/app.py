@@ -28,7 +28,7 @@ ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
 OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
 Out = Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bar.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no notes: the answer alone.")]
 Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only what fits a screen.")]
 
 

@@ -220,4 +220,5 @@ def in_words(seconds: Second) -> str:
     """Return a time as it is said: 40 s, 3 min, 1.5 h."""
     if seconds < 99.5:
         return f"{float(f'{seconds:.2g}'):g} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+    minutes = float(f"{seconds / 60.0:.2g}")
+    return f"{minutes:g} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

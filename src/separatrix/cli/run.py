@@ -99,13 +99,13 @@ def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options:
     from separatrix.report import report, whereabouts
 
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
-    answer(text if options.json else report(verb.name, document, full=options.full))
+    answer(text if options.json else report(verb.name, document, full=options.full, quiet=options.quiet))
     if folder is None:
         return
     texts = {".json": text, ".txt": report(verb.name, document, full=True)}
     with staged(folder) as stage:
         _write_files(verb, document, stage, texts, quiet=options.quiet)
-    if not options.json:
+    if not options.json and not options.quiet:
         answer("\n" + whereabouts(verb.name, document, str(folder)))
 
 

@@ -93,6 +93,7 @@ VERBS: tuple[Verb, ...] = (
         help="Rank the cage materials: verdict, margin, reason.",
         compute=answers.rank,
         has_workbook=True,
+        has_more=True,
         needs=("cage", "ranking"),
     ),
     Verb(

@@ -329,7 +329,7 @@ def _row(
         verdict=judgement.verdict.name,
         cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.label,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
-        reason=reason(friction.mean, threshold, eta, judgement),
+        reason=reason(threshold, judgement),
         pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
         **{name: getattr(judgement, name) for name in EVIDENCE},
     )

@@ -19,16 +19,11 @@ def not_measured(environment: str) -> str:
     return f"not measured in {environment}" if environment else "not measured in any environment"
 
 
-def reason(friction: Ratio, threshold: RestitutionThreshold, eta: Ratio, judgement: Judgement) -> str:
-    """Return friction, threshold, margin and verdict in words, and the paper's word where it differs."""
-    need = {0.0: "is stable at no restitution factor above 0", 1.0: "is stable at any restitution factor"}
-    between = f"{threshold.value:.2f} ({threshold.low:.2f} to {threshold.high:.2f})"
-    allowed = need.get(threshold.value, f"needs a restitution factor below {between}")
-    margin = threshold.value - eta
-    side = f", {abs(margin):.2f} {'below' if margin >= 0 else 'above'} that"
-    film = f"this bearing has eta = {eta:.2f}{'' if threshold.value in need else side}"
-    first = f"With a friction of {friction:.3g} it {allowed}; {film}."
-    return " ".join((first, judgement.reason, disagreement(threshold.value, judgement.verdict))).rstrip()
+def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
+    """Return what decides a verdict in words; friction, threshold and margin stand beside it as numbers."""
+    ends = {0.0: "Stable at no restitution factor above 0.", 1.0: "Stable at any restitution factor."}
+    other = disagreement(threshold.value, judgement.verdict)
+    return " ".join(part for part in (ends.get(threshold.value), judgement.reason, other) if part)
 
 
 def disagreement(threshold: Ratio, verdict: Verdict) -> str:
@@ -39,7 +34,7 @@ def disagreement(threshold: Ratio, verdict: Verdict) -> str:
     """
     inapt = threshold < SOLID_LUBRICATION_LIMIT
     if inapt and verdict is Verdict.STABLE:
-        return "The paper would call it inapt."
+        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be rejected."
     if not inapt and verdict is Verdict.UNSTABLE:
-        return "The paper would keep it."
+        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be kept."
     return ""

@@ -8,12 +8,14 @@ from typing import Any
 from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.map import stability_map
-from separatrix.report.ranking import rank
+from separatrix.report.ranking import every_environment, only_table, rank
 from separatrix.report.sensitivity import sensitivity
 from separatrix.report.study import at_their_means, check, every_input
 from separatrix.report.tables import heading, paragraph
 
-REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
+Parts = Callable[[Mapping[str, Any]], list[str]]
+
+REPORTS: Mapping[str, Parts] = {
     "check": check,
     "bearing": bearing,
     "traction": traction,
@@ -25,14 +27,20 @@ REPORTS: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
     "sensitivity": sensitivity,
 }
 
-FULL: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {"check": every_input}
+FULL: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
+    "check": every_input,
+    "rank": every_environment,
+}
 """Of verbs whose answer has more than a screen takes: all of it."""
+
+QUIET: Mapping[str, Parts] = {"rank": only_table}
+"""Of verbs whose answer can be put shorter: what `--quiet` leaves."""
 
 DRAWS = ("check", "sensitivity")
 """Verbs that show uncertain inputs as what they are."""
 
 
-def report(verb: str, document: Mapping[str, Any], *, full: bool = False) -> str:
+def report(verb: str, document: Mapping[str, Any], *, full: bool = False, quiet: bool = False) -> str:
     """Return the answer as text, ASCII but for what the study says.
 
     Parameters
@@ -43,7 +51,11 @@ def report(verb: str, document: Mapping[str, Any], *, full: bool = False) -> str
         What `results.document` returns.
     full : bool
         Everything, where the answer has more than a screen takes.
+    quiet : bool
+        The answer alone, without notes, where it can be put so.
     """
+    if quiet and not full and verb in QUIET:
+        return "\n\n".join(QUIET[verb](document)) + "\n"
     parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
     blocks = [heading(document["title"]), *parts(document)]
     notes = [*_means(verb, document), *document["warnings"]]

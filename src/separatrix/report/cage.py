@@ -248,6 +248,11 @@ def rubbing_facts(found: Document) -> list[tuple[str, str]]:
     return [("Rubbing on the land", f"{quantity(force, 'N')} at {quantity(speed, 'm/s')}{heat}")]
 
 
+def motion_words(motion: str | None) -> str:
+    """Return a class of motion as it is printed."""
+    return motion or "unresolved"
+
+
 def growth_text(found: Document) -> str:
     """Return the growth rate with its interval."""
     rate = f"{significant(found['growth_rate'], 3)} 1/s"

@@ -1,4 +1,4 @@
-"""Text of a ranking: the answer with its evidence first, then what it holds for and each environment."""
+"""Text of a ranking: the answer for the bearing's own environment, and all of it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.report.cage import chain_facts, ensemble_facts, judgement_facts, study_facts
+from separatrix.report.cage import (
+    chain_facts,
+    ensemble_facts,
+    judgement_facts,
+    motion_words,
+    study_facts,
+)
 from separatrix.report.tables import ABSENT, facts, number, paragraph, quantity, section, significant, table
 
 Document = Mapping[str, Any]
@@ -36,23 +42,98 @@ DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
 
 
 def rank(document: Document) -> list[str]:
-    """Verdict, margin, rank, evidence and reason of each candidate, overall and in each environment."""
-    overall = document["overall"]
+    """The answer for the bearing's own environment, on a screen; `every_environment` has the rest."""
+    rows = headline(document)
     return [
-        section(
-            "Overall: mean friction over the measured environments",
-            _table(overall),
-            LEGEND,
-            *footnotes(overall),
-            *_gaps(document),
-        ),
-        section(f"Evidence, overall: {_ensemble(document)}", _evidence(overall), EVIDENCE_LEGEND),
-        section("Reasons, overall", *_reasons(overall)),
-        *_first(overall),
-        section("What the verdicts hold for", facts(_holds_for(document))),
-        *(_environment(document, one) for one in document["environments"]),
-        paragraph(_in_short(document), first="In short: ", indent="          "),
+        paragraph(_in_short(document), indent=""),
+        section(_title(document["environment"]), _table(rows), *_notes(rows)),
+        section(f"Evidence: {_ensemble(document)}", _short_evidence(rows), *_undecided(rows)),
+        paragraph(_elsewhere(document), indent=""),
     ]
+
+
+def headline(document: Document) -> Sequence[Document]:
+    """Return the rows of the bearing's own environment."""
+    return next(
+        one["materials"] for one in document["environments"] if one["name"] == document["environment"]
+    )
+
+
+def only_table(document: Document) -> list[str]:
+    """The table of the bearing's own environment, for `--quiet`."""
+    return [section(_title(document["environment"]), _table(headline(document)))]
+
+
+def every_environment(document: Document) -> list[str]:
+    """Verdict, margin, rank, evidence and reason of each candidate in each environment, then overall."""
+    own, overall = document["environment"], document["overall"]
+    ordered = sorted(document["environments"], key=lambda one: bool(one["name"] != own))
+    several = len(ordered) > 1
+    return [
+        paragraph(_in_short(document), indent=""),
+        *(_environment(document, one) for one in ordered[:1]),
+        paragraph(LEGEND),
+        paragraph(EVIDENCE_LEGEND),
+        *_first(ordered[0]["materials"]),
+        section("What the verdicts hold for", facts(_holds_for(document))),
+        *(_environment(document, one) for one in ordered[1:]),
+        *([_overall(document, overall)] if several else []),
+    ]
+
+
+def _overall(document: Document, overall: Sequence[Document]) -> str:
+    """Return the table of mean frictions, which belongs to no environment."""
+    title = "Overall: mean friction over the measured environments"
+    parts = (*footnotes(overall), *_gaps(document), "", _evidence(overall), "", *_reasons(overall))
+    return section(title, _table(overall), *parts)
+
+
+def _notes(rows: Sequence[Document]) -> list[str]:
+    """Return what the columns are, and what holds for the whole table."""
+    return ["", paragraph(LEGEND), *footnotes(rows), *lowest(rows)]
+
+
+SHORT_EVIDENCE = (
+    *("material", "motion", "largest\noffset", "drift\n1/s", "force at a\npocket", "force on\nthe land"),
+)
+
+
+def _short_evidence(rows: Sequence[Document]) -> str:
+    """Return motion, largest offset, drift and forces of every candidate that has a verdict."""
+    known = [row for row in rows if row["verdict"] is not None]
+    if not known:
+        return "  none: no verdict was finished"
+    cells = [
+        [
+            row["name"],
+            motion_words(row["cage_motion"]),
+            quantity(float(f"{row['largest_offset']:.3g}"), "m"),
+            significant(row["drift_rate"], 2),
+            *(quantity(float(f"{row[f'largest_{at}_force']:.3g}"), "N") for at in ("contact", "land")),
+        ]
+        for row in known
+    ]
+    return table(SHORT_EVIDENCE, cells, left=2)
+
+
+def _undecided(rows: Sequence[Document]) -> list[str]:
+    """Return why candidates are undecided; one reason of several is printed once."""
+    open_rows = [row for row in rows if row["verdict"] == "UNDECIDED"]
+    return ["", *_reasons(open_rows)] if open_rows else []
+
+
+def _elsewhere(document: Document) -> str:
+    """Return which other answers there are, and who leads in them."""
+    others = [one for one in document["environments"] if one["name"] != document["environment"]]
+    more = "`--full` prints all evidence and all reasons"
+    if not others:
+        return f"{more}."
+    leads = [f"{one['name']}: {', '.join(_first_names(one['materials'])) or 'none'}" for one in others]
+    return f"First elsewhere: {'; '.join(leads)}. {more}, for every environment."
+
+
+def _first_names(rows: Sequence[Document]) -> list[str]:
+    return [row["name"] for row in rows if row["rank"] == 1]
 
 
 def _environment(document: Document, one: Document) -> str:
@@ -66,18 +147,18 @@ def _environment(document: Document, one: Document) -> str:
 def _first(rows: Sequence[Document]) -> list[str]:
     """Return all the evidence of the candidate at the top; nothing if it has no verdict."""
     return [
-        section(f"{row['name']}, overall, in detail", facts(judgement_facts(row)))
+        section(f"{row['name']} in detail", facts(judgement_facts(row)))
         for row in rows[:1]
         if row["verdict"] is not None
     ]
 
 
-LEGEND = "\n" + paragraph(
-    "rank: by threshold; = marks a tie within the scatter. threshold: largest restitution factor eta at "
+LEGEND = (
+    "rank: by margin; = marks a tie within the scatter. threshold: largest restitution factor eta at "
     "which the cage is stable. margin: threshold less the eta of this bearing and film. P(stable): share of "
     "the runs in which the motion dies, over all kicks."
 )
-EVIDENCE_LEGEND = "\n" + paragraph(
+EVIDENCE_LEGEND = (
     "motion: what the cage centre does at the end, from the worst kick. growth rate: of the amplitude, mean "
     "over the runs of the kick where it is largest. offset of the cage centre, force at a pocket and at the "
     "land: largest in any run. drift: median growth of the mean offset in the runs that do not grow. whirl: "
@@ -133,7 +214,7 @@ def footnotes(rows: Sequence[Document]) -> list[str]:
         sentence + ("" if len(names) == measured else f" ({', '.join(names)})")
         for sentence, names in who.items()
     ]
-    text = f"not tested as the pocket rubs: {'. '.join(said)}."
+    text = f"extrapolated beyond the tests: {'. '.join(said)}."
     return ["", paragraph(text, first=f"  {MARK} ", indent="    ")] if said else []
 
 
@@ -181,7 +262,7 @@ def _evidence_row(row: Document) -> list[str]:
     if whirl is None:
         return [ABSENT] * (len(EVIDENCE_HEADERS) - 1)
     return [
-        row["cage_motion"],
+        motion_words(row["cage_motion"]),
         number(row["restitution_factor"], 2),
         _growth(row),
         number(1e3 * row["largest_offset"]),
@@ -252,11 +333,48 @@ def _disagreement(document: Document) -> list[tuple[str, str]]:
 
 
 def _in_short(document: Document) -> str:
-    """Return the answer in a sentence: who is first overall, with its verdict."""
-    first = [row for row in document["overall"] if row["rank"] == 1]
+    """Return the answer in three sentences: who is first here, with what margin, and what the others are."""
+    rows, place = headline(document), document["environment"]
+    first = [row for row in rows if row["rank"] == 1]
     if not first:
-        return "no candidate was ranked."
-    names = " and ".join(row["name"] for row in first)
-    names += " are tied first" if len(first) > 1 else " is first"
+        return f"No candidate was ranked in {place}."
+    return " ".join((_lead(first, place), _margin_words(first), *_rest(rows)))
+
+
+def _lead(first: Sequence[Document], place: str) -> str:
     verdicts = ", ".join(dict.fromkeys(row["verdict"] or "not finished" for row in first))
-    return f"{names} overall: {verdicts}, with a margin of {first[0]['margin']:+.2f} to this bearing's eta."
+    if len(first) == 1:
+        return f"{first[0]['name']} ranks first in {place}: {verdicts}."
+    names = ", ".join(row["name"] for row in first)
+    return f"{len(first)} materials tie for first in {place} ({names}): {verdicts}."
+
+
+def _margin_words(first: Sequence[Document]) -> str:
+    """Return threshold, eta and margin; their ranges where several tie."""
+    etas = [row["restitution_factor"] for row in first]
+    limits = [row["restitution_threshold"] for row in first]
+    margins = [row["margin"] for row in first]
+    it, has = ("It tolerates", "has") if len(first) == 1 else ("They tolerate", "have")
+    pocket = "this bearing with its pocket" if len(first) == 1 else "this bearing and their pockets"
+    return (
+        f"{it} a restitution factor up to {_span(limits)}; {pocket} {has} {_span(etas)} "
+        f"(margin {_span(margins, signed=True)})."
+    )
+
+
+def _span(values: Sequence[float], *, signed: bool = False) -> str:
+    """Return one number, or the least and the largest of several."""
+    form = "{:+.2f}" if signed else "{:.2f}"
+    ends = dict.fromkeys(form.format(value + 0.0) for value in (min(values), max(values)))
+    return " to ".join(ends)
+
+
+def _rest(rows: Sequence[Document]) -> list[str]:
+    """Return the verdicts of those that are not first, each with its names; nothing if there is none."""
+    names: dict[str, list[str]] = {}
+    for row in rows:
+        if row["rank"] != 1:
+            word = row["verdict"] or ("not measured" if row["friction"] is None else "not finished")
+            names.setdefault(word, []).append(row["name"])
+    each = [f"{word} {', '.join(who)}" for word, who in names.items()]
+    return [f"The others: {'; '.join(each)}."] if each else []
