@@ -279,13 +279,14 @@ def simulate(
 
 def rank(study: Study, work: Work) -> RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
-    from separatrix.cage_choice import reference_candidate, reference_friction
+    from separatrix.cage_choice import reference_candidate, reference_friction, required_environment
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_ranking
     from separatrix.ranking import rank, ranking_question
     from separatrix.ranking.friction import cage_seen
 
     question = ranking_question(study)
+    required_environment(study, question)
     seen = cage_seen(study, marked=True)
     own = reference_candidate(study, question)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, question))

@@ -1,4 +1,4 @@
-"""Contact forces of one run: pocket by pocket, the largest and the land's, and who takes the blows."""
+"""Contact forces of one run: pocket by pocket, the largest and the land's, and who takes the impacts."""
 
 from __future__ import annotations
 
@@ -23,6 +23,10 @@ TURNS, FEWEST = 6.0, 40
 """Turns of the whirl, and least samples, in the close view."""
 
 
+BEFORE = 0.15
+"""Share of the close view that lies before the largest force at least."""
+
+
 def forces(data: xr.Dataset) -> Figure:
     """Contact forces pocket by pocket and at the land, and how often each pocket touches."""
     figure, axes = canvas(PAGE, 5.8, nrows=3, ncols=2, height_ratios=[2.0, 1.3, 1.3], width_ratios=[2.2, 1.0])
@@ -38,7 +42,8 @@ def forces(data: xr.Dataset) -> Figure:
     draw_force(axes[1, 0], data)
     time_axis(axes[1, 0], data)
     draw_force(axes[1, 1], near)
-    axes[1, 1].set(xlabel="time [ms]", ylabel="", xlim=_ends(near), ylim=axes[1, 0].get_ylim())
+    axes[1, 1].set(xlabel="time [ms]", ylabel="", xlim=view_ends(near), ylim=axes[1, 0].get_ylim())
+    axes[0, 1].set_xlim(view_ends(near))
     axes[1, 0].set_title("c  Largest forces")
     axes[1, 0].legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2, handlelength=1.4)
     axes[1, 1].set_title("d  The same")
@@ -58,7 +63,17 @@ def close_view(data: xr.Dataset) -> xr.Dataset:
     first = int(np.searchsorted(time, time[middle] - 0.5 * span))
     last = int(np.searchsorted(time, time[middle] + 0.5 * span))
     first = max(0, min(first, middle - FEWEST // 2))
-    return data.isel(time=slice(first, max(last, first + FEWEST)))
+    return data.isel(time=slice(first, max(last, middle + FEWEST // 2)))
+
+
+def view_ends(near: xr.Dataset) -> tuple[float, float]:
+    """Return both ends of the axis of a close view [ms], with time before the largest force.
+
+    Where the kick itself throws the cage into a pocket, that is time before the start of the run.
+    """
+    first, last = _ends(near)
+    peak = float(milliseconds(near)[int(largest_force(near).argmax())])
+    return min(first, peak - BEFORE * (last - first)), last
 
 
 def _ends(data: xr.Dataset) -> tuple[float, float]:

@@ -112,11 +112,13 @@ def _explained(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> N
     named = [
         (
             Line2D([], [], color=VERMILION, **arrow),
-            f"a pocket's force on the cage, up to {format_number(pocket, 3)} N",
+            f"force of a pocket on the cage, up to {format_number(pocket, 3)} N",
         )
     ]
     if np.isfinite(at.gap):
-        named.append((Line2D([], [], color=BLACK, **arrow), f"the land's, up to {format_number(land, 3)} N"))
+        named.append(
+            (Line2D([], [], color=BLACK, **arrow), f"force of the land, up to {format_number(land, 3)} N")
+        )
         named.append((Line2D([], [], color=GREY, lw=1.6), "land"))
     figure.legend(
         *zip(*named, strict=True),
@@ -137,19 +139,17 @@ def _notes(data: xr.Dataset, at: Scene, moments: Array) -> str:
     spans = " and ".join(f"{first:.3g} to {last:.4g} ms" for first, last in parts)
     lines = [
         *to_scale(at.enlarged),
-        "Arrows as long as the root of the force.",
-        "Standing still in space." if at.frame.any() else "The picture turns with the ball set.",
-        "Time runs ever faster." if simulation.is_logarithmic(data) else f"Shown: {spans}, {pace}.",
+        "Arrow length: square root of force.",
+        "Fixed frame." if at.frame.any() else "Frame of the ball set.",
+        "Logarithmic time." if simulation.is_logarithmic(data) else f"Shown: {spans}, {pace}.",
     ]
     return "\n".join(lines)
 
 
 def to_scale(enlarged: float) -> tuple[str, str]:
     """Return how many times too large movements are drawn, in two lines."""
-    if enlarged == 1.0:
-        return "Offset, lead and play to scale; so are dents,", "where cage and ball or land overlap."
-    times = f"{format_number(enlarged, 2)} times too large"
-    return f"Offset, lead and play {times}; so are", "dents, where cage and ball or land overlap."
+    times = "to scale" if enlarged == 1.0 else f"enlarged {format_number(enlarged, 2)} times"
+    return f"Displacements and clearances {times};", "overlaps are contact deformation."
 
 
 class _Clock:

@@ -24,11 +24,16 @@ SPACE = 1.5
 HALF = 0.5 - 1e-6
 """Level of the contour: no share equals it, which would make the contour cross itself."""
 
-COLOURS = ListedColormap(colormaps["cividis_r"](np.linspace(0.0, 0.92, 256)), "growth")
-"""Even for the eye, for the colour-blind and in grey: light where motion dies, dark where it grows."""
+COLOURS = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, 256)), "growth")
+"""Even for the eye, for the colour-blind and in grey: dark blue where the cage is stable, bright yellow, as a
+warning, where it is not."""
 
 NAMES = {"restitution_factor": ETA_LABEL, "ball_cage_friction": FRICTION_LABEL}
 """Parameters that go by a symbol."""
+
+
+UNDECIDED = "undecided: the runs, or their drift, allow no verdict"
+"""Hatched in the picture: a verdict asks for more than the share that the colour shows."""
 
 
 def map(data: xr.Dataset) -> Figure:
@@ -37,7 +42,9 @@ def map(data: xr.Dataset) -> Figure:
     edges = [cell_edges(axis_values(data, name)) for name in "xy"]
     mesh = _cells(axes, data, edges)
     undecided = table(data, "decision").astype(str) == "UNDECIDED"
-    _hatched(axes, edges, undecided, facecolors="none", edgecolors=BLACK, hatch="////", label="undecided")
+    _hatched(axes, edges, undecided, facecolors="none", edgecolors="white", hatch="////")
+    if undecided.any():
+        axes.fill_between([], [], fc=COLOURS(0.5), ec="white", hatch="////", lw=0.0, label=UNDECIDED)
     for name in "xy":
         _axis(axes, data, name)
     axes.set(xlim=ends(axis_values(data, "x"), edges[0]), ylim=ends(axis_values(data, "y"), edges[1]))
@@ -110,14 +117,20 @@ def _axis(axes: Axes, data: xr.Dataset, name: str) -> None:
     """Name an axis with its unit; logarithmic where its values are in proportion."""
     symbol = shown_unit(data, name)[1].replace("um", "\N{MICRO SIGN}m")
     of = parameter(data, name)
-    words = of.replace(".", ": ").replace("_", " ")
-    axes.set(**{f"{name}label": NAMES.get(of, f"{words} [{symbol}]")})
+    axes.set(**{f"{name}label": NAMES.get(of, f"{parameter_words(of)} [{symbol}]")})
     if is_proportional(axis_values(data, name)):
         axes.set(**{f"{name}scale": "log"})
         which: Any = getattr(axes, f"{name}axis")
         which.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         which.set_major_formatter("{x:g}")
         which.set_minor_formatter("")
+
+
+def parameter_words(name: str) -> str:
+    """Return a key of a study as a label; the section is left out where the key names it already."""
+    section, _, key = name.rpartition(".")
+    words = key.replace("_", " ")
+    return words if not section or section in words or key == "race_friction" else f"{section} {words}"
 
 
 def table(data: xr.Dataset, name: str) -> Any:

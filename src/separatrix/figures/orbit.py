@@ -126,9 +126,9 @@ def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset, legend: bool =
     first = last_turns(path)
     if first:
         axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
-    label = "path" if not first else f"its last {LAST} turns"
-    axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label)
     _boundaries(axes, data)
+    label = "path" if not first else f"last {LAST} orbits"
+    axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label, zorder=3)
     axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
     axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end")
     if legend:
@@ -151,15 +151,20 @@ def largest_play(data: xr.Dataset) -> float | None:
 
 
 def _boundaries(axes: Axes, data: xr.Dataset) -> None:
-    """Draw where the first pocket and where the land touches, if there are such places."""
+    """Draw where the first pocket and where the land touches, if there are such places.
+
+    They lie below the path, the land wide and light, so that neither hides the other or a path along it.
+    """
     pockets, land = pocket_boundary(pocket_angles(data), half_plays(data)), land_boundary(data)
-    known: list[tuple[Array, str, Any, str]] = []
-    known += [] if largest_play(data) is None else [(pockets, BLACK, "-", "a pocket touches")]
-    known += [] if land is None else [(land, VERMILION, (0, (4, 1.5)), "the land touches")]
-    for radius, colour, style, label in known:
+    known: list[tuple[Array, dict[str, Any], str]] = []
+    if land is not None:
+        known.append((land, {"color": VERMILION, "lw": 3.5, "alpha": 0.45}, "land clearance"))
+    if largest_play(data) is not None:
+        known.append((pockets, {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5))}, "pocket clearance"))
+    for radius, look, label in known:
         if radius.max() > 0.0:
             outline = ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND)
-            axes.plot(*outline.T, color=colour, lw=0.9, ls=style, label=label)
+            axes.plot(*outline.T, **look, label=label, zorder=1.5)
 
 
 def ring(radius: Array | float, angle: Array) -> Array:

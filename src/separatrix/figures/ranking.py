@@ -48,20 +48,12 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     frame(axes, data, top)
     chain_lines(axes, data)
     mark_here(axes, data)
-    _paper_line(axes, data)
     for i in range(measured.sizes["material"]):
         _candidate(axes, measured.isel(material=i))
     _names(axes, data, top)
     _title(axes, data)
     _legend(figure, axes, data)
     return figure
-
-
-def _paper_line(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the least restitution factor that the paper grants solid lubrication."""
-    limit = float(data["solid_lubrication_limit"])
-    label = rf"$\eta$ = {limit:g}: solid lubrication gets no lower, says the paper"
-    axes.axvline(limit, color=GREY, lw=1.0, ls="-.", label=label)
 
 
 def _title(axes: Axes, data: xr.Dataset) -> None:
@@ -139,14 +131,13 @@ def untested(axes: Axes, sentences: xr.DataArray) -> None:
         axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
 
 
-ABSENT_AT, VERDICT_AT, RIGHT = 1.06, 1.13, 1.32
-"""Columns of the overview beyond a restitution factor of 1: crosses, verdicts, and its end."""
+ABSENT_AT, VERDICT_AT, RIGHT = 0.985, 1.05, 1.24
+"""Columns of the overview: crosses, inside the axis at its end; verdicts beyond it; and its end."""
 
 
 def overview(data: xr.Dataset) -> Figure:
     """Restitution threshold of every candidate, overall and in each environment; best at the top."""
-    order = np.argsort(np.nan_to_num(data["overall_restitution_threshold"].values, nan=-1.0), kind="stable")
-    data = data.isel(material=order)
+    data = data.isel(material=text_order(data)[::-1])
     places = np.arange(float(data.sizes["material"]))
     figure, axes = canvas(PAGE, 1.7 + 0.32 * places.size)
     axes.set(xlim=(-0.012, RIGHT), ylim=(-0.6, places.size - 0.4), xticks=np.linspace(0, 1, 6))
@@ -160,12 +151,28 @@ def overview(data: xr.Dataset) -> Figure:
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
     chain_lines(axes, data)
-    _paper_line(axes, data)
     _rows(axes, data, places)
     untested(axes, data["overall_extrapolation"])
     axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure
+
+
+def text_order(data: xr.Dataset) -> list[int]:
+    """Return the places of the materials as the text lists them: by rank, margin and friction."""
+
+    def known(key: str, place: int, missing: float) -> float:
+        value = data[key].values[place]
+        return missing if value in ("", None) or not np.isfinite(float(value)) else float(value)
+
+    def key(place: int) -> tuple[float, float, float]:
+        return (
+            known("overall_rank", place, np.inf),
+            -known("overall_margin", place, 0.0),
+            known("overall_friction", place, 0.0),
+        )
+
+    return sorted(range(data.sizes["material"]), key=key)
 
 
 def _thresholds(axes: Axes, data: xr.Dataset, places: Array, marker: str, colour: str) -> None:

@@ -14,6 +14,9 @@ from separatrix.figures.orbit import draw_orbit, land_boundary, largest_play
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, PAGE, VERMILION, label_lines
 from separatrix.units import Array
 
+JUDGED = 0.2
+"""Last share of a run, in which it is judged where the motion ends."""
+
 SPRINGS = ("spring_energy", "land_energy")
 WIDE = 30.0
 """Ratio of the largest to the smallest energy beyond which its axis is logarithmic."""
@@ -27,10 +30,12 @@ def run(data: xr.Dataset) -> Figure:
     draw_orbit(rows[0][0], data)
     rows[0][0].set_title("a  Orbit of the cage centre, turning frame")
     draw_energy(rows[0][1], data)
-    rows[0][1].set_title("b  Energy of the cage and its springs")
+    rows[0][1].set_title("b  Energy of the cage and its springs; shaded: judged part")
     _offset(rows[1][0], data)
+    for panel in (rows[0][1], rows[1][0], rows[1][1]):
+        mark_judged(panel, data)
     draw_work(rows[1][1], data)
-    rows[1][1].set_title(f"d  Work since the start; ledger open by {ledger_gap(data):.0e}")
+    rows[1][1].set_title(f"d  Work since the start (energy balance closes to {ledger_gap(data):.0e})")
     spectrum.draw_spectrum(rows[2][0], data)
     rows[2][0].set_title(f"e  Whirl spectrum{spectrum.in_words(data)}")
     spectrum.draw_against_time(rows[2][1], data)
@@ -54,6 +59,12 @@ def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
     last = max((float(time[-1]) for time in times), default=0.0)
     first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
     return first, last if last > first else first + 1.0
+
+
+def mark_judged(axes: Axes, data: xr.Dataset) -> None:
+    """Shade the last part of a run, by which it is judged."""
+    last = float(milliseconds(data)[-1])
+    axes.axvspan((1.0 - JUDGED) * last, last, color=GREY, alpha=0.15, lw=0, zorder=0)
 
 
 def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
@@ -153,16 +164,17 @@ def draw_work(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _offset(axes: Axes, data: xr.Dataset) -> None:
-    """Draw how far the centre is from the axis, with the pocket play and the land."""
+    """Draw how far the centre is from the axis, with the clearances of pockets and land below it."""
     play = largest_play(data)
-    limit = [] if play is None else [(play, BLACK, "half play")]
+    limit: list[tuple[float, str, str]] = [] if play is None else [(play, BLACK, "pockets")]
     land = land_boundary(data)
     if land is not None:
-        limit.append((land.max(), VERMILION, "land"))
-    axes.plot(milliseconds(data), 1e3 * np.hypot(*data["position"].values.T), color=BLUE, lw=0.8)
+        limit.append((float(land.max()), VERMILION, "land"))
     for radius, colour, _ in limit:
-        axes.axhline(1e3 * radius, color=colour, lw=0.9, ls="-" if colour == BLACK else (0, (4, 1.5)))
-    axes.set(ylabel="offset of the centre [mm]", title="c  Distance of the centre from the axis")
+        wide = {"lw": 3.5, "alpha": 0.45} if colour == VERMILION else {"lw": 0.8, "ls": (0, (4, 1.5))}
+        axes.axhline(1e3 * radius, color=colour, zorder=1.5, **wide)
+    axes.plot(milliseconds(data), 1e3 * np.hypot(*data["position"].values.T), color=BLUE, lw=0.8, zorder=3)
+    axes.set(ylabel="offset of the centre [mm]", title="c  Offset of the centre from the axis")
     axes.set_ylim(0.0, 1.08 * max(axes.get_ylim()[1], 1e-6))
     time_axis(axes, data)
     label_lines(axes, [(axes.get_xlim()[1], 1e3 * r, name, colour) for r, colour, name in limit], gap=0.085)

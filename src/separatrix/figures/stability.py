@@ -25,7 +25,7 @@ from separatrix.figures.style import (
 from separatrix.units import Array
 
 HIGHEST = 0.5
-"""Friction at the top of the picture: above it no cage material is of interest."""
+"""Friction at the top of a picture without any curve: above it no cage material is of interest."""
 
 ETA_LABEL = r"restitution factor $\eta$ [-]"
 FRICTION_LABEL = r"ball/cage friction $f_{BC}$ [-]"
@@ -54,14 +54,20 @@ def stability(data: xr.Dataset) -> Figure:
 
 
 def highest(data: xr.Dataset, *, candidates: bool = False) -> float:
-    """Friction at the top of the picture: the band, and the candidates if they are drawn, up to a limit."""
-    names = ["critical_friction_high", "scatter_high", "here_critical_friction_high"]
-    names += ["material_friction"] if candidates else []
+    """Friction at the top of the picture: every curve and mark in it lies below."""
+    names = [*DRAWN, *(["material_friction"] if candidates else [])]
     found = np.concatenate(
         [[0.0], *(data[name].values.ravel().astype(float) for name in names if name in data)]
     )
-    top = 1.25 * float(np.nanmax(found))
-    return min(HIGHEST, top) if top > 0.0 else HIGHEST
+    top = float(np.nanmax(found))
+    return 1.12 * top if top > 0.0 else HIGHEST
+
+
+DRAWN = (
+    *("critical_friction", "scatter_high", "critical_friction_high", "kick_critical_friction"),
+    *("here_critical_friction", "here_scatter_high", "here_critical_friction_high"),
+)
+"""Variables whose largest value is the top of the picture; the limits are drawn as far as they go."""
 
 
 def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
@@ -202,13 +208,9 @@ def chain_lines(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _ends(axes: Axes, data: xr.Dataset) -> None:
-    """Name both sides in places that the curve leaves free, and mark where it was computed."""
-    lines = np.array([float(data[name]) for name in CHAIN_LINES])
-    free = max(np.linspace(0.15, 0.6, 10), key=lambda eta: float(np.abs(lines - eta).min()))
-    look: Any = {"transform": axes.transAxes, "color": GREY, "style": "italic"}
-    plate: Any = {"fc": "white", "ec": "none", "pad": 1.0}
-    axes.text(free, 0.035, "stable", ha="center", bbox=plate, **look)
-    axes.text(0.98, 0.95, "unstable", ha="right", **look)
+    """Name both sides outside the picture, where no curve is, and mark where the curve was computed."""
+    look: Any = {"transform": axes.transAxes, "color": GREY, "style": "italic", "ha": "right", "fontsize": 7}
+    axes.text(1.0, 1.01, "above the curve: unstable; below: stable", va="bottom", **look)
     axes.vlines(data["restitution_factor"].values, 0, RUG * axes.get_ylim()[1], color=BLUE, lw=0.6)
 
 
