@@ -7,7 +7,6 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -86,6 +85,15 @@ def name_of(section: Mapping[str, Any], key: str) -> str:
     return str(record.get("name") or record.get("value") or "")
 
 
+OUTCOMES = {
+    "SETTLES": "the cage settles",
+    "WHIRLS": "the cage whirls",
+    "DRIFTS": "the cage drifts off",
+    "UNRESOLVED": "unresolved",
+}
+"""How a run ended, in words."""
+
+
 def which_run(data: xr.Dataset, study: Mapping[str, Any]) -> str:
     """Return friction, kick, number and seed of a run and how it ended; of an ensemble the seed."""
     seed = f"seed {int(data.attrs['seed'])}" if "seed" in data.attrs else ""
@@ -95,8 +103,7 @@ def which_run(data: xr.Dataset, study: Mapping[str, Any]) -> str:
     if "run" in data:
         parts.append(f"run {int(data['run'])}")
     parts += [seed] if seed else []
-    time = 1e3 * float(np.asarray(data["time"].values)[-1])
-    return f"{friction(data, study)}{', '.join(parts)}: {data['outcome'].values} after {time:.4g} ms"
+    return f"{friction(data, study)}{', '.join(parts)}: {OUTCOMES[str(data['outcome'].values)]}"
 
 
 def friction(data: xr.Dataset, study: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""The stability map: probability of growth over two parameters of a study."""
+"""The stability map: probability of whirl over two parameters of a study."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ UNDECIDED = "undecided: the runs, or their drift, allow no verdict"
 
 
 def map(data: xr.Dataset) -> Figure:
-    """Probability that motion grows, with its contour at one half, what is undecided and what was refused."""
+    """Share of the runs that whirl, with its contour at one half, what is undecided and what was refused."""
     figure, axes = canvas(PAGE, 4.7)
     edges = [cell_edges(axis_values(data, name)) for name in "xy"]
     mesh = _cells(axes, data, edges)
@@ -52,9 +52,9 @@ def map(data: xr.Dataset) -> Figure:
     _limit(axes, data)
     _here(axes, data)
     runs = f", at most {int(data['stopping_most_runs'])} runs a point" if "stopping_most_runs" in data else ""
-    axes.set_title(f"Share of the runs that grow, kick {kick_text(data)}{runs}")
+    axes.set_title(f"Share of the runs that whirl, kick {kick_text(data)}{runs}")
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
-    bar.set_label("share of the runs that grow [-]")
+    bar.set_label("share of the runs that whirl [-]")
     bar.outline.set_visible(False)
     legend_below(figure, [axes])
     return figure
@@ -200,7 +200,7 @@ def _half(axes: Axes, data: xr.Dataset) -> None:
     values = [axis_values(data, name) for name in "xy"]
     for colour, width in (("white", 3.2), (VERMILION, 1.6)):
         axes.contour(*values, share, levels=[HALF], colors=[colour], linewidths=[width])
-    axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs grow")
+    axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs whirl")
 
 
 def _limit(axes: Axes, data: xr.Dataset) -> None:

@@ -14,9 +14,6 @@ from separatrix.figures.orbit import draw_orbit, land_boundary, largest_play
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, PAGE, VERMILION, label_lines
 from separatrix.units import Array
 
-JUDGED = 0.2
-"""Last share of a run, in which it is judged where the motion ends."""
-
 SPRINGS = ("spring_energy", "land_energy")
 WIDE = 30.0
 """Ratio of the largest to the smallest energy beyond which its axis is logarithmic."""
@@ -62,9 +59,10 @@ def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
 
 
 def mark_judged(axes: Axes, data: xr.Dataset) -> None:
-    """Shade the last part of a run, by which it is judged."""
-    last = float(milliseconds(data)[-1])
-    axes.axvspan((1.0 - JUDGED) * last, last, color=GREY, alpha=0.15, lw=0, zorder=0)
+    """Shade the last part of a run, by which it is judged where the motion ends."""
+    if "judged_from" in data and float(data["judged_until"]) > float(data["judged_from"]):
+        span = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
+        axes.axvspan(*span, color=GREY, alpha=0.2, lw=0, zorder=0)
 
 
 def time_axis(axes: Axes, *runs: xr.Dataset) -> None:

@@ -74,7 +74,7 @@ def frame(axes: Axes, data: xr.Dataset, top: float) -> None:
     """Draw the curve with its band and its limits; the band reaches the edge where it has no end."""
     axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
     eta = data["restitution_factor"].values
-    label = f"half of {int(data['runs'])} runs grow, kick {float(data['middle_kick']):g} m/s"
+    label = f"half of {int(data['runs'])} runs whirl, kick {float(data['middle_kick']):g} m/s"
     axes.plot(eta, data["critical_friction"].values, color=BLUE, marker=".", ms=4, label=label)
     scatter = data["scatter_low"].values, data["scatter_high"].values
     axes.fill_between(eta, *scatter, color=BLUE, alpha=0.35, lw=0, label="its 95 % interval")
@@ -118,8 +118,8 @@ def _band(axes: Axes, eta: Array, data: xr.Dataset, top: float) -> None:
     few, most = (float(data[name]) if name in data else other for name, other in BAND.items())
     every = "every kick" if kicks.size > 1 else "that kick"
     for end, style, text in (
-        (high, "-.", rf"$f_{{high}}$: above it {100 * most:.0f} % or more grow from {every}"),
-        (low, ":", rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more die from {every}"),
+        (high, "-.", rf"$f_{{high}}$: above it {100 * most:.0f} % or more whirl from {every}"),
+        (low, ":", rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more settle from {every}"),
     ):
         axes.plot(eta, np.where(end > top, np.nan, end), color=BLUE, lw=0.8, ls=style, label=text)
 
@@ -159,7 +159,7 @@ def _other_kicks(axes: Axes, data: xr.Dataset) -> None:
     )
     for place, marker in ((int(kicks.argmin()), "v"), (int(kicks.argmax()), "^")):
         if kicks[place] != float(data["middle_kick"]):
-            label = f"half grow, kick {kicks[place]:g} m/s"
+            label = f"half whirl, kick {kicks[place]:g} m/s"
             look: Any = {"color": SKY, "marker": marker, "ms": 2.5, "lw": 0.7, "label": label}
             axes.plot(data["restitution_factor"].values, found.values[:, place], **look)
 
@@ -226,7 +226,7 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
     axes.set_xticks(range(count), marked, rotation=90, fontsize=6.5)
     axes.tick_params(axis="x", length=0)
     if untested.any():
-        label = "friction asked for where it was not tested"
+        label = "friction extrapolated"
         axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
     _own_bands(axes, data)
     friction, error = _frictions(data), _errors(data)

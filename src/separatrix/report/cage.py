@@ -80,8 +80,9 @@ def _lead_and_lag(chain: Document) -> list[tuple[str, str]]:
     if chain.get("orbital_share") is None:
         return []
     lead, play = (quantity(chain[name], "m") for name in ("lead_amplitude", "half_play"))
-    share = f"{100 * chain['orbital_share']:.4g} % of the variance of their speeds"
-    return [("Balls lead and lag by", f"{lead} if free, of {play} half play; computed with {share}")]
+    share = f"{100 * chain['orbital_share']:.4g} %"
+    words = f"up to {lead} (pockets {play} each way); the harmonics used hold {share} of the speed variance"
+    return [("Free balls lead and lag", words)]
 
 
 def restitution_text(chain: Document) -> str:
@@ -108,23 +109,24 @@ def simulate(document: Document) -> list[str]:
         section("The run", facts(_ended(document))),
         section("Centre of the cage", facts([*orbit_facts(document), room_fact(document)])),
         section("Largest forces", facts(_forces(document))),
-        section("Work on the cage, and the energy that it has at the end", facts(_energies(document))),
+        section("Work done on the cage; energy at the end", facts(_energies(document))),
         section(
             "What it holds for", facts([*study_facts(document["study"]), *chain_facts(document["chain"])])
         ),
         paragraph(
-            "One run proves nothing: two of them may differ in the class. See the verbs stability and rank.",
+            "A single run is not evidence: another seed may end differently. See stability and rank.",
             indent="",
         ),
     ]
 
 
 def _ended(document: Document) -> list[tuple[str, str]]:
-    end = f"{document['outcome']} after {quantity(document['time'][-1], 's')}."
+    span = " to ".join(quantity(document[f"judged_{end}"], "s") for end in ("from", "until"))
+    end = f"{document['outcome']}, judged from {span}."
     return [
         ("Kick, run, seed", f"{document['kick']:g} m/s, {document['run']}, {document['seed']}"),
         ("Pocket friction", friction_text(document)),
-        ("Ended", f"{end} {document['outcome_sentence']}"),
+        ("Outcome", f"{end} {document['outcome_sentence']}"),
         ("Friction power", power_text(document)),
         *rubbing_facts(document),
     ]
@@ -138,34 +140,27 @@ def friction_text(document: Document) -> str:
 
 
 def orbit_facts(document: Document) -> list[tuple[str, str]]:
-    """Return how far the centre went, and how it moved in the last fifth of the run."""
-    start = LAST * document["time"][-1]
+    """Return how far the centre went, and how it moved in the part of the run by which it is judged."""
+    start = min(document["judged_from"], document["time"][-1])
     at_end = [hypot(*g) for t, g in zip(document["time"], document["position"], strict=True) if t >= start]
     mean, spread = fmean(at_end), pstdev(at_end)
-    evenness = f"{number(spread / mean, 2)} of it (0: a circle about the axis)" if mean > 0.0 else "none"
+    evenness = f"{number(spread / mean, 2)} (0: a circle about the axis)" if mean > 0.0 else "none"
     return [
         ("Largest offset", quantity(document["largest_offset"], "m")),
-        ("Mean offset at the end", f"{quantity(mean, 'm')}, over the last fifth"),
-        ("Its spread", evenness),
+        ("Mean offset at the end", f"{quantity(mean, 'm')}, since {quantity(start, 's')}"),
+        ("Relative spread", evenness),
         ("Drift rate", drift_text(document)),
     ]
 
 
-LAST = 0.8
-
-
 def room_fact(document: Document) -> tuple[str, str]:
-    """Return what the offset is to be held against: half the play of the pockets, and the land."""
-    cage, play = (
-        document["cage"],
-        f"{quantity(document['chain']['half_play'], 'm')} of half play in the pockets",
-    )
+    """Return the clearances that the offset compares with: of the pockets, and of the land."""
+    cage = document["cage"]
+    pockets = f"pockets {quantity(document['chain']['half_play'], 'm')} each way"
     if cage["guidance"] == "ball":
-        return "Room", f"{play}, no land"
-    return (
-        "Room",
-        f"land of the {cage['guidance']} ring at {quantity(cage['land_clearance'] / 2.0, 'm')}; {play}",
-    )
+        return "Clearance", f"{pockets}; no land"
+    land = quantity(cage["land_clearance"] / 2.0, "m")
+    return "Clearance", f"{cage['guidance']} land {land} radial, {pockets}"
 
 
 def _forces(document: Document) -> list[tuple[str, str]]:
@@ -173,7 +168,7 @@ def _forces(document: Document) -> list[tuple[str, str]]:
     peaks = [max(map(abs, column)) for column in zip(*document["contact_force"], strict=True)]
     ball = max(range(len(peaks)), key=peaks.__getitem__)
     return [
-        ("Pocket", f"{quantity(document['largest_contact_force'], 'N')}, at ball {ball}"),
+        ("Pocket", f"{quantity(document['largest_contact_force'], 'N')}, pocket {ball + 1}"),
         ("Land", quantity(max(document["land_force"]), "N")),
     ]
 
@@ -265,9 +260,7 @@ def growth_text(found: Document) -> str:
 def offset_text(found: Document) -> str:
     """Return how far the centre went at most, where it was at the end, and how evenly."""
     largest, mean = (quantity(found[key], "m") for key in ("largest_offset", "mean_offset"))
-    return (
-        f"{largest} at most; {mean} at the end, with a spread of {number(found['orbit_evenness'], 2)} of it"
-    )
+    return f"{largest} at most; {mean} at the end, relative spread {number(found['orbit_evenness'], 2)}"
 
 
 def drift_text(found: Document) -> str:
@@ -291,10 +284,9 @@ def impacts_text(found: Document) -> str:
             ", all at the land" if found["land_impact_share"] else ", none at the land"
         )
     most = max(range(len(shares)), key=shares.__getitem__)
-    return (
-        f"pocket {most} takes {_percent(shares[most])} of those at pockets, an even share being "
-        f"{_percent(1.0 / len(shares))}; the land {_percent(found['land_impact_share'])} of all"
-    )
+    land = f"{_percent(found['land_impact_share'])} of all impacts are at the land"
+    even = f"even share {_percent(1.0 / len(shares))}"
+    return f"pocket {most + 1} takes {_percent(shares[most])} of the impacts at pockets ({even}); {land}"
 
 
 def whirl_text(found: Document) -> str:

@@ -29,7 +29,7 @@ def stability_map(document: Document) -> list[str]:
     blocks = [
         section("Stability map", facts(_axes(document)), "", _shares(document)),
         section(
-            "Where the motion begins to grow", table(_headers(document), _bands(document)), *_legend(document)
+            "Where the cage begins to whirl", table(_headers(document), _bands(document)), *_legend(document)
         ),
         section("What it holds for", facts(_holds_for(document))),
     ]
@@ -41,9 +41,9 @@ ROUNDING = 1e-9
 """A distance to a band below this share of the value is the rounding of its unit."""
 
 LEGEND = paragraph(
-    "between the last point of a column at which, beyond the scatter, less than half the runs grow and the "
+    "between the last point of a column at which, beyond the scatter, less than half the runs whirl and the "
     "first at which more than half do; margin: distance of the study's own value to that band, positive "
-    "where the motion dies."
+    "where the cage settles."
 )
 
 
@@ -85,7 +85,7 @@ def _shares(document: Document) -> str:
 
 
 def _headers(document: Document) -> tuple[str, ...]:
-    return (document["x"]["parameter"], "from", "to", "grows", "margin")
+    return (document["x"]["parameter"], "from", "to", "whirls", "margin")
 
 
 def _bands(document: Document) -> list[list[str]]:
@@ -129,8 +129,9 @@ def _of_one_kind(points: Sequence[Document], x: float) -> str:
     grows = any(p["probability_low"] > 0.5 for p in run)
     dies = any(p["probability_high"] < 0.5 for p in run)
     unclear = any(p["probability_low"] <= 0.5 <= p["probability_high"] for p in run)
-    word = "everywhere" if grows else "nowhere" if dies else "undecided"
-    return f"{word}, or undecided" if unclear and word != "undecided" else word
+    if unclear:
+        return "no boundary found"
+    return "everywhere" if grows and not dies else "nowhere"
 
 
 def _holds_for(document: Document) -> list[tuple[str, str]]:
@@ -158,9 +159,8 @@ def _runs(rule: Document) -> str:
         return f"{rule['most_runs']} at every point"
     wrong, other = (100 * rule[f"{name}_probability"] for name in ("wrong_side", "other_decision"))
     return (
-        f"{rule['most_runs']}, or the first {rule['agreeing_runs']} if those agree: all runs would have the "
-        f"other majority in at most {wrong:.2g} % of the draws, another decision in at most {other:.2g} %; "
-        f"fewer, too, where the others could change nothing"
+        f"up to {rule['most_runs']}, stopped after {rule['agreeing_runs']} that agree (risk of the wrong "
+        f"side {wrong:.2g} %, of another decision {other:.2g} %)"
     )
 
 
@@ -168,7 +168,7 @@ def _inference(found: Document | None) -> list[tuple[str, str]]:
     """Return how many points were not run, and how often those around them were wrong where they were."""
     if found is None or not found["points"] + found["checked"]:
         return []
-    inferred = f"{found['points']} points were not run, for those around them agree"
+    inferred = f"{found['points']} points were not run, as those around them agree"
     if not found["checked"]:
         return [("Inferred", f"{inferred}; none was checked")]
     low, high = (100 * found[f"error_{end}"] for end in ("low", "high"))

@@ -94,7 +94,8 @@ def _notes(rows: Sequence[Document]) -> list[str]:
 
 
 SHORT_EVIDENCE = (
-    *("material", "motion", "largest\noffset", "drift\n1/s", "force at a\npocket", "force on\nthe land"),
+    *("material", "motion", "stable runs by kick", "largest\noffset", "drift\n1/s"),
+    *("force at\na pocket", "force on\nthe land"),
 )
 
 
@@ -107,13 +108,14 @@ def _short_evidence(rows: Sequence[Document]) -> str:
         [
             row["name"],
             motion_words(row["cage_motion"]),
+            " ".join(str(kick["settles"]) for kick in row["by_kick"]),
             quantity(float(f"{row['largest_offset']:.3g}"), "m"),
             significant(row["drift_rate"], 2),
             *(quantity(float(f"{row[f'largest_{at}_force']:.3g}"), "N") for at in ("contact", "land")),
         ]
         for row in known
     ]
-    return table(SHORT_EVIDENCE, cells, left=2)
+    return table(SHORT_EVIDENCE, cells, left=3)
 
 
 def _undecided(rows: Sequence[Document]) -> list[str]:
@@ -156,14 +158,13 @@ def _first(rows: Sequence[Document]) -> list[str]:
 LEGEND = (
     "rank: by margin; = marks a tie within the scatter. threshold: largest restitution factor eta at "
     "which the cage is stable. margin: threshold less the eta of this bearing and film. P(stable): share of "
-    "the runs in which the motion dies, over all kicks."
+    "the runs that settle, from the worst kick."
 )
 EVIDENCE_LEGEND = (
-    "motion: what the cage centre does at the end, from the worst kick. growth rate: of the amplitude, mean "
-    "over the runs of the kick where it is largest. offset of the cage centre, force at a pocket and at the "
-    "land: largest in any run. drift: median growth of the mean offset in the runs that do not grow. whirl: "
-    "median of the runs that grow, of all if none does, seen from the balls; ratio: speed at which the "
-    "centre orbits the axis over that of the balls."
+    "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over those runs. "
+    "offset of the cage centre, force at a pocket and at the land: largest in any run. drift: median growth "
+    "of the mean offset of the runs that do not whirl. whirl: median of the runs that whirl, of all runs if "
+    "none does, seen from the balls; ratio: speed at which the centre orbits the axis over that of the balls."
 )
 
 

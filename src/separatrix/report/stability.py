@@ -18,8 +18,8 @@ HEADERS = (
     "hard\nlimit",
 )
 LEGEND = "\n" + paragraph(
-    "critical friction: half the runs grow from the reference kick; fewer below, more above. band: nine in "
-    "ten runs die from every kick below its low end, and grow from every kick above its high end. linear "
+    "critical friction: half the runs whirl from the reference kick; fewer below, more above. band: nine in "
+    "ten runs settle from every kick below its low end, and whirl from every kick above its high end. linear "
     "limit: no clearance. hard limit: walls as pockets, evenly spaced. Both for balls at rest."
 )
 
@@ -43,7 +43,7 @@ def drift_note(document: Document) -> str:
         else ""
     )
     return "\n\n" + paragraph(
-        f"This cage has no land and drifts at any friction{pace}. Below the curve a kick dies, but no "
+        f"This cage has no land and drifts at any friction{pace}. Below the curve disturbances decay, but no "
         "verdict there is STABLE."
     )
 
@@ -77,9 +77,9 @@ def _here(document: Document) -> str:
     kicks = zip(document["kicks"], here["kick_critical_friction"], strict=True)
     each = ", ".join(f"{number(friction)} from {kick:g} m/s" for kick, friction in kicks)
     lines = [
-        ("Every kick dies below", "none" if low is None else f"a friction of {number(low)}"),
-        ("Every kick grows above", "none" if high is None else f"a friction of {number(high)}"),
-        ("Half the runs grow at", each),
+        ("Every kick settles below", "none" if low is None else f"a friction of {number(low)}"),
+        ("Every kick whirls above", "none" if high is None else f"a friction of {number(high)}"),
+        ("Half the runs whirl at", each),
     ]
     title = f"Sub-critical band of this bearing, restitution factor {number(here['restitution_factor'])}"
     return section(title, facts([*lines, *([("Reason", here["reason"])] if here["reason"] else [])]))

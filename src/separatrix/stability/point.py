@@ -246,6 +246,6 @@ def _reason(ends: Sequence[tuple[Found | None, Ratio, MetrePerSecond]]) -> str |
 
 
 _REASONS = {
-    Side.ABOVE: "from {1:g} m/s a share of {0:g} of the runs grows even without pocket friction",
-    Side.BELOW: f"from {{1:g}} m/s less than {{0:g}} of the runs grow up to friction {SEARCHED_FRICTION:g}",
+    Side.ABOVE: "{0:.0%} of the runs from {1:g} m/s whirl even at zero pocket friction",
+    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl at any friction to {SEARCHED_FRICTION:g}",
 }
