@@ -21,12 +21,19 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
         "probability_high": 1.0,
         "verdict": "STABLE",
         "restitution_factor": 0.3,
-        "cage_motion": "CIRCLING",
+        "cage_motion": "ON THE LAND",
         "growth_rate": -20.41,
         "growth_rate_low": -21.0,
         "growth_rate_high": -19.96,
-        "growth_kick": 0.5,
-        "energy_growth": 1e-5,
+        "worst_kick": 0.5,
+        "by_kick": [{"kick": 0.1, "settles": 64}, {"kick": 2.0, "settles": 61}],
+        "end_energy": 2e-5,
+        "pocket_power": 3e-3,
+        "land_power": -0.03,
+        "rubbing_force": 5.2,
+        "rubbing_speed": 6.0,
+        "rubbing_power": 0.0312,
+        "longest_run": 0.6,
         "largest_offset": 5e-4,
         "mean_offset": 4.9e-4,
         "orbit_evenness": 0.02,
@@ -97,14 +104,16 @@ def test_the_mark_of_an_assumed_scatter_says_what_the_cell_shows():
 def test_the_evidence_stands_beside_each_candidate():
     """Motion, growth rate with its interval, offset in mm, drift, both forces, whirl, whirl ratio."""
     lines = ranking._evidence([row("A", 1), row("B", None, None)]).splitlines()[-2:]
-    assert " ".join(lines[0].split()) == "A CIRCLING -20.4 (-21 to -20) 0.500 0.01 275 31 1445 forward 12.99"
+    assert (
+        " ".join(lines[0].split()) == "A ON THE LAND -20.4 (-21 to -20) 0.500 0.01 275 31 1445 forward 12.99"
+    )
     assert lines[1].split() == ["B", *"--------"]
 
 
 def test_one_run_has_a_growth_rate_without_an_interval():
     """No interval, no brackets."""
     one = row("A", 1, growth_rate_low=None, growth_rate_high=None)
-    assert ranking._evidence([one]).splitlines()[-1].split()[2:4] == ["-20.4", "0.500"]
+    assert ranking._evidence([one]).splitlines()[-1].split()[4:6] == ["-20.4", "0.500"]
 
 
 def test_no_verdict_is_shown_without_its_evidence():
@@ -112,14 +121,14 @@ def test_no_verdict_is_shown_without_its_evidence():
     asked = document(row("A", 1))
     there = ranking._environment(asked, asked["environments"][0])
     assert "  Evidence: 64 runs of 300 ms from each kick, 0.1, 2 m/s" in there
-    assert there.index("verdict") < there.index("Evidence") < there.index("CIRCLING")
+    assert there.index("verdict") < there.index("Evidence") < there.index("ON THE LAND")
 
 
 def test_the_first_is_shown_in_detail_if_it_has_a_verdict():
     """All the facts of the one at the top; none of one that was not measured."""
     (text,) = ranking._first([row("A", 1), row("B", 2)])
     assert text.startswith("A in detail")
-    assert "64 from each kick, of 300 ms" in text
+    assert "64 from each kick, of up to 600 ms" in text
     assert ranking._first([row("A", None, None)]) == []
 
 

@@ -247,5 +247,5 @@ def _reason(ends: Sequence[tuple[Found | None, Ratio, MetrePerSecond]]) -> str |
 
 _REASONS = {
     Side.ABOVE: "{0:.0%} of the runs from {1:g} m/s whirl even at zero pocket friction",
-    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl at any friction to {SEARCHED_FRICTION:g}",
+    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl below friction {SEARCHED_FRICTION:g}",
 }
