@@ -11,7 +11,7 @@ MADE = 12
 """Samples of a run."""
 
 
-def run(*, count=5, samples=MADE, outcome="GROWS", guidance="outer", touching=True, play=0.6e-3, **changes):
+def run(*, count=5, samples=MADE, outcome="WHIRLS", guidance="outer", touching=True, play=0.6e-3, **changes):
     """One run of a cage of `count` pockets whose centre goes around."""
     time = np.linspace(0.0, 0.01, samples)
     around = 900.0 * time

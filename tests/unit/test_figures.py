@@ -128,7 +128,8 @@ def test_a_run_is_headed_by_study_medium_friction_kick_run_and_seed():
     assert heading(literal_texts(one)) == [
         r"A \$5 bearing",
         "liquid nitrogen, 77 K; PTFE, 500 nm",
-        "pocket friction 0.09 (Armalon in vacuum), kick 0.5 m/s, run 3, seed 7: GROWS after 10 ms",
+        "pocket friction 0.09 (Armalon in vacuum), kick 0.5 m/s, run 3, seed 7: the cage whirls "
+        "(run of 10 ms)",
     ]
     own = {"ball_cage_friction": {"value": 0.2}, "material": {"name": "bronze"}}
     assert "(bronze)" in heading(described(one, "simulate", cage=own))[2]

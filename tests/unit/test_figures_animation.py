@@ -27,7 +27,7 @@ def at(data=SMALL, **options):
     "data",
     [
         SMALL,
-        drawn.run(samples=1, outcome="DIES"),
+        drawn.run(samples=1, outcome="SETTLES"),
         drawn.run(samples=3, guidance="ball", touching=False),
         drawn.run(samples=2, count=1, guidance="inner"),
         drawn.run(samples=2, play=0.0, cage_land_out_of_round=1e-5),
@@ -162,11 +162,11 @@ def test_a_picture_says_how_many_times_too_large_movements_are():
     """Number for number, and how time runs."""
     at_all, moments = at(), np.arange(SMALL.sizes["time"])
     assert f"{at_all.enlarged:g} times too large" in frames._notes(SMALL, at_all, moments)
-    dying = drawn.run(samples=40, outcome="DIES")
+    dying = drawn.run(samples=40, outcome="SETTLES")
     assert "ever faster" in frames._notes(dying, scene.scene(dying, np.arange(40)), np.arange(40))
 
 
-@pytest.mark.parametrize("outcome", ["GROWS", "DIES"])
+@pytest.mark.parametrize("outcome", ["WHIRLS", "SETTLES"])
 def test_frames_are_few_and_run_from_start_to_end(outcome):
     """However many samples: rising, with the first and the last."""
     moments = frame_moments(drawn.run(samples=5000, outcome=outcome))

@@ -24,11 +24,11 @@ ODD = {
     "nothing touches": drawn.run(touching=False),
     "no land": drawn.run(guidance="ball"),
     "one sample": drawn.run(samples=1),
-    "one sample of a run that dies": drawn.run(samples=1, outcome="DIES"),
+    "one sample of a run that dies": drawn.run(samples=1, outcome="SETTLES"),
     "it grows at once": drawn.run(samples=2),
     "it stalls": drawn.run(samples=7, outcome="STALLED"),
     "a land only": drawn.run(play=1e-2, contact_force=(("time", "ball"), np.zeros((drawn.MADE, 5)))),
-    "it dies": drawn.run(outcome="DIES"),
+    "it dies": drawn.run(outcome="SETTLES"),
     "one ball": drawn.run(count=1),
     "no play": drawn.run(play=0.0),
     "hundred balls": drawn.run(count=100),
@@ -61,7 +61,7 @@ def test_compared_runs_have_common_scales():
     grows = drawn.run()
     far = grows.assign(position=2 * grows["position"], contact_force=3 * grows["contact_force"])
     with journal():
-        figure = comparison(drawn.run(outcome="DIES", samples=40), far, ("a", "b"))
+        figure = comparison(drawn.run(outcome="SETTLES", samples=40), far, ("a", "b"))
     left, right, *shared = figure.axes
     assert left.get_xlim() == right.get_xlim() == left.get_ylim() == right.get_ylim()
     assert [len(axes.get_legend().get_texts()) for axes in shared] == [2, 2, 2]
@@ -72,7 +72,7 @@ def test_a_long_name_is_cut_above_its_column():
     lines = headline("a very long name " * 20, drawn.run()).splitlines()
     assert len(lines) == 3
     assert lines[1].endswith("...")
-    assert lines[2] == "kick 0.5 m/s: GROWS after 10 ms"
+    assert lines[2] == "kick 0.5 m/s: the cage whirls (run of 10 ms)"
 
 
 def test_a_circle_of_few_samples_is_drawn_as_a_circle():
@@ -195,3 +195,36 @@ def test_a_source_has_one_look_everywhere():
     """No two sources share colour and dashes."""
     looks = [tuple(map(str, simulation.source_look(name).values())) for name in simulation.SOURCES]
     assert len(set(looks)) == len(looks)
+
+
+def test_the_judged_part_of_a_run_is_shaded():
+    """In energy, offset and work; nothing in a file of an earlier version, which does not say it."""
+    page = simulation.run(drawn.run(samples=40, judged_from=0.008, judged_until=0.009))
+    shaded = [patch for axes in page.axes for patch in axes.patches if patch.get_alpha() == 0.2]
+    assert [np.round(patch.get_extents().width > 0.0) for patch in shaded] == [1.0] * 3
+    assert [float(patch.get_xy()[0]) for patch in shaded] == pytest.approx([8.0] * 3)
+    page = simulation.run(drawn.run(samples=40))
+    assert not [patch for axes in page.axes for patch in axes.patches if patch.get_alpha() == 0.2]
+
+
+def test_equal_clearances_and_the_path_on_them_are_all_seen():
+    """The land wide and light, the pockets dashed on it, the path above both."""
+    data = drawn.run(samples=40, play=1e-3)
+    axes = simulation.run(data).axes[0]
+    lines = {line.get_label(): line for line in axes.lines}
+    land, pockets = lines["land clearance"], lines["pocket clearance"]
+    assert land.get_linewidth() > 3.0 * pockets.get_linewidth()
+    assert land.get_alpha() < 0.6
+    path = lines["path"]
+    assert path.get_zorder() > max(land.get_zorder(), pockets.get_zorder())
+
+
+def test_the_close_view_begins_before_the_largest_force():
+    """Also where the kick throws the cage into a pocket at once: the force stands inside the picture."""
+    data = drawn.run(samples=400)
+    data["contact_force"][:] = 0.0
+    data["contact_force"][1, 2] = 50.0
+    near = forces.close_view(data)
+    first, last = forces.view_ends(near)
+    peak = simulation.milliseconds(near)[int(forces.largest_force(near).argmax())]
+    assert (peak - first) / (last - first) > 0.1

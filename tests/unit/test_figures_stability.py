@@ -94,13 +94,48 @@ def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
     assert found[1].tolist() == pytest.approx([0.3, 1.0, NAN], nan_ok=True)
 
 
+def test_the_picture_holds_every_curve_and_every_mark():
+    """A curve from 0.51 to 0.9, its kicks, and a critical friction of 0.77: all below the top."""
+    high = np.linspace(0.9, 0.51, 4)
+    kicks = np.stack([0.8 * high, high, 1.1 * high], axis=1)
+    data = drawn.curve(
+        critical_friction=(ON, high),
+        critical_friction_low=(ON, 0.8 * high),
+        critical_friction_high=(ON, 1.05 * high),
+        scatter_low=(ON, 0.95 * high),
+        scatter_high=(ON, 1.02 * high),
+        kick_critical_friction=((ON, "kick"), kicks),
+        here_restitution_factor=0.3,
+        here_critical_friction=0.77,
+        here_scatter_low=0.75,
+        here_scatter_high=0.79,
+        here_critical_friction_low=0.7,
+        here_critical_friction_high=0.8,
+    )
+    axes = stability.stability(data).axes[0]
+    top = axes.get_ylim()[1]
+    marked = [line for line in axes.lines if line.get_marker() not in ("None", "")]
+    assert {line.get_marker() for line in marked} == {".", "v", "^", "D"}
+    assert all(float(np.max(line.get_ydata())) < top for line in marked)
+    assert top == pytest.approx(1.12 * 0.99)
+
+
 def test_the_picture_is_high_enough_for_the_candidates():
-    """Up to a limit; without any number the limit itself."""
+    """Without any number a usual friction."""
     low = drawn.curve(**drawn.candidates([[0.38, 0.2]])).isel({ON: [3]})
-    assert stability.highest(low, candidates=True) == pytest.approx(1.25 * 0.38)
-    assert stability.highest(low) == pytest.approx(1.25 * 0.045)
-    assert stability.highest(drawn.curve(**drawn.candidates([[0.9]])), candidates=True) == stability.HIGHEST
+    assert stability.highest(low, candidates=True) == pytest.approx(1.12 * 0.38)
+    assert stability.highest(low) == pytest.approx(1.12 * 0.045)
+    assert stability.highest(drawn.curve(**drawn.candidates([[0.9]])), candidates=True) > 0.9
     assert stability.highest(CURVES["no threshold"].drop_vars("scatter_high")) == stability.HIGHEST
+
+
+def test_the_warning_colour_of_a_map_is_for_the_unstable():
+    """Dark where the cage is stable, bright where it whirls, ever brighter between."""
+    red, green, blue = np.array([maps.COLOURS(share)[:3] for share in (0.0, 0.25, 0.5, 0.75, 1.0)]).T
+    brightness = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+    assert (np.diff(brightness) > 0.05).all()
+    assert brightness[0] < 0.2
+    assert brightness[-1] > 0.8
 
 
 def test_each_candidate_is_drawn_at_its_friction_in_each_environment():
@@ -118,9 +153,9 @@ def test_a_candidate_asked_for_where_it_was_not_tested_is_marked():
     data["material_extrapolation"][1, 0] = "too fast"
     _, beside = stability.stability(data).axes
     assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0 *"]
-    assert "friction asked for where it was not tested" in beside.get_legend_handles_labels()[1]
+    assert "friction extrapolated" in beside.get_legend_handles_labels()[1]
     _, beside = stability.stability(CURVES["candidates"]).axes
-    assert "friction asked for where it was not tested" not in beside.get_legend_handles_labels()[1]
+    assert "friction extrapolated" not in beside.get_legend_handles_labels()[1]
 
 
 def test_cells_are_halfway_between_values():
@@ -154,7 +189,7 @@ def test_a_length_is_shown_as_an_engineer_writes_it():
     assert maps.shown_unit(data, "x") == (1e-3, "mm")
     assert maps.axis_values(data, "x").tolist() == pytest.approx([0.1, 1.0])
     axes = maps.map(data).axes[0]
-    assert axes.get_xlabel() == "cage: pocket clearance [mm]"
+    assert axes.get_xlabel() == "cage pocket clearance [mm]"
     own = next(line for line in axes.lines if line.get_label() == "the study itself")
     assert own.get_xdata().tolist() == pytest.approx([0.5])
 

@@ -103,7 +103,9 @@ def which_run(data: xr.Dataset, study: Mapping[str, Any]) -> str:
     if "run" in data:
         parts.append(f"run {int(data['run'])}")
     parts += [seed] if seed else []
-    return f"{friction(data, study)}{', '.join(parts)}: {OUTCOMES[str(data['outcome'].values)]}"
+    word, length = str(data["outcome"].values), 1e3 * float(data["time"].values[-1])
+    end = f"{OUTCOMES.get(word, word)} (run of {length:.4g} ms)"
+    return f"{friction(data, study)}{', '.join(parts)}: {end}"
 
 
 def friction(data: xr.Dataset, study: Mapping[str, Any]) -> str:
