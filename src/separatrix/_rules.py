@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         Candidate,
         Operation,
         RankingQuestion,
-        StabilitySettings,
         Study,
     )
 
@@ -91,15 +90,6 @@ def rising(
     falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
     if falls:
         yield InputError(where, "must increase, none twice", unit.replace("-", ""), falls[0])
-
-
-def reference_among_kicks(settings: StabilitySettings) -> _check.Problems:
-    """The reference kick is one of the kicks, if there are any."""
-    reference, kicks = settings.reference_kick, settings.kicks
-    if reference is not None and kicks and reference not in kicks:
-        known = ", ".join(f"{kick:g}" for kick in kicks)
-        rule, cure = f"must be one of the kicks, {known} m/s", "Add it to kicks, or leave kicks out."
-        yield _check.problem(settings, "reference_kick", rule, cure)
 
 
 def nothing_measured(candidate: Candidate) -> _check.Problems:

@@ -277,7 +277,7 @@ class StabilitySettings:
 
     kicks: tuple[MetrePerSecond, ...] = ()
     reference_kick: MetrePerSecond | None = None
-    """The kick of critical friction and threshold: one of the kicks, or what default kicks scale with."""
+    """The kick of critical friction and threshold, and what default kicks scale with."""
 
     runs: int = 64
     duration: Second = 0.3
@@ -295,7 +295,6 @@ class StabilitySettings:
             _rules.rising(self, "restitution_factors", 0.0, 1.0, least=0, most=1000),
             _check.whole(self, "seed", 0, 2**63 - 1),
         )
-        _check.settle(_rules.reference_among_kicks(self))
 
     @property
     def middle_kick(self) -> MetrePerSecond:

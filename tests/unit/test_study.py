@@ -163,10 +163,6 @@ WRONG_RECORDS = [
         "CageDesign.land_clearance has no meaning",
     ),
     (
-        lambda: StabilitySettings(kicks=(0.1, 0.5), reference_kick=0.2),
-        "StabilitySettings.reference_kick must be one of the kicks, 0.1, 0.5 m/s; got 0.2 m/s",
-    ),
-    (
         lambda: StabilitySettings(kicks=(0.5, 0.1)),
         "StabilitySettings.kicks must increase, none twice [m/s]; got 0.1 after 0.5",
     ),

@@ -101,22 +101,21 @@ def critical_friction(
     settings = counts.settings
     eta = own_restitution_factor(cage) if restitution_factor is None else restitution_factor
     start = linear_guess(counts, restitution_factor) if guess is None else guess
+    reference, kicks = settings.middle_kick, settings.kicks
     responses = {
-        kick: Response(_look(counts, restitution_factor, kick), settings.runs) for kick in settings.kicks
+        kick: Response(_look(counts, restitution_factor, kick), settings.runs) for kick in {*kicks, reference}
     }
     most = max(1, round(MIDDLE_RUNS * settings.runs))
-    found = responses[settings.middle_kick].crossing(0.5, most, start)
+    found = responses[reference].crossing(0.5, most, start)
     if not band:
         return _point(eta, settings, found, {})
     start = found.value if isinstance(found, Crossing) else start
     few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
-    each = {kick: _crossings(response, few, start) for kick, response in responses.items()}
-    middles = {kick: three[1] for kick, three in each.items()} | {settings.middle_kick: found}
+    each = {kick: _crossings(responses[kick], few, start) for kick in kicks}
+    middles = {kick: three[1] for kick, three in each.items()} | {reference: found}
     lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
     highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
-    return _point(
-        eta, settings, found, {kick: (lows[kick], middles[kick], highs[kick]) for kick in responses}
-    )
+    return _point(eta, settings, found, {kick: (lows[kick], middles[kick], highs[kick]) for kick in kicks})
 
 
 def own_restitution_factor(cage: PlanarCage) -> Ratio:

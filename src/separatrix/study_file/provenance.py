@@ -34,7 +34,7 @@ _WITHOUT = {
     "cage.land_clearance": "not given: no land",
     "ranking.environment": "not given, and none fits the bearing",
     "stability.kicks": "default: 0.2, 1 and 4 times the reference kick",
-    "stability.reference_kick": f"default: the middle one of the kicks; without kicks {_SCALED}",
+    "stability.reference_kick": f"default: {_SCALED}",
     "stability.restitution_factors": "default: chosen where the curve bends",
     "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
 }

@@ -9,6 +9,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
+from separatrix.cage.kicks import settings_for, with_reference
 from separatrix.errors import InputError
 from separatrix.ranking import ranking_question
 from separatrix.stability import GrowthCounter
@@ -305,8 +306,9 @@ def _kind(
     cage, seed = changed_cage(study, places[0]).cage, study.stability.seed
     play = play_of(cage, names, {one.key: one.distribution for one in inputs})
     cage = cage if play is None else play.opened(cage)
-    counter = GrowthCounter(cage, study.stability, stop)
-    traced = traced_boundary(cage, study.stability, jobs=jobs, progress=stage("boundary"), counter=counter)
+    settings = with_reference(settings_for(study.stability, cage))
+    counter = GrowthCounter(cage, settings, stop)
+    traced = traced_boundary(cage, settings, jobs=jobs, progress=stage("boundary"), counter=counter)
     told = stage("surrogate")
     surrogate, error = trained(
         study, inputs, places[0], names, traced, play=play, seed=seed, jobs=jobs, progress=told, stop=stop
