@@ -210,6 +210,16 @@ def test_quiet_leaves_the_table():
     assert "A note" not in text
 
 
+def test_a_verdict_without_a_threshold_is_shown():
+    """An interrupt before the curve was traced: verdict and evidence stand, rank and margin are dashes."""
+    lacks = ("restitution_threshold", "restitution_threshold_low", "restitution_threshold_high", "margin")
+    cut = row("A", None, **dict.fromkeys(lacks))
+    line = ranking._table([cut]).splitlines()[-1].split()
+    assert line[:5] == ["-", "A", "0.100", "-", "-"]
+    assert line[-1] == "STABLE"
+    assert "ON THE LAND" in report("rank", document(cut) | {"title": "A bearing", "warnings": []})
+
+
 def test_a_candidate_that_was_not_finished_is_a_row():
     """After an interrupt: the word in place of a verdict, no evidence, no failure."""
     left = dict.fromkeys(set(row("A", 1)) - {"name", "friction", "extrapolation"})

@@ -139,7 +139,7 @@ def test_one_kick_that_grows_without_friction_leaves_the_band_without_a_lower_en
     point = at_three_kicks(usual, usual, lambda f: max(0.3, usual(f)))
     assert point.critical_friction is not None
     assert (point.critical_friction_low, point.low_scatter_low, point.low_scatter_high) == (None, None, None)
-    assert point.reason == "from 1 m/s a share of 0.1 of the runs grows even without pocket friction"
+    assert point.reason == "10% of the runs from 1 m/s whirl even at zero pocket friction"
 
 
 def test_one_kick_that_never_grows_leaves_the_band_without_an_upper_end():
@@ -152,7 +152,7 @@ def test_one_kick_that_never_grows_leaves_the_band_without_an_upper_end():
         None,
         None,
     )
-    assert point.reason == "from 0.2 m/s less than 0.9 of the runs grow up to friction 1"
+    assert point.reason == "under 90% of the runs from 0.2 m/s whirl below friction 1"
 
 
 def test_an_end_of_the_ladder_that_is_not_clear_is_looked_at_again():
@@ -476,7 +476,7 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
     }
     text = "\n".join(curve(document))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())
-    assert "Every kick dies below   none" in text
+    assert "Every kick settles below  none" in text
     assert "Every kick grows above  a friction of 0.258" in text
     assert "0.190 from 0.1 m/s, - from 2 m/s" in text
     assert "so it is" in text

@@ -23,11 +23,14 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
-LINE_EVERY: Second = 15.0
+LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
 
 WORTH_SAYING: Second = 5.0
 """An expected time below this is not printed."""
+
+FIRST_PART = 0.05
+"""Share of the steps after which the time of all is estimated, where nothing was before."""
 
 RETRY = 0.02
 """Time after which a swallowed interrupt is sent again [s]."""
@@ -142,14 +145,18 @@ class Life:
     def __init__(self, title: str) -> None:
         self.title, self.begun = title, time.monotonic()
         self.done = self.total = 0
+        self.expected = False
 
     def __call__(self, done: int, total: int) -> None:
-        """Take in how far the work is."""
+        """Take in how far the work is; without an estimate beforehand its first part gives one."""
         self.done, self.total = done, total
+        passed = time.monotonic() - self.begun
+        if not self.expected and passed > WORTH_SAYING and FIRST_PART * total <= done < total:
+            self.expect(lambda: passed * total / done)
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Print what the work will take, unless that is too short to matter."""
-        seconds = estimate()
+        seconds, self.expected = estimate(), True
         if seconds >= WORTH_SAYING:
             complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
 
@@ -164,6 +171,9 @@ class Life:
 
 class Silent(Life):
     """Says nothing, as `--quiet` asks."""
+
+    def __call__(self, done: int, total: int) -> None:
+        """Tell nobody."""
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Estimate nothing."""
@@ -191,6 +201,7 @@ def _bar(title: str) -> Iterator[Life]:
 
     class Drawn(Life):
         def __call__(self, done: int, total: int) -> None:
+            super().__call__(done, total)
             bar.update(task, completed=done, total=total)
 
     with Progress(console=Console(stderr=True), transient=True) as bar:

@@ -187,10 +187,11 @@ def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
 
 def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: Progress | None) -> _Findings:
     """Critical frictions and verdicts, all in one row of work for the threads."""
+    verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
     results = work_out(
         lambda piece: _computed(question, piece),
-        [(question.reference, (HERE, None)), *nodes, *keys],
+        [*verdicts, (question.reference, (HERE, None)), *nodes],
         more=lambda piece, results: _more(question, piece, results),
         jobs=jobs,
         progress=progress,
@@ -316,22 +317,28 @@ def _row(
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    threshold = _threshold(found, stiffness, friction)
     judgement = found.judgements.get((stiffness, friction.mean))
-    if threshold is None or judgement is None:
+    if judgement is None:
         return row
-    return replace(
+    judged = replace(
         row,
+        verdict=judgement.verdict.name,
+        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.label,
+        reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.",
+        pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
+        **{name: getattr(judgement, name) for name in EVIDENCE},
+    )
+    threshold = _threshold(found, stiffness, friction)
+    if threshold is None:
+        return judged
+    return replace(
+        judged,
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
-        verdict=judgement.verdict.name,
-        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.label,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
         reason=reason(threshold, judgement),
-        pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
-        **{name: getattr(judgement, name) for name in EVIDENCE},
     )
 
 
