@@ -212,6 +212,42 @@ def write_half(folder: Path) -> None:
         raise RuntimeError
 
 
+KILLED = """
+import os, pathlib, signal, sys
+from separatrix.cli.files import staged
+with staged(pathlib.Path(sys.argv[1])) as stage:
+    (stage / "half").write_text("written")
+    print(stage.name, flush=True)
+    if sys.argv[2] == "kill":
+        os.kill(os.getpid(), signal.SIGKILL)
+    sys.stdin.read()
+"""
+
+
+def test_what_a_killed_process_left_is_removed_by_the_next(tmp_path):
+    """Its hidden folder goes; that of a living process, and what bears another machine's name, stay."""
+    (tmp_path / ".separatrix-00000000-1-other").mkdir()
+    (tmp_path / "kept").write_text("")
+    one = subprocess.run(
+        [sys.executable, "-c", KILLED, str(tmp_path), "kill"], capture_output=True, text=True
+    )
+    assert one.returncode == -signal.SIGKILL
+    assert (tmp_path / one.stdout.strip() / "half").exists()
+    with subprocess.Popen(
+        [sys.executable, "-c", KILLED, str(tmp_path), "wait"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as living:
+        name = living.stdout.readline().strip()
+        with staged(tmp_path) as stage:
+            (stage / "whole").write_text("")
+        here = {path.name for path in tmp_path.iterdir()}
+        assert here == {".separatrix-00000000-1-other", "kept", "whole", name}
+        living.communicate("")
+    assert not (tmp_path / name).exists()
+
+
 def test_staged_files_come_all_or_none(tmp_path):
     """A failure half-way leaves the old file and no new one."""
     (tmp_path / "a").write_text("old")

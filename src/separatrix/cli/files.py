@@ -4,17 +4,60 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
+import shutil
+import socket
 import tempfile
 import uuid
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
 from separatrix.errors import InputError
 
+_AHEAD = ".separatrix-"
+_MINE = re.compile(re.escape(_AHEAD) + r"(?P<host>[0-9a-f]{8})-(?P<process>[0-9]+)-")
+
+
+def _prefix() -> str:
+    """Beginning of the name of what is written aside: by which machine and process."""
+    return f"{_AHEAD}{_host()}-{os.getpid()}-"
+
+
+def _host() -> str:
+    return f"{zlib.crc32(socket.gethostname().encode()):08x}"
+
+
+def _remove_left_behind(folder: Path) -> None:
+    """Remove what processes of this machine wrote aside and could not remove, for they were killed."""
+    for path in folder.glob(f"{_AHEAD}*"):
+        named = _MINE.match(path.name)
+        if named is None or named["host"] != _host() or _is_alive(int(named["process"])):
+            continue
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+
+
+def _is_alive(process: int) -> bool:
+    """Whether there is such a process; where the system cannot be asked without harm, it counts as alive."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)  # asks, sends nothing
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # it belongs to another user; or the number is none of a process
+        return True
+    return True
+
 
 @contextlib.contextmanager
 def staged(folder: Path) -> Iterator[Path]:
     """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
+
+    Such folders of processes that were killed are removed first.
 
     Raises
     ------
@@ -22,7 +65,8 @@ def staged(folder: Path) -> Iterator[Path]:
         The folder cannot be written, or is full.
     """
     try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".separatrix-") as stage:
+        _remove_left_behind(folder)
+        with tempfile.TemporaryDirectory(dir=folder, prefix=_prefix()) as stage:
             yield Path(stage)
             for path in sorted(Path(stage).iterdir()):
                 path.replace(folder / path.name)
@@ -54,7 +98,7 @@ def writable_folder(path: Path) -> Iterator[Path]:
 
 def _make_writable(path: Path, missing: list[Path]) -> None:
     """Make the folder, and write in it; note which folders were not there."""
-    probe = path / f".separatrix-{uuid.uuid4().hex}"
+    probe = path / f"{_prefix()}{uuid.uuid4().hex}"
     try:
         missing += [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
