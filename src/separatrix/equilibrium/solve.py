@@ -261,7 +261,7 @@ def _unbalanced(rest: Newton, iterations: int, setup: _Setup) -> str:
 def _not_free(reached: float, ball: int) -> str:
     where = f"stopped at {reached:.2g}" if math.isfinite(reached) else "found no start at 3"
     return (
-        f"Ball {ball}: sliding friction without race control did not settle (smoothing of the slip speed "
+        f"Ball {ball + 1}: sliding friction without race control did not settle (smoothing of the slip speed "
         f"{where} of w d_m/4, limit 0.0001). Lower the speed, raise race_friction or the axial load, or use "
         "race control."
     )

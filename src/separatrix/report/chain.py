@@ -61,8 +61,8 @@ BALL_HEADERS = (
 
 
 def _balls(balls: Sequence[Document]) -> list[list[str]]:
-    """Return a row for each ball, or a single one if all are alike."""
-    rows = [[str(ball["ball"]), number(degrees(ball["azimuth"]), 1), *_ball(ball)] for ball in balls]
+    """Return a row for each ball, numbered from 1, or a single one if all are alike."""
+    rows = [[str(ball["ball"] + 1), number(degrees(ball["azimuth"]), 1), *_ball(ball)] for ball in balls]
     alike = all(row[2:] == rows[0][2:] for row in rows)
     return [[f"all {len(rows)}", "any", *rows[0][2:]]] if alike else rows
 
