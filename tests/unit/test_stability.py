@@ -4,6 +4,7 @@ import math
 import threading
 import time
 from itertools import accumulate, pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from separatrix.stability import (
     closed_hard_limit,
     critical_friction,
     growth,
+    limits,
     restitution_threshold,
     threshold_factors,
 )
@@ -480,3 +482,20 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
     assert "Every kick grows above  a friction of 0.258" in text
     assert "0.190 from 0.1 m/s, - from 2 m/s" in text
     assert "so it is" in text
+
+
+def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
+    """Further runs have further numbers; another seed would repeat the runs of a study with that seed."""
+    taken = []
+
+    def count(rubbing, settings, *, first_run, runs, **_):
+        taken.append((settings.seed, rubbing.ball_cage_friction, range(first_run, first_run + runs)))
+        grown = runs if rubbing.ball_cage_friction > 0.1 else first_run % 2
+        return SimpleNamespace(count=lambda _: [grown])
+
+    monkeypatch.setattr(limits, "run_hard_ensemble", count)
+    cage = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage
+    limits.hard_limit(cage, 0.5, StabilitySettings(seed=7, runs=64))
+    assert {seed for seed, *_ in taken} == {7}
+    numbers = [(friction, run) for _, friction, runs in taken for run in runs]
+    assert len(numbers) == len(set(numbers)) > 64

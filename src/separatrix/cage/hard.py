@@ -230,6 +230,7 @@ def run_hard_ensemble(
     *,
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
+    first_run: int = 0,
     jobs: int = 1,
     restitution: Ratio | None = None,
     may_turn: bool = True,
@@ -241,7 +242,7 @@ def run_hard_ensemble(
     cage : PlanarCage
         The cage; it must have play and neither land, gravity nor unbalance. Its race damping gives the
         restitution.
-    settings, kicks, runs, jobs
+    settings, kicks, runs, first_run, jobs
         As in `run_ensemble`, and the same starts.
     restitution : float, optional
         Of a blow [-]; default: `blow_restitution`, from the mass that the blow feels.
@@ -265,7 +266,7 @@ def run_hard_ensemble(
     mass = felt_mass(cage, may_turn=may_turn)
     eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution
     p = _walls(cage, may_turn=may_turn)
-    angles, starts = np.array(cage.ball_angles), random_starts(cage, settings, 0, runs)
+    angles, starts = np.array(cage.ball_angles), random_starts(cage, settings, first_run, runs)
     directions = np.cos(angles), np.sin(angles)
     evidence = np.zeros((speeds.size, runs, slots.EVIDENCE))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
+import platform
 import re
 import shutil
-import socket
 import tempfile
 import uuid
 import zlib
@@ -25,7 +25,7 @@ def _prefix() -> str:
 
 
 def _host() -> str:
-    return f"{zlib.crc32(socket.gethostname().encode()):08x}"
+    return f"{zlib.crc32(platform.node().encode()):08x}"
 
 
 def _remove_left_behind(folder: Path) -> None:

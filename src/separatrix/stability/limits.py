@@ -62,9 +62,8 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
 
     def look(friction: Ratio, first_run: int, runs: int) -> Count:
         rubbing = cage_at(still, restitution_factor, friction)
-        numbered = replace(even, seed=(settings.seed + first_run) % 2**63)
         found = run_hard_ensemble(
-            rubbing, numbered, kicks=(settings.middle_kick,), runs=runs, may_turn=False,
+            rubbing, even, kicks=(settings.middle_kick,), runs=runs, first_run=first_run, may_turn=False,
             restitution=restitution_factor,
         )  # fmt: skip
         return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
