@@ -12,9 +12,11 @@ import pytest
 
 from separatrix import results
 from separatrix.errors import InputError
+from separatrix.results import documents
 from separatrix.results.labels import RECORD_CLASSES, unit_of, units
 from separatrix.results.plain import NotFiniteError, field_units, plain
 from separatrix.study import Guidance
+from separatrix.study_file import read_study
 from separatrix.units import Newton, Ratio
 
 
@@ -74,6 +76,19 @@ def test_a_number_that_is_none_is_a_fault_that_says_where(bad):
     """NaN and infinity never reach a document; the message names the field."""
     with pytest.raises(NotFiniteError, match=r"result\.inner\.load"):
         plain(Outer(Inner(bad), np.zeros(1)))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_document_leaves_out_a_number_that_is_not_finite_and_says_so(bad, monkeypatch):
+    """Null and a reason, not a traceback after a long computation."""
+    study = read_study("cryogenic-turbopump")
+    monkeypatch.setitem(documents.DOCUMENTS, "check", lambda record: plain(record, "check"))
+    found = documents.document("check", {"a": 1.0, "b": [bad, 2.0], "c": bad}, study, ["A note."])
+    assert (found["a"], found["b"], found["c"]) == (1.0, [None, 2.0], None)
+    note, reason = found["warnings"]
+    assert note == "A note."
+    assert reason.startswith(f"A number is not finite and is left out: check.b[0] is {bad} and 1 more.")
+    json.dumps(found, allow_nan=False)
 
 
 def test_what_has_no_plain_form_is_refused():

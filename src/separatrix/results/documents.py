@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from separatrix.results import maps, sensitivity
-from separatrix.results.plain import plain, plain_record
+from separatrix.results.plain import null_if_not_finite, plain, plain_record
 
 if TYPE_CHECKING:
     from separatrix.study import Study
@@ -33,6 +33,8 @@ def document(verb: str, record: Any, study: Study, notes: Sequence[str]) -> Docu
     from separatrix import __version__
     from separatrix.study_file import resolved
 
+    with null_if_not_finite() as left_out:
+        body = DOCUMENTS[verb](record)
     head = {
         "separatrix_version": __version__,
         "verb": verb,
@@ -40,9 +42,20 @@ def document(verb: str, record: Any, study: Study, notes: Sequence[str]) -> Docu
         "title": study.title,
         "study": plain(resolved(study), "study"),
         "seed": study.stability.seed,
-        "warnings": list(notes),
+        "warnings": [*notes, *_overflown(left_out)],
     }
-    return head | DOCUMENTS[verb](record)
+    return head | body
+
+
+def _overflown(left_out: Sequence[str]) -> list[str]:
+    """Return a sentence on the numbers that are not finite, which the answer leaves out."""
+    if not left_out:
+        return []
+    more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
+    return [
+        f"A number is not finite and is left out: {left_out[0]}{more}. The inputs are far from those of a "
+        "bearing, or this is a fault of separatrix."
+    ]
 
 
 def bearing(record: Any) -> Document:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from math import isfinite
@@ -12,13 +14,28 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
+from separatrix.errors import SeparatrixError
 from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape, Race
 
 SPELLED = (Guidance, KinematicModel, PocketContact, PocketShape, Race)
 
 
-class NotFiniteError(ArithmeticError):
-    """A result holds a NaN or an infinity: a fault of ours, never an answer."""
+_left_out: ContextVar[list[str] | None] = ContextVar("left_out", default=None)
+
+
+class NotFiniteError(SeparatrixError, ArithmeticError):
+    """A record holds a NaN or an infinity where a number is due."""
+
+
+@contextlib.contextmanager
+def null_if_not_finite() -> Iterator[list[str]]:
+    """Within it `plain` gives None for a number that is not finite; yield where that was so."""
+    found: list[str] = []
+    token = _left_out.set(found)
+    try:
+        yield found
+    finally:
+        _left_out.reset(token)
 
 
 def plain(value: object, path: str = "result") -> Any:
@@ -37,7 +54,7 @@ def plain(value: object, path: str = "result") -> Any:
     Raises
     ------
     NotFiniteError
-        A number is NaN or infinite.
+        A number is NaN or infinite, and that is not inside `null_if_not_finite`.
     TypeError
         Something that has no plain form.
     """
@@ -64,9 +81,13 @@ def _scalar(value: object, path: str) -> object:
         return value
     if not isinstance(value, float):
         raise TypeError(f"{path}: a {type(value).__name__} has no plain form")
-    if not isfinite(value):
+    if isfinite(value):
+        return value
+    left_out = _left_out.get()
+    if left_out is None:
         raise NotFiniteError(f"{path} is {value}")
-    return value
+    left_out.append(f"{path} is {value}")
+    return None
 
 
 def _key(key: object) -> str:
