@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from separatrix.figures.stability import ETA_LABEL, chain_lines, frame, mark_here
 from separatrix.figures.style import (
     BLACK,
+    BLUE,
     CYCLE,
     GREY,
     MARK,
@@ -48,6 +49,7 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     frame(axes, data, top)
     chain_lines(axes, data)
     mark_here(axes, data)
+    _own_curves(axes, data)
     for i in range(measured.sizes["material"]):
         _candidate(axes, measured.isel(material=i))
     _names(axes, data, top)
@@ -56,11 +58,29 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     return figure
 
 
+def _own_curves(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the curve of every other pocket, where candidates differ in its stiffness, with whose it is."""
+    if "own_critical_friction" not in data:
+        return
+    reference = str(data["candidate"].values)
+    axes.lines[0].set_label(f"{axes.lines[0].get_label()}: {reference}")
+    lines = data["own_critical_friction"].transpose("material", "own_eta").values
+    names = data["material"].values.astype(str)
+    whose: dict[bytes, list[int]] = {}
+    for place, line in enumerate(lines):
+        whose.setdefault(line.tobytes(), []).append(place)
+    colours = [colour for colour in CYCLE if colour not in (BLACK, BLUE)]
+    for places, colour in zip(whose.values(), cycle(colours), strict=False):
+        if reference not in names[places]:
+            label = "half grow: " + textwrap.fill(", ".join(names[places]), 50)
+            axes.plot(data["own_eta"].values, lines[places[0]], color=colour, lw=0.8, label=label)
+
+
 def _title(axes: Axes, data: xr.Dataset) -> None:
     """Name the environment, and the column of names at the right."""
     name = str(data["environment"].values)
     axes.set_title(name[:1].upper() + name[1:])
-    head = "rank  candidate  friction"
+    head = "rank  candidate  friction" + (r"  own $\eta$" if "own_critical_friction" in data else "")
     beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
     axes.annotate(head, (1, 1), xytext=(12, 6), fontsize=7, color=GREY, **beside)
 
@@ -86,20 +106,23 @@ def _candidate(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _names(axes: Axes, data: xr.Dataset, top: float) -> None:
-    """Write rank, name and friction of every candidate at the right; on top those not measured."""
+    """Write rank, name, friction and own eta of every candidate at the right; on top those not measured."""
     ranks = _ranks(data["material_rank"].values)
     labels = []
-    for name, rank, friction, verdict, untested in zip(
+    differ = "own_critical_friction" in data
+    for name, rank, friction, eta, verdict, untested in zip(
         data["material"].values,
         ranks,
         data["material_friction"].values,
+        data["material_restitution_factor"].values,
         data["material_verdict"].values,
         data["material_extrapolation"].values.astype(str),
         strict=True,
     ):
         measured = np.isfinite(friction)
         mark = MARK if untested else ""
-        text = f"{rank}  {name}  {friction:.3g}{mark}" if measured else f"{rank}  {name}  not measured"
+        own = f"  {eta:.2f}" if differ and np.isfinite(eta) else ""
+        text = f"{rank}  {name}  {friction:.3g}{mark}{own}" if measured else f"{rank}  {name}  not measured"
         labels.append((1.0, friction if measured else top, text, VERDICT_COLOURS.get(str(verdict), GREY)))
     label_lines(axes, labels, gap=0.05, colour=BLACK)
 
@@ -111,23 +134,25 @@ def _ranks(column: Any) -> list[str]:
 
 
 def _legend(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
-    """Name the lines and the verdicts' signs below the picture, with the paper's statement."""
+    """Name the lines and the verdicts' signs below the picture."""
     for verdict, marker in VERDICT_MARKERS.items():
         axes.plot(
-            [], [], marker, color=VERDICT_COLOURS[verdict], ms=5, label=f"{verdict} at this bearing's $\\eta$"
+            [],
+            [],
+            marker,
+            color=VERDICT_COLOURS[verdict],
+            ms=5,
+            label=f"{verdict}, at the candidate's own $\\eta$",
         )
     axes.plot([], [], "o", mfc="white", mec=GREY, ms=4.5, label="threshold with its 95 % interval")
     untested(axes, data["material_extrapolation"])
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8, columnspacing=1.5)
-    statement = textwrap.fill(str(data["paper_statement"].values), 110)
-    axes.text(0, 1.09, statement, transform=axes.transAxes, fontsize=6.5, color=GREY, va="bottom")
 
 
 def untested(axes: Axes, sentences: xr.DataArray) -> None:
-    """Say in the legend what was not tested, each sentence once."""
-    texts = (str(text).split("; ") for text in sentences.values.ravel())
-    for text in dict.fromkeys(one for several in texts for one in several if one):
-        label = textwrap.fill(f"friction: {text}", 60)
+    """Say in the legend that a friction lies outside its tests; the printed answer says in what respect."""
+    if (sentences.values.astype(str) != "").any():
+        label = "friction outside the tests"
         axes.plot([], [], ls="", marker=f"${MARK}$", color=GREY, ms=4, label=label)
 
 
@@ -150,7 +175,11 @@ def overview(data: xr.Dataset) -> Figure:
     low, middle, high = (data[f"overall_restitution_threshold{end}"].values for end in ("_low", "", "_high"))
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
-    chain_lines(axes, data)
+    if "own_critical_friction" in data:
+        label = r"this bearing's $\eta$ with each candidate (Eq. 18)"
+        axes.plot(data["overall_restitution_factor"].values, places, "|", color=BLACK, ms=16, label=label)
+    else:
+        chain_lines(axes, data)
     _rows(axes, data, places)
     untested(axes, data["overall_extrapolation"])
     axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")

@@ -195,16 +195,17 @@ def here_band(data: xr.Dataset, top: float) -> tuple[float, float]:
 
 
 CHAIN_LINES = {
-    "chain_restitution_factor": ("-", r"this bearing, $\eta$ = {:.2f} (Eq. 18)"),
+    "chain_restitution_factor": ("-", r"this bearing, {whose}$\eta$ = {:.2f} (Eq. 18)"),
     "chain_restitution_factor_free_spin": (":", r"the same, ball free to spin, $\eta$ = {:.2f}"),
 }
 
 
 def chain_lines(axes: Axes, data: xr.Dataset) -> None:
     """Draw the restitution factors of the chain as upright lines."""
+    whose = f"with {data['candidate'].values}, " if "own_critical_friction" in data else ""
     for name, (style, text) in CHAIN_LINES.items():
         value = float(data[name])
-        axes.axvline(value, color=BLACK, ls=style, lw=1.0, label=text.format(value))
+        axes.axvline(value, color=BLACK, ls=style, lw=1.0, label=text.format(value, whose=whose))
 
 
 def _ends(axes: Axes, data: xr.Dataset) -> None:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from threading import Event
+from typing import Any
+
+import numpy as np
 
 from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import reference_candidate, required_environment
@@ -14,7 +17,7 @@ from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions
 from separatrix.ranking.lowest import lowest_among, may_be_lower
 from separatrix.ranking.order import Interval, meet, ranks
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_measured, reason
-from separatrix.ranking.records import RankedEnvironment, RankedMaterial, Ranking
+from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.stability import (
     CriticalFriction,
@@ -26,7 +29,7 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import HERE, Node
+from separatrix.stability.curve import HERE, Node, height
 from separatrix.stability.pool import Progress, work_out
 from separatrix.stability.threshold import rising
 from separatrix.stability.whole import whole_ensemble
@@ -128,6 +131,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         ),
         overall=_ranked(question, found, means, ""),
         stability=_curve(question, found, jobs),
+        **_own_curves(question, found),
         kicks=question.settings.kicks,
         runs=question.settings.runs,
         duration=question.settings.duration,
@@ -250,6 +254,22 @@ def _curve(question: _Question, found: _Findings, jobs: int) -> StabilityCurve |
     return curve_of_points(
         cage, question.settings, points, band=False, here=found.here, complete=complete, jobs=jobs
     )
+
+
+def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
+    """Return each candidate's own curve at the nodes of all; None where all share one, or one is missing."""
+    if len(question.cages) < 2 or not all(found.points.values()):
+        return {"own_eta": None, "own_curves": None}
+    nodes = {
+        stiffness: ([point.restitution_factor for point in points], [height(point) for point in points])
+        for stiffness, points in found.points.items()
+    }
+    grid = sorted({eta for etas, _ in nodes.values() for eta in etas})
+    curves = (
+        OwnCurve(name=name, own_critical_friction=tuple(np.interp(grid, *nodes[stiffness]).tolist()))
+        for name, stiffness in question.stiffness.items()
+    )
+    return {"own_eta": tuple(grid), "own_curves": tuple(curves)}
 
 
 def _ranked(

@@ -120,6 +120,17 @@ class RankedMaterial:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OwnCurve:
+    """Critical friction with a candidate's own pocket, at each of `Ranking.own_eta` [-].
+
+    0 where half the runs whirl without friction, the top of the searched frictions where none is enough.
+    """
+
+    name: str
+    own_critical_friction: tuple[Ratio, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RankedEnvironment:
     """The candidates in one environment, best first; those not measured come last."""
 
@@ -136,7 +147,8 @@ class Ranking:
     a restitution factor, of its own, these are those of `candidate`: the cage's material, or the first
     candidate where the study does not name it. `pocket` is what rubs there, `friction_scatter` what an
     unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
-    `complete` is False if an interrupt left something out.
+    Where candidates differ in stiffness, each has its curve in `own_curves`, at the restitution factors
+    `own_eta`. `complete` is False if an interrupt left something out.
     """
 
     environment: str
@@ -151,6 +163,8 @@ class Ranking:
     environments: tuple[RankedEnvironment, ...]
     overall: tuple[RankedMaterial, ...]
     stability: StabilityCurve | None
+    own_eta: tuple[Ratio, ...] | None
+    own_curves: tuple[OwnCurve, ...] | None
     kicks: tuple[MetrePerSecond, ...]
     runs: int
     duration: Second
