@@ -72,7 +72,7 @@ def _own_curves(axes: Axes, data: xr.Dataset) -> None:
     colours = [colour for colour in CYCLE if colour not in (BLACK, BLUE)]
     for places, colour in zip(whose.values(), cycle(colours), strict=False):
         if reference not in names[places]:
-            label = "half grow: " + textwrap.fill(", ".join(names[places]), 50)
+            label = "half whirl: " + textwrap.fill(", ".join(names[places]), 50)
             axes.plot(data["own_eta"].values, lines[places[0]], color=colour, lw=0.8, label=label)
 
 
