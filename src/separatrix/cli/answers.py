@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
 
+SATURATED = 0.995
+"""Share of the whole friction from which a traction curve counts as flat in a figure."""
+
 STRIPS = 5
 """Strips in which the shear is shown."""
 
@@ -166,7 +169,7 @@ def traction(study: Study, work: Work) -> TractionAnswer:  # noqa: ARG001
 def curves_by_ratio(study: Study, at: RaceContact, curve: TractionCurve) -> tuple[TractionCurve, ...]:
     """Traction curves of one contact: at its own ratio, then at `SPIN_ROLL_RATIOS` with its sign.
 
-    The creep increments are those that span saturation, drawn together where the curve bends.
+    The creep increments go a quarter beyond those at which the contact's own curve is saturated.
     """
     import math
     from dataclasses import replace
@@ -175,8 +178,7 @@ def curves_by_ratio(study: Study, at: RaceContact, curve: TractionCurve) -> tupl
 
     from separatrix.traction import film_compliance, traction_curve
 
-    span = float(curve.creep_increment[-1])
-    increments = span * np.sinh(np.linspace(-4.0, 4.0, 101)) / math.sinh(4.0)
+    increments = np.linspace(-1.0, 1.0, 201) * _saturation(study, at, curve)
     own = at.creep.spin
     others = (math.copysign(ratio, own) * at.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
     return tuple(
@@ -189,6 +191,26 @@ def curves_by_ratio(study: Study, at: RaceContact, curve: TractionCurve) -> tupl
         )
         for spin in (own, *others)
     )
+
+
+def _saturation(study: Study, at: RaceContact, curve: TractionCurve) -> float:
+    """Creep increment a quarter beyond the one at which a curve has its whole friction, either way."""
+    import math
+
+    import numpy as np
+
+    from separatrix.traction import film_compliance, traction_curve
+
+    widest = float(curve.creep_increment[-1])
+    finer = traction_curve(
+        at.ellipse,
+        at.creep,
+        race_friction=study.film.race_friction,
+        film_compliance=film_compliance(study.film),
+        creep_increments=widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0),
+    )
+    rising = np.abs(finer.traction_coefficient) < SATURATED * study.film.race_friction
+    return min(1.25 * float(np.abs(finer.creep_increment[rising]).max()), widest)
 
 
 def shear(study: Study, at: RaceContact) -> ShearField:

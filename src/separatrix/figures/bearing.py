@@ -14,20 +14,28 @@ RACES = (("inner", BLUE, "o"), ("outer", VERMILION, "s"))
 
 
 def balls(data: xr.Dataset) -> Figure:
-    """Loads and contact angles around the bearing, against the azimuth of the ball."""
+    """Loads and contact angles around the bearing, against the azimuth of the ball, back to the first ball.
+
+    A contact that carries nothing has no angle.
+    """
     figure, (left, right) = canvas(PAGE, 2.5, ncols=2)
-    azimuth = np.degrees(data["azimuth"].values)
+    azimuth = np.append(np.degrees(data["azimuth"].values), 360.0)
     for name, axes, scale in (("load", left, 1.0), ("contact_angle", right, np.degrees(1.0))):
+        ends = []
         for race, colour, marker in RACES:
-            axes.plot(azimuth, scale * data[f"{name}_{race}"].values, marker=marker, color=colour, lw=0.8)
-        axes.set(xlabel="azimuth of the ball [deg]", xlim=(-8, 400), xticks=range(0, 361, 60))
-    _limits_from_zero(left)
-    right.margins(y=0.25)
+            around = scale * data[f"{name}_{race}"].values
+            around = np.where(data[f"load_{race}"].values > 0.0, around, np.nan) if axes is right else around
+            closed = np.append(around, around[0])
+            axes.plot(azimuth, closed, color=colour, lw=0.8)
+            axes.plot(azimuth[:-1], around, marker=marker, color=colour, ls="none")
+            axes.plot(360.0, closed[-1], marker=marker, color=colour, mfc="white", ls="none")
+            ends.append((364.0, float(np.nan_to_num(closed[-1])), race, colour))
+        axes.set(xlabel="azimuth of the ball [deg] (hollow: ball 0 again)", xlim=(-8, 425))
+        axes.set_xticks(range(0, 361, 60))
+        _limits_from_zero(axes)
+        label_lines(axes, ends)
     left.set(ylabel="load [N]", title="a  Ball load")
     right.set(ylabel="contact angle [deg]", title="b  Contact angle")
-    for name, axes, scale in (("load", left, 1.0), ("contact_angle", right, np.degrees(1.0))):
-        ends = [(azimuth[-1] + 4, scale * float(data[f"{name}_{race}"][-1]), race, c) for race, c, _ in RACES]
-        label_lines(axes, ends)
     return figure
 
 
@@ -46,8 +54,10 @@ def contact(data: xr.Dataset) -> Figure:
     plan.set(title="a  Ellipses, to scale", ylabel="x along rolling, same scale", yticks=[])
     plan.set_aspect("equal", adjustable="datalim")
     pressure.set(title="b  Pressure on the axis x = 0", ylabel="pressure [MPa]", ylim=(0, None))
-    creep.set(title="c  Creep without offset", ylabel="creep ratio [%]")
+    creep.set(title="c  Creep by spin and curvature", ylabel="creep ratio [%]")
     creep.axhline(0.0, color=GREY, lw=0.6)
+    pressure.legend(loc="lower center", handlelength=2.2)
+    creep.legend(loc="best", handlelength=2.2)
     return figure
 
 
@@ -58,7 +68,7 @@ def _draw_contact(data: xr.Dataset, colour: str, axes: tuple, *, place: int) -> 
     angle = np.linspace(0.0, 2 * np.pi, 181)
     centre = place * 2.2 * b
     plan.fill(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), color=colour, alpha=0.25, lw=0)
-    look: Any = {"color": colour, "ls": "-" if place > 0 else (0, (5, 1.2))}
+    look: Any = {"color": colour, "ls": "-" if place > 0 else (0, (5, 1.2)), "label": f"{race} race"}
     plan.plot(1e3 * a * np.cos(angle), 1e3 * (centre + b * np.sin(angle)), lw=1, **look)
     plan.annotate(race, (0, 1e3 * centre), ha="center", va="center", color=colour)
     y = np.linspace(-a, a, 201)
@@ -68,4 +78,7 @@ def _draw_contact(data: xr.Dataset, colour: str, axes: tuple, *, place: int) -> 
 
 
 def _limits_from_zero(axes) -> None:  # type: ignore[no-untyped-def]
-    axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
+    """Let the axis begin at 0, unless something lies below."""
+    lowest, highest = min(axes.dataLim.y0, 0.0), max(axes.dataLim.y1, 0.0)
+    room = 0.15 * (highest - lowest)
+    axes.set_ylim(lowest - (room if lowest < 0.0 else 0.0), highest + room)
