@@ -142,6 +142,18 @@ def test_texts_that_share_one_long_text_are_counted_each(path, monkeypatch):
             load(path)
 
 
+def test_a_heap_of_texts_at_which_the_library_would_not_end_is_refused(path):
+    """The free rest of a heap has no length: HDF5 looks for the next piece at the same place for ever."""
+    raw = path.read_bytes()
+    heap = raw.rindex(b"GCOL\x01\0\0\0")
+    size = int.from_bytes(raw[heap + 8 : heap + 16], "little")
+    rests = [at for at in range(heap + 16, heap + size, 8) if raw[at : at + 8] == bytes(8)]
+    rest = next(at for at in rests if int.from_bytes(raw[at + 8 : at + 16], "little") == heap + size - at)
+    path.write_bytes(raw[: rest + 8] + bytes(8) + raw[rest + 16 :])
+    with pytest.raises(InputError, match="a heap of texts is not filled by its pieces"):
+        load(path)
+
+
 def test_a_file_that_is_too_large_is_refused(path, monkeypatch):
     """The limit is in the message."""
     monkeypatch.setattr(container, "MOST_BYTES", 1024**2)

@@ -7,6 +7,7 @@ as they are. So everything else is refused, and nothing is read that is larger t
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,9 @@ BLOCK = 64 * 1024**2
 DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, AttributeError, IndexError, MemoryError)
 """What the libraries below raise at a damaged file."""
 
+_HEAP = b"GCOL\x01\0\0\0"
+_PIECE = struct.Struct("<HHIQ")
+
 _AXES = ("DIMENSION_LIST", "REFERENCE_LIST")
 """Attributes of netCDF that point from a variable to its dimensions and back."""
 
@@ -52,6 +56,7 @@ def check_container(path: Path) -> None:
     if size > MOST_BYTES:
         rule = f"is larger than a file of results can be, {MOST_BYTES // 1024**2} MB"
         raise InputError(where, rule, "", f"{size / 1024**2:.0f} MB")
+    _check_heaps(path, where)
     try:
         with h5py.File(path, "r") as file:
             _check(file, size, where)
@@ -59,6 +64,25 @@ def check_container(path: Path) -> None:
         raise
     except DAMAGE as error:
         raise damaged(where, error) from None
+
+
+def _check_heaps(path: Path, where: str) -> None:
+    """Refuse heaps of texts whose pieces do not fill them: at one without length the library never ends.
+
+    HDF5 file format specification, version 3.0, III.E: a collection begins with its mark and its size; each
+    piece in it with number, references, and length; piece 0 is the free rest, its own header included.
+    """
+    raw = path.read_bytes()
+    at = raw.find(_HEAP)
+    while at >= 0:
+        size = int.from_bytes(raw[at + 8 : at + 16], "little")
+        place, end = at + 16, at + size
+        while place + 16 <= end:
+            number, _, _, length = _PIECE.unpack_from(raw[place : place + 16].ljust(16, b"\0"))
+            place += length if number == 0 else 16 + -(-length // 8) * 8
+            if end > len(raw) or place > end or (number == 0 and place != end):
+                raise damaged(where, ValueError("a heap of texts is not filled by its pieces"))
+        at = raw.find(_HEAP, at + 16)
 
 
 def damaged(where: str, error: Exception) -> InputError:
