@@ -16,7 +16,7 @@ from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.lowest import lowest_among, may_be_lower
 from separatrix.ranking.order import Interval, meet, ranks
-from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_measured, reason
+from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.stability import (
@@ -340,6 +340,8 @@ def _row(
     judgement = found.judgements.get((stiffness, friction.mean))
     if judgement is None:
         return row
+    if broken := not_finite(judgement):
+        return replace(row, reason=broken)
     judged = replace(
         row,
         verdict=judgement.verdict.name,

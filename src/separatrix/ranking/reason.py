@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from math import isfinite
+
 from separatrix.cage import Judgement, Verdict
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.stability import RestitutionThreshold
@@ -17,6 +20,15 @@ NOT_FINISHED = "interrupted before this was computed"
 def not_measured(environment: str) -> str:
     """Return the reason of a missing measurement."""
     return f"not measured in {environment}" if environment else "not measured in any environment"
+
+
+def not_finite(judgement: Judgement) -> str:
+    """Return the reason of a verdict that is not given, as a number of its evidence is not finite; or ""."""
+    values = ((f.name, getattr(judgement, f.name)) for f in fields(judgement))
+    bad = [f"{name} is {value}" for name, value in values if isinstance(value, float) and not isfinite(value)]
+    if not bad:
+        return ""
+    return f"no verdict: {bad[0].replace('_', ' ')}. The inputs are far from those of a bearing"
 
 
 def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
