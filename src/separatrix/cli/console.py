@@ -162,11 +162,13 @@ class Life:
 
     def line(self) -> str:
         """Return how far the work is after which time."""
-        passed = in_words(time.monotonic() - self.begun)
-        if not self.total:
-            return f"{self.title}: at work for {passed}"
+        passed = time.monotonic() - self.begun
+        if not 0 < self.done <= self.total:
+            return f"{self.title}: at work for {in_words(passed)}"
         share = math.floor(100.0 * self.done / self.total)
-        return f"{self.title}: {self.done} of {self.total} steps ({share} %) after {passed}"
+        steps = f"{self.done} of {self.total} steps ({share} %) after {in_words(passed)}"
+        left = passed * (self.total - self.done) / self.done
+        return f"{self.title}: {steps}, about {in_words(left)} left"
 
 
 class Silent(Life):

@@ -19,13 +19,17 @@ SAMPLED = 3
 LONGEST_SAMPLE = 5.0
 """Time after which no further friction is timed [s]."""
 
-FACTORS = (0.5, 1.0, 2.0)
-"""Frictions at which runs are timed, as multiples of the linear limit: most of the work is done near it."""
+DAMPINGS = (None, 0.0, 0.5, 1.0)
+"""Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
+
+FACTORS = (0.0, 0.7, 1.5)
+"""Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
+and about it, for runs far above end soon."""
 
 MAP_POINTS_NOT_TIMED = 30
 """A map of so few points needs no estimate."""
 
-CURVE_POINTS = 12.0
+CURVE_POINTS = 9.0
 """Points of a curve whose restitution factors are chosen where it bends, as studies have them on average."""
 
 
@@ -34,8 +38,9 @@ def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, 
     from separatrix.stability.growth import GrowthCounter
     from separatrix.stability.point import linear_guess
 
-    start = linear_guess(GrowthCounter(cage, settings), None)
-    each = _mean(_time_of_a_run(cage, settings, friction) for friction in _around(start))
+    counts = GrowthCounter(cage, settings)
+    some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
+    each = _mean(_time_of_a_run(one, settings) for one in some)
     points = float(len(settings.restitution_factors)) or CURVE_POINTS
     banded = points + 1.0 if band else 1.0
     runs = points * _runs_of_a_point(settings) + banded * _runs_of_a_band(settings)
@@ -50,7 +55,7 @@ def expected_verdicts(
     if not asked:
         return 0.0
     some = {asked[0], asked[len(asked) // 2], asked[-1]}
-    each = _mean(_time_of_a_run(cage, settings, friction) for friction in sorted(some))
+    each = _mean(_time_of_a_run(replace(cage, ball_cage_friction=f), settings) for f in sorted(some))
     return each * len(asked) * len(settings.kicks) * settings.runs / jobs
 
 
@@ -110,10 +115,6 @@ def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, flo
     return time.perf_counter() - begun
 
 
-def _around(friction: Ratio) -> list[Ratio]:
-    return [factor * friction for factor in FACTORS]
-
-
 def _runs_of_a_point(settings: StabilitySettings) -> float:
     """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
     return 32.0 + 1.5 * settings.runs
@@ -134,11 +135,10 @@ def _mean(times: Iterable[Second]) -> Second:
     return sum(found) / len(found)
 
 
-def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings, friction: Ratio) -> Second:
-    """Time of a run at a friction, the mean over the kicks; the compiled code is loaded beforehand."""
+def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
+    """Time of a run, the mean over the kicks; the compiled code is loaded beforehand."""
     from separatrix.cage import run_ensemble
 
-    cage = replace(cage, ball_cage_friction=friction)
     run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1, ledger=False)
     begun = time.perf_counter()
     run_ensemble(cage, settings, runs=SAMPLED, ledger=False)

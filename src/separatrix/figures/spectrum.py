@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from separatrix.figures.style import BLUE, GREY
-from separatrix.units import Array
+from separatrix.units import Array, Hertz
 
 FAINTEST, SEEN = -50.0, -30.0
 """Weakest whirl of the picture against time, and weakest for which it goes on, under the strongest [dB]."""
@@ -51,13 +51,19 @@ def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
     return frequency[order], amplitude[order] / (amplitude.max() or 1.0)
 
 
-def spectrum_against_time(time: Array, velocity: Array) -> tuple[Array, Array, Array]:
+BANDS = 12.0
+"""Least frequencies between 0 and the highest that a picture against time shows."""
+
+
+def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
     """Spectra of pieces of the run, each with Hann's window and three quarters over the one before.
 
     Parameters
     ----------
     time, velocity : ndarray
         As for `whirl_spectrum`.
+    reach : float
+        Highest frequency to be shown, for which pieces are made long enough; 0 if it does not matter [Hz].
 
     Returns
     -------
@@ -66,7 +72,9 @@ def spectrum_against_time(time: Array, velocity: Array) -> tuple[Array, Array, A
         (piece, frequency) [-].
     """
     even, v = even_velocity(time, velocity)
-    length = int(min(v.size, max(SHORTEST, 2.0 ** round(np.log2(3.0 * np.sqrt(v.size))))))
+    fine = BANDS / (reach * (even[1] - even[0])) if reach > 0.0 else 1.0
+    wanted = max(2.0 ** round(np.log2(3.0 * np.sqrt(v.size))), 2.0 ** np.ceil(np.log2(fine)))
+    length = int(min(max(v.size // 4, SHORTEST), max(SHORTEST, wanted)))
     starts = np.arange(0, v.size - length + 1, max(1, length // 4))
     pieces = v[starts[:, np.newaxis] + np.arange(length)] * np.hanning(length)
     amplitude = np.abs(np.fft.fftshift(np.fft.fft(pieces, axis=1), axes=1))
@@ -119,8 +127,8 @@ def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Any, ...] = ({"col
 
 def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     """Draw the spectrum against linear time while there is a whirl to see, darker for a stronger one."""
-    middles, frequency, share = spectrum_against_time(data["time"].values, data["velocity"].values)
     most = spectrum_reach(data)
+    middles, frequency, share = spectrum_against_time(data["time"].values, data["velocity"].values, most)
     shown = np.abs(frequency) <= max(1.1 * most, 2.1 * (frequency[1] - frequency[0]))
     level = 20.0 * np.log10(np.maximum(share[:, shown], 10.0 ** (FAINTEST / 20.0)))
     edges = 1e3 * edges_of(middles), 1e-3 * edges_of(frequency[shown])
