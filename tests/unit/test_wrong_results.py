@@ -123,7 +123,7 @@ def test_a_file_that_could_do_harm_is_refused_before_it_is_read(path, kind):
         load(path)
 
 
-def test_texts_that_share_one_long_text_are_counted_each(path, monkeypatch):
+def test_texts_that_share_one_long_text_are_counted_each(path):
     """Small pieces of a file can point to the same long text; an honest file has room for each."""
     with h5py.File(path, "a") as file:
         long = file.create_dataset("long", (400,), h5py.string_dtype())
@@ -136,10 +136,8 @@ def test_texts_that_share_one_long_text_are_counted_each(path, monkeypatch):
     path.write_bytes(raw)
     with h5py.File(path) as file:
         assert len(file["long"][399]) == 20_000
-    for block in (container.BLOCK, 1):
-        monkeypatch.setattr(container, "BLOCK", block)
-        with pytest.raises(InputError, match="declares more data than the file has bytes"):
-            load(path)
+    with pytest.raises(InputError, match="declares more data than the file has bytes"):
+        load(path)
 
 
 def test_a_heap_of_texts_at_which_the_library_would_not_end_is_refused(path):
