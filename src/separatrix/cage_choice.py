@@ -40,7 +40,9 @@ def required_environment(study: Study, question: RankingQuestion) -> str:
     """
     found = environment_of(question)
     if found is None:
-        rule = "is missing: no environment, or more than one, matches [operation] fluid and ring_material"
+        rule = (
+            "is missing: no environment, or more than one, matches [operation] fluid and the bearing's steel"
+        )
         names = " or ".join(f'"{name}"' for name in question.environments)
         raise InputError(f"{study.name}: [ranking] environment", rule, cure=f"Write environment = {names}.")
     return found
@@ -79,12 +81,9 @@ def pocket_friction(study: Study) -> Ratio:
     cure = f"Give it, or name a candidate as [cage] material: {names}."
     candidate = cage_candidate(study)
     if candidate is None:
-        named = (
-            f", and {shown(_name(study))} is not a candidate"
-            if _name(study)
-            else " without a [cage] material"
-        )
-        raise InputError(where, f"is missing{named}", cure=cure)
+        name = _name(study)
+        named = f"{shown(name)} is not a candidate" if name else "[cage] material does not name a candidate"
+        raise InputError(where, f"is missing, and {named}", cure=cure)
     environment = required_environment(study, study.ranking)
     raise InputError(
         where, f"is missing: {candidate.name} was not measured in {environment}", cure="Give it."

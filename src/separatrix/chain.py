@@ -297,6 +297,7 @@ def cage_state(
     ValidityWarning
         The balls lead and lag by more than half their play, so that the pockets push them round.
     """
+    pocket = pocket_friction(study) if friction is None else friction  # refused before anything is computed
     links = restitution_state(study, material=material, traction=traction)
     design, found = cage_design(study), links.traction.bearing.equilibrium
     radius = study.bearing.pitch_diameter / 2.0
@@ -311,7 +312,7 @@ def cage_state(
         outer_speed=study.operation.outer_speed,
         ball_cage_stiffness=links.restitution.ball_cage_stiffness,
         race_damping=links.restitution.race_damping,
-        ball_cage_friction=pocket_friction(study) if friction is None else friction,
+        ball_cage_friction=pocket,
         hertz_coefficient=_hertz_coefficient(study, links),
         orbital_cosines=waves.cosines,
         orbital_sines=waves.sines,

@@ -92,7 +92,7 @@ def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
         pocket_friction(study)
     assert pocket_friction(case(tmp_path, 'material = "Armalon"\nball_cage_friction = 0.2')) == 0.2
     nameless = replace(study, cage=replace(study.cage, material=None, material_name=None))
-    with pytest.raises(InputError, match=r"without a \[cage\] material.*My compound, Other"):
+    with pytest.raises(InputError, match=r"does not name a candidate.*My compound, Other"):
         pocket_friction(nameless)
     alone = replace(nameless, ranking=replace(study.ranking, candidates=study.ranking.candidates[1:]))
     assert pocket_friction(alone) == 0.1
