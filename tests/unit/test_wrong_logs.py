@@ -226,7 +226,7 @@ WRONG = {
     ),
     "a force without unit, and no load": (
         csv(columns={"time [s]": TIME, "FrictionForce": FORCE}),
-        'tangential_force = { name = "FrictionForce", unit = "N" }, below [test] normal_force = "10 N".',
+        'tangential_force = { name = "FrictionForce", unit = "N" }, below [test] normal_force = "... N".',
     ),
     "a force beside a mangled letter": (
         csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}),

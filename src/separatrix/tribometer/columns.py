@@ -16,6 +16,7 @@ from separatrix.tribometer.names import (
     Scale,
     header_parts,
     known_units,
+    looks_extreme,
     looks_like_force,
     looks_like_friction,
     plain,
@@ -140,7 +141,7 @@ def _given(
     if not choice.unit and beside:
         written = [_agreed(units[index], beside[0], meaning, layout)]
     else:
-        written = [choice.unit or units[index], *(u for _, u in ways), layout.units.get(ways[0][0], "")]
+        written = [choice.unit or units[index], ways[0][1], layout.units.get(ways[0][0], "")]
     for unit in [unit for unit in written if unit] + [""]:
         scale = _scale(meaning, unit, layout)
         if scale is not None:
@@ -256,11 +257,14 @@ def _no_friction(headers: Sequence[str], source: str, result: Understood) -> Inp
     if "tangential_force" in result.used:
         rule = "has a tangential force but no normal force"
         cure = (
-            'Below [columns] in a column map: normal_force = "...", or below [test]: normal_force = "10 N".'
+            'Below [columns] in a column map: normal_force = "...", or below [test]: normal_force = "... N".'
         )
         return InputError(source, rule, cure=cure)
     rule = "has no column that is known to be the friction, nor two forces that give it"
-    near = [i for i, header in enumerate(headers) if looks_like_friction(header)]
+    near = sorted(
+        (i for i, header in enumerate(headers) if looks_like_friction(header)),
+        key=lambda i: looks_extreme(headers[i]),
+    )
     forces = [i for i in range(len(headers)) if i not in near and _is_tangential(headers[i])]
     if near or not forces:
         name = headers[near[0]].strip() if near else "..."
@@ -268,7 +272,7 @@ def _no_friction(headers: Sequence[str], source: str, result: Understood) -> Inp
         if not near:
             cure += " A log without friction is of no use here: leave it out."
         return InputError(source, rule, "", _listed(headers, near or range(len(headers))), cure)
-    return InputError(source, rule, "", _listed(headers, forces), _forces_line(headers, forces[0]))
+    return InputError(source, rule, "", _listed(headers, forces), _forces_line(headers, forces[0], result))
 
 
 def _is_tangential(header: str) -> bool:
@@ -277,15 +281,18 @@ def _is_tangential(header: str) -> bool:
     return looks_like_force(header) and any(part in words for part in parts)
 
 
-def _forces_line(headers: Sequence[str], index: int) -> str:
+def _forces_line(headers: Sequence[str], index: int, result: Understood | None = None) -> str:
     """The lines of a column map that make friction from a force whose unit is not known."""
+    if result is not None and "normal_force" in result.used:
+        line = f'tangential_force = {{ name = {shown(headers[index].strip())}, unit = "N" }}'
+        return f"Below [columns] in a column map, with the true unit: {line}."
     normal = [i for i in range(len(headers)) if i != index and "normal_force" in ranks(headers[i])]
     name = shown(headers[index].strip())
     lines = f'tangential_force = {{ name = {name}, unit = "N" }}'
     if normal:
         lines += f' and normal_force = {{ name = {shown(headers[normal[0]].strip())}, unit = "N" }}'
         return f"Below [columns] in a column map, with the true units: {lines}."
-    load = 'below [test] normal_force = "10 N"'
+    load = 'below [test] normal_force = "... N"'
     return f"In a column map, with the true unit and load: below [columns] {lines}, {load}."
 
 

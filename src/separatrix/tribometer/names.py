@@ -25,7 +25,7 @@ NAMES: dict[str, tuple[str, ...]] = {
         "traction force; traction; reibkraft; reibungskraft; tangentialkraft; "
         "force de frottement; force tangentielle; ffriction; "
         "ftangential",
-        "fx",
+        "fx; lateral force; shear force; drag force",
     ),
     "normal_force": (
         "fn; f n; normal force; normal load; fnormal; normalkraft; force normale; charge normale",
@@ -224,9 +224,17 @@ def _without_symbol(words: str, meaning: str) -> str:
 def looks_like_friction(header: str) -> bool:
     """True for a name that may be that of a coefficient of friction, for messages only; never for a force."""
     words = plain(header)
-    parts = ("cof", "fric", "reib", "frott", "traction")
+    parts = ("cof", "coef", "fric", "reib", "frott", "traction")
     named = any(part in words for part in parts) or "mu" in words.split()
     return (named or header.strip() in MANGLED) and not looks_like_force(header)
+
+
+def looks_extreme(header: str) -> bool:
+    """True for a name of an extreme or a scatter of what it names, and not of its mean."""
+    words = set(plain(header).split())
+    return bool(
+        words & {"max", "min", "maximum", "minimum", "peak", "static", "std", "dev", "sd", "stdev", "error"}
+    )
 
 
 def looks_like_force(header: str) -> bool:

@@ -15,7 +15,7 @@ from separatrix.tribometer.dialect import is_number
 from separatrix.tribometer.formats import PLAIN
 from separatrix.tribometer.formats.layout import Layout
 from separatrix.tribometer.log import ABSCISSAE, MEANINGS, RawLog, RawTable
-from separatrix.tribometer.names import header_parts, plain
+from separatrix.tribometer.names import header_parts, looks_extreme, plain
 from separatrix.tribometer.sliding import sliding_rows
 from separatrix.units import Array, format_quantity, printable
 
@@ -54,7 +54,7 @@ def raw_log(
         table.headers, table.units, source, columns, layout, constant_force=force is not None
     )
     _check_twins(table, understood, source)
-    notes: list[str] = []
+    notes = _extreme(table, understood)
     absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
     arrays = {meaning: _in_si(table, chosen, absent) for meaning, chosen in understood.used.items()}
     arrays = _without_empty_abscissae(arrays, source, notes)
@@ -83,6 +83,15 @@ def raw_log(
         notes=(*notes, *sentences),
         **fields,
     )
+
+
+def _extreme(table: RawTable, understood: Understood) -> list[str]:
+    """A note on a friction that is a largest, smallest or static one by its name."""
+    chosen = understood.used.get("friction")
+    header = "" if chosen is None else table.headers[chosen.index].strip()
+    if not looks_extreme(header):
+        return []
+    return [f'the column of friction, "{printable(header)}", is not a mean friction by its name']
 
 
 def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
