@@ -104,7 +104,7 @@ def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
     rest = size * np.exp(-3.0 * x[behind] / share).mean()
     error = 0.02 / np.sqrt(behind.sum())
     assert found.ends
-    assert rest < 2.0 * np.hypot(error, found.error)  # the interval, of two standard errors, holds it
+    assert rest < 2.0 * np.hypot(error, found.rest)  # the interval, of two standard errors, holds it
     assert 0.4 * share < found.end < 1.5 * share  # a person marks it at the share, where 5 % of it is left
 
 

@@ -32,6 +32,9 @@ FEW_ROWS = 36
 RESOLVED = 5.0
 """Rows an oscillation below which it may be the image of a faster one."""
 
+MOSTLY = 1.4
+"""Standard error over that by noise from which most of it is what may be left of running-in."""
+
 HIGH = 1.0
 """Friction above which a wrong column or unit is likelier than a contact."""
 
@@ -166,14 +169,16 @@ def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | Non
         yield f"Wear depth jumps by {format_quantity(abs(size), 'm', 2)} at {place}: a wear event."
 
 
-def length_flags(mean: SteadyMean, effective: float, rows: int, options: ReductionOptions) -> Iterator[str]:
-    """Report a test too short for its correlation."""
+def length_flags(
+    mean: SteadyMean, error: float, effective: float, rows: int, options: ReductionOptions
+) -> Iterator[str]:
+    """Report a test too short for its correlation, where the error is not mostly that of running-in."""
     if rows < FEW_ROWS:
         yield (
             f"The steady part has {rows} rows: too few to see running-in or correlation, and the interval "
             "assumes none."
         )
-    elif mean.is_long:
+    elif mean.is_long and error < MOSTLY * mean.standard_error:
         yield (
             f"Friction is correlated over {100 / (np.pi * LONG):.0f} % of the steady part or longer: the "
             "test is too short for its scatter, and the interval may be too narrow."

@@ -259,7 +259,7 @@ class _Parts:
         largest = max(spikes, key=lambda event: event.size, default=None)
         yield from flags.spike_flag(spikes, "" if largest is None else self.told_row(largest.row))
         yield from flags.step_flags(self.told(friction_step(self.spans)), self.told(self.wear()))
-        yield from flags.length_flags(self.mean, self.effective, self.friction.size, self.options)
+        yield from flags.length_flags(self.mean, self.error, self.effective, self.friction.size, self.options)
         yield from flags.range_flag(self.mean.mean, self.friction)
         yield from flags.digit_flag(self.mean, *self.last_digit)
         yield from flags.gap_flag(self.spans)
@@ -289,7 +289,7 @@ class _Parts:
     @cached_property
     def error(self) -> float:
         """Standard error with what may be left of running-in, and that of the last digit."""
-        rest = 0.0 if self.run_in is None else self.run_in.error
+        rest = 0.0 if self.run_in is None else self.run_in.rest
         return float(np.linalg.norm((self.mean.standard_error, rest, self.last_digit[1])))
 
     @cached_property

@@ -53,9 +53,6 @@ STRETCH = 1.3
 NOISE = 2.0
 """Squares of standard errors that are noise in a difference: the rest of it is what may be left."""
 
-SHARE = 0.75
-"""Share of what may be left that counts as its standard error."""
-
 LEVEL = 0.02
 """What may be left, as a share of the mean, from which a steady part is not level."""
 
@@ -86,11 +83,6 @@ class RunIn:
     """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
     level: bool
     """Whether what may be left is no more than `LEVEL` of the mean."""
-
-    @property
-    def error(self) -> Ratio:
-        """Standard error by what may be left."""
-        return SHARE * self.rest
 
 
 def run_in(values: Array) -> RunIn:
