@@ -269,10 +269,9 @@ def test_steps_of_friction_and_wear_are_told():
 
 def test_a_test_too_short_for_its_correlation_is_told():
     """A correlation over a third of the test: the interval is not to be trusted, and that is said."""
+    words = ("Friction is correlated over", "The steady part", "Running-in does not end", "Friction drifts")
     tests = [reduce_log(log(replace(QUIET, correlation=0.3), seed=seed)) for seed in range(5)]
-    assert (
-        sum(bool(told(test, "Friction is correlated over")) for test in tests) >= 3
-    )  # or it looks like a fall
+    assert sum(any(flag.startswith(words) for flag in test.flags) for test in tests) >= 4
 
 
 def test_a_long_correlation_is_told_by_the_weight_of_all_spectra():

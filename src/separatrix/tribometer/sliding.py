@@ -49,6 +49,9 @@ BEHIND = 0.05
 LONGEST_RAMP = 0.2
 """Share of the rows that a ramp has at most."""
 
+REST = 0.2
+"""Share of the usual friction below which a log begins at rest."""
+
 STRETCH = 8
 """Rows of one direction, in the middle, from which strokes can be told."""
 
@@ -188,7 +191,7 @@ def _by_force(signed: Array, friction: Array, kept: Rows) -> Rows | None:
     turns = np.flatnonzero(np.diff(clear[clear != 0.0]) != 0.0)
     lengths = np.diff(np.concatenate([[0], turns + 1, [int((clear != 0.0).sum())]]))
     strokes = turns.size > 0 and np.median(lengths) >= STRETCH
-    if not strokes and size[:3].max() >= SLOW * usual_size:
+    if not strokes and size[:3].max() >= REST * usual_size:
         return None
     rows = np.ones(f.size, dtype=bool)
     crossings = np.flatnonzero(np.diff(np.sign(f)) != 0.0) if strokes or turns.size == 0 else turns
