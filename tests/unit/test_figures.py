@@ -7,12 +7,13 @@ import json
 import drawn
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
 from separatrix.figures.heading import heading
 from separatrix.figures.literal import literal_texts
-from separatrix.figures.ranking import _ranks, file_name
+from separatrix.figures.ranking import _ranks, file_name, text_order
 from separatrix.figures.spectrum import spectrum_against_time, whirl_spectrum
 from separatrix.figures.style import canvas, journal, label_lines, save, settled, spread
 
@@ -152,3 +153,18 @@ def test_a_long_title_is_cut_on_its_second_line():
     lines = heading(described(drawn.curve(), "bearing").assign_attrs(title="word " * 200), 40)
     assert [len(line) <= 40 for line in lines] == [True] * len(lines)
     assert lines[1].endswith("...")
+
+
+def test_the_overview_lists_the_materials_as_the_text_does():
+    """By rank in the own environment, then margin, then friction; whoever has no rank comes last."""
+    on = ("environment", "material")
+    data = xr.Dataset(
+        {
+            "material_rank": (on, [[1.0, 2.0, 3.0, 4.0], [3.0, np.nan, 1.0, 1.0]]),
+            "material_margin": (on, [[0.4, 0.3, 0.2, 0.1], [0.1, np.nan, 0.3, 0.4]]),
+            "material_friction": (on, [[0.1, 0.2, 0.3, 0.4], [0.4, np.nan, 0.1, 0.1]]),
+        },
+        coords={"environment": ["air", "vacuum"], "material": list("ABCD")},
+        attrs={"study": json.dumps({"ranking": {"environment": {"value": "vacuum"}}})},
+    )
+    assert text_order(data) == [3, 2, 0, 1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import textwrap
 from collections.abc import Iterator
 from itertools import cycle
@@ -182,26 +183,34 @@ def overview(data: xr.Dataset) -> Figure:
         chain_lines(axes, data)
     _rows(axes, data, places)
     untested(axes, data["overall_extrapolation"])
-    axes.set_title("Restitution thresholds; the number is the overall rank, = a tie")
+    own = own_environment(data)
+    where = "overall" if own is None else f"in {data['environment'].values[own]}"
+    axes.set_title(f"Restitution thresholds; number: rank {where}, = a tie")
     figure.legend(loc="outside lower left", ncols=2, fontsize=6.5, handlelength=1.8)
     return figure
 
 
 def text_order(data: xr.Dataset) -> list[int]:
-    """Return the places of the materials as the text lists them: by rank, margin and friction."""
+    """Return the places of the materials as the text lists them: those of the bearing's own environment."""
+    own = own_environment(data)
+    prefix = "overall" if own is None else "material"
+    rows = data if own is None else data.isel(environment=own)
 
     def known(key: str, place: int, missing: float) -> float:
-        value = data[key].values[place]
+        value = rows[f"{prefix}_{key}"].values[place]
         return missing if value in ("", None) or not np.isfinite(float(value)) else float(value)
 
     def key(place: int) -> tuple[float, float, float]:
-        return (
-            known("overall_rank", place, np.inf),
-            -known("overall_margin", place, 0.0),
-            known("overall_friction", place, 0.0),
-        )
+        return known("rank", place, np.inf), -known("margin", place, 0.0), known("friction", place, 0.0)
 
     return sorted(range(data.sizes["material"]), key=key)
+
+
+def own_environment(data: xr.Dataset) -> int | None:
+    """Return the place of the bearing's own environment; None if the study does not say it."""
+    stated = json.loads(data.attrs.get("study", "{}")).get("ranking", {}).get("environment", {}).get("value")
+    names = [str(name) for name in data["environment"].values]
+    return names.index(stated) if stated in names else (0 if len(names) == 1 else None)
 
 
 def _thresholds(axes: Axes, data: xr.Dataset, places: Array, marker: str, colour: str) -> None:
@@ -217,14 +226,18 @@ def _thresholds(axes: Axes, data: xr.Dataset, places: Array, marker: str, colour
 
 def _rows(axes: Axes, data: xr.Dataset, places: Array) -> None:
     """Write names and ranks at the left; at the right the overall verdicts and the heads of the columns."""
-    named = zip(data["material"].values, _ranks(data["overall_rank"].values), strict=True)
+    own = own_environment(data)
+    rows = data if own is None else data.isel(environment=own)
+    prefix = "overall" if own is None else "material"
+    named = zip(data["material"].values, _ranks(rows[f"{prefix}_rank"].values), strict=True)
     axes.set_yticks(places, [f"{name}  {rank}" for name, rank in named])
     axes.tick_params(axis="y", length=0)
-    for place, verdict in zip(places, data["overall_verdict"].values.astype(str), strict=True):
+    for place, verdict in zip(places, rows[f"{prefix}_verdict"].values.astype(str), strict=True):
         colour, marker = VERDICT_COLOURS.get(verdict, GREY), VERDICT_MARKERS.get(verdict, "_")
         axes.plot(VERDICT_AT, place, marker, color=colour, ms=5)
         axes.text(VERDICT_AT + 0.02, place, verdict or "none", fontsize=7, va="center")
     top = places.size - 0.4
-    axes.text(VERDICT_AT - 0.01, top, "overall verdict", fontsize=7, color=GREY, va="bottom")
+    head = "overall verdict" if own is None else "verdict here"
+    axes.text(VERDICT_AT - 0.01, top, head, fontsize=7, color=GREY, va="bottom")
     if not np.isfinite(data["material_friction"].values).all():
         axes.plot([], [], "x", color=GREY, ms=3.6, label="not measured in the environment of its colour")
