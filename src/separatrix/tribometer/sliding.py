@@ -193,11 +193,8 @@ def _by_force(signed: Array, friction: Array, kept: Rows) -> Rows | None:
     strokes = turns.size > 0 and np.median(lengths) >= STRETCH
     if not strokes and size[:3].max() >= REST * usual_size:
         return None
-    rows = np.ones(f.size, dtype=bool)
     crossings = np.flatnonzero(np.diff(np.sign(f)) != 0.0) if strokes or turns.size == 0 else turns
-    low = np.abs(f) < TURNING * usual
-    for k in (*crossings.tolist(), 0):
-        _spread(rows, low, k)
+    rows = ~_around(np.abs(f) < TURNING * usual, np.append(crossings, 0))
     for one in (slice(None), slice(None, None, -1)):
         rows[one][: _held(size[one])] = False
     found = np.zeros(kept.size, dtype=bool)
@@ -205,13 +202,12 @@ def _by_force(signed: Array, friction: Array, kept: Rows) -> Rows | None:
     return found if rows.sum() >= FEWEST * rows.size else None
 
 
-def _spread(rows: Rows, low: Rows, start: int) -> None:
-    """Take out the rows of low friction on both sides of a place."""
-    for step in (1, -1):
-        i = start
-        while 0 <= i < low.size and low[i]:
-            rows[i] = False
-            i += step
+def _around(low: Rows, places: NDArray[np.int64]) -> Rows:
+    """Rows of the stretches of low friction that hold one of the places."""
+    stretch = np.cumsum(np.diff(low, prepend=not low[0]))
+    held = np.zeros(stretch[-1] + 1, dtype=bool)
+    held[stretch[places]] = True
+    return np.asarray(low & held[stretch])
 
 
 def _held(friction: Array) -> int:
