@@ -228,17 +228,19 @@ def test_the_number_of_threads_changes_nothing():
 
 
 def test_an_interrupt_leaves_a_ranking_that_says_so():
-    """What was finished stays, what was not is None with that reason, and complete is False."""
+    """Verdicts that were finished stay, what was not is None with that reason, and complete is False."""
 
     def stop(done, total):
         if done == 1:
             raise KeyboardInterrupt
 
-    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.1)))), progress=stop)
+    two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
+    found = rank(quick_study(ranking=two), progress=stop)
     assert not found.complete
-    assert found.overall[0].friction == 0.1
-    assert found.overall[0].verdict is None
-    assert found.overall[0].reason == "interrupted before this was computed"
+    a, b = sorted(found.overall, key=lambda row: row.name)
+    assert (a.verdict is None, a.restitution_threshold) == (False, None)
+    assert a.reason.endswith("Its threshold: interrupted before this was computed.")
+    assert (b.friction, b.verdict, b.reason) == (0.2, None, "interrupted before this was computed")
 
 
 def test_each_candidate_has_the_stiffness_of_its_own_pocket():

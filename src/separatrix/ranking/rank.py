@@ -258,7 +258,7 @@ def _curve(question: _Question, found: _Findings, jobs: int) -> StabilityCurve |
 
 def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
     """Return each candidate's own curve at the nodes of all; None where all share one, or one is missing."""
-    if len(question.cages) < 2 or not all(found.points.values()):
+    if len(question.cages) < 2 or not all(found.traced.values()):
         return {"own_eta": None, "own_curves": None}
     nodes = {
         stiffness: ([point.restitution_factor for point in points], [height(point) for point in points])
