@@ -227,8 +227,8 @@ def test_reading_a_friction_file_needs_no_numpy(tmp_path):
     assert json.loads(found.stdout) is False
 
 
-def test_figures_name_in_their_legend_what_was_not_tested():
-    """Each sentence once, in whatever order the candidates bring them; nothing where all was tested."""
+def test_figures_mark_in_their_legend_that_something_was_not_tested():
+    """One line, whatever the sentences are: the printed answer has them; nothing where all was tested."""
     import xarray as xr
     from matplotlib.figure import Figure
 
@@ -236,7 +236,9 @@ def test_figures_name_in_their_legend_what_was_not_tested():
 
     axes = Figure().subplots()
     untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
-    assert axes.get_legend_handles_labels()[1] == ["friction: too fast", "friction: too hot"]
+    assert axes.get_legend_handles_labels()[1] == ["friction outside the tests"]
+    untested(bare := Figure().subplots(), xr.DataArray([["", ""]]))
+    assert bare.get_legend_handles_labels()[1] == []
 
 
 def test_a_saved_ranking_holds_the_sentences_as_one_text():
