@@ -178,6 +178,16 @@ def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
     assert found == [{"key": "cage.ball_cage_friction", "first": 0.1, "second": taken, "unit": "-"}]
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e300])
+def test_a_saved_run_of_numbers_that_cannot_be_drawn_is_refused(value, folder, capsys, tmp_path):
+    """One line, not a traceback of the plotting library."""
+    data = results.load(folder / "small" / "simulate.nc")
+    data["position"][:] = value
+    results.save(data, tmp_path / "odd.nc")
+    assert main(["compare", str(tmp_path / "odd.nc"), str(folder / "small")]) == 2
+    assert "must have finite numbers below 1e+30 in position" in capsys.readouterr().err
+
+
 def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
     """`--json` without `--out`: the document alone."""
     assert main(["compare", str(folder / "small"), str(folder / "small"), "--json"]) == 0

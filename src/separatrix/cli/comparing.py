@@ -28,6 +28,9 @@ DRAWN: dict[str, int] = {
 }
 """What a comparison of simulations takes from each: variable and number of its dimensions."""
 
+MOST = 1e30
+"""Magnitude from which a number cannot be drawn; no run comes near it."""
+
 RANKED = ("verdict", "margin", "probability_stable", "friction", "restitution_threshold")
 """What a comparison of rankings takes of each material."""
 
@@ -134,6 +137,8 @@ def _check_variables(data: xr.Dataset, path: Path) -> None:
     for name in (name for name in wanted if name not in {*texts, "material"}):
         if data[name].dtype.kind not in "iuf":
             raise InputError(str(path), f"must have numbers in {name}", value=str(data[name].dtype))
+        if wanted is DRAWN and not float(abs(data[name]).max(skipna=False)) < MOST:
+            raise InputError(str(path), f"must have finite numbers below {MOST:g} in {name}")
 
 
 def _ranked() -> dict[str, int]:
