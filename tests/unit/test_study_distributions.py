@@ -226,7 +226,7 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = report("check", document("check", SimpleNamespace(static=None), study, []))
+    shown = report("check", document("check", SimpleNamespace(static=None, static_reason=""), study, []))
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
     from separatrix.chain import bearing_state
 
