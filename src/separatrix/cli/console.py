@@ -144,6 +144,7 @@ class Life:
 
     def __init__(self, title: str) -> None:
         self.title, self.begun = title, time.monotonic()
+        self.started = self.begun
         self.done = self.total = 0
         self.expected = False
 
@@ -152,11 +153,13 @@ class Life:
         self.done, self.total = done, total
         passed = time.monotonic() - self.begun
         if not self.expected and passed > WORTH_SAYING and FIRST_PART * total <= done < total:
-            self.expect(lambda: passed * total / done)
+            self.expected = True
+            complain(f"{self.title} takes about {in_words(passed * total / done)}.")
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Print what the work will take, unless that is too short to matter."""
         seconds, self.expected = estimate(), True
+        self.started = time.monotonic()  # what was compiled for the estimate is not part of a step
         if seconds >= WORTH_SAYING:
             complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
 
@@ -167,7 +170,7 @@ class Life:
             return f"{self.title}: at work for {in_words(passed)}"
         share = math.floor(100.0 * self.done / self.total)
         steps = f"{self.done} of {self.total} steps ({share} %) after {in_words(passed)}"
-        left = passed * (self.total - self.done) / self.done
+        left = (time.monotonic() - self.started) * (self.total - self.done) / self.done
         return f"{self.title}: {steps}, about {in_words(left)} left"
 
 
