@@ -87,10 +87,13 @@ class Point:
 
 
 def settings_at(chi: float, runs: int) -> StabilitySettings:
-    """Ensemble of one kick; hard impacts know no spring, and take the middle kick."""
+    """Ensemble of one kick; hard impacts know no spring, and take the reference kick."""
     kick = KICK * chi / CHI_MIDDLE if chi > 0.0 else KICK
     return StabilitySettings(
-        kicks=(kick,), runs=runs, duration=max(DURATION, CROSSINGS * 2 * HALF_PLAY / kick)
+        kicks=(kick,),
+        reference_kick=kick,
+        runs=runs,
+        duration=max(DURATION, CROSSINGS * 2 * HALF_PLAY / kick),
     )
 
 
@@ -149,7 +152,7 @@ def hard_impacts(eta: float, settings: StabilitySettings) -> Crossing:
     def look(friction: float, first_run: int, runs: int) -> Count:
         numbered = replace(settings, seed=settings.seed + first_run)
         ensemble = run_hard_ensemble(cage_at(CAGE, eta, friction), numbered, runs=runs)
-        return Count(int(ensemble.count(RunOutcome.GROWS)[0]), runs)
+        return Count(int(ensemble.count(RunOutcome.WHIRLS)[0]), runs)
 
     found = Response(look, settings.runs).crossing(0.5, round(1.5 * settings.runs), 0.15)
     if not isinstance(found, Crossing):

@@ -224,13 +224,14 @@ def follow(
     )
 
 
-def grows(cage, *, kick, direction, ball_lead, duration, step, half_play=None, pocket_angle=None, slip=SLIP):
-    """Mean kinetic energy over the last fifth of the run, over that of the kick."""
+def late_energy(
+    cage, *, kick, direction, ball_lead, duration, step, half_play=None, pocket_angle=None, slip=SLIP
+):
+    """Mean kinetic energy over the last fifth of the run [J]."""
     p = numbers(cage, half_play, pocket_angle, slip)
     nothing = np.empty((0, BALLS + cage.ball_count))
     given = 0.5 * cage.mass * kick**2
-    mean = march(start(p, kick, direction, ball_lead), round(duration / step), step, p, nothing, 1e5 * given)
-    return mean / given
+    return march(start(p, kick, direction, ball_lead), round(duration / step), step, p, nothing, 1e5 * given)
 
 
 def start(p, kick, direction, ball_lead):

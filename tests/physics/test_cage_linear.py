@@ -47,7 +47,9 @@ def gripped(damping: float, friction: float = 0.0, **change: float) -> PlanarCag
 
 def growth_rate(cage: PlanarCage, duration: float) -> float:
     """Growth rate of the amplitude between the middle and the end of a run, from the kinetic energy [1/s]."""
-    run = follow(cage, kick=0.5, direction=0.3, ball_lead=np.zeros(Z), duration=duration, samples=40000)
+    run = follow(
+        cage, kick=0.5, direction=0.3, ball_lead=np.zeros(Z), duration=duration, until=duration, samples=40000
+    )
     half, end = run.time[-1] / 2, run.time[-1]
     width = 5 / linear_whirl_frequency(cage)  # whole turns, so that the mean has no beat
     means = []

@@ -237,7 +237,7 @@ def test_everything_at_once_explains_its_energy():
 def test_the_first_blows_are_the_same(friction):
     """Place and velocity after 2 ms: blows on pockets and land, before chaos takes over."""
     cage = replace(CAGE, ball_cage_friction=friction, land_clearance=4e-4)
-    ours = follow(cage, kick=2.0, direction=0.4, ball_lead=LEAD, duration=0.002, samples=500)
+    ours = follow(cage, kick=2.0, direction=0.4, ball_lead=LEAD, duration=0.002, until=0.002, samples=500)
     theirs = go(cage, kick=2.0, lead=LEAD, step=1e-7)
     assert ours.land_force.max() > 0.0
     assert ours.contact_force.max() > 100.0

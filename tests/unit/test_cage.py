@@ -15,7 +15,8 @@ from separatrix.cage import (
 )
 from separatrix.cage.coefficients import time_unit
 from separatrix.cage.drive import drive_energy
-from separatrix.cage.ensemble import random_starts, run_limits
+from separatrix.cage.ending import PLACE, run_limits
+from separatrix.cage.ensemble import random_starts
 from separatrix.cage.run import random_start
 from separatrix.errors import InputError
 from separatrix.study import Guidance, StabilitySettings
@@ -69,8 +70,8 @@ def test_a_guided_cage_needs_the_clearance_of_its_land():
 def test_races_that_grip_the_balls_have_infinite_damping():
     """Eta = 1 is a damping without bound, and its runs are numbers."""
     result = run_ensemble(replace(CAGE, race_damping=math.inf), SETTINGS)
-    assert np.all(np.isfinite(result.energy_growth))
-    assert np.all(result.energy_growth > 0.0)
+    assert np.all(np.isfinite(result.end_energy))
+    assert np.all(result.end_energy > 0.0)
 
 
 @pytest.mark.parametrize("damping", [0.1, 1.0, 1e9])
@@ -78,7 +79,7 @@ def test_the_balls_yield_stably_at_any_damping(damping):
     """A ball that follows at once, or hardly ever, gives numbers, and no energy."""
     result = run_ensemble(replace(CAGE, race_damping=damping, ball_cage_friction=0.0), SETTINGS)
     assert np.all(np.isfinite(result.energy_imbalance))
-    assert np.all(result.energy_growth < 1.0)
+    assert np.all(result.end_energy < 0.5 * CAGE.mass * 0.5**2)
 
 
 @pytest.mark.parametrize("kicks", [(), (0.0,), (-1.0,), (math.nan,)])
@@ -165,13 +166,14 @@ def test_starts_scatter_as_cage_and_settings_say():
     assert np.abs(loose).max() == pytest.approx(0.7 * 3e-4, rel=0.02)
 
 
-def test_a_centre_beyond_the_play_is_drift_unless_a_land_holds_it():
-    """Twice half the play, from the axis; a guided cage and one that grips its balls know no drift."""
-    assert run_limits(CAGE, 0.5).drift == 6e-4
-    held = replace(CAGE, guidance=Guidance.OUTER, land_clearance=4e-4)
-    assert (
-        run_limits(held, 0.5).drift == run_limits(replace(CAGE, pocket_clearance=0.0), 0.5).drift == math.inf
-    )
+def test_only_a_centre_that_nothing_holds_can_drift():
+    """Turning or weight without a land; in a held cage the mean offset shows whether it is in its place."""
+    turning = replace(CAGE, cage_speed=670.0)
+    held = replace(turning, guidance=Guidance.OUTER, land_clearance=4e-4)
+    loose, still, guided = (run_limits(cage, 0.5, 0.3) for cage in (turning, CAGE, held))
+    assert [limits.drifts for limits in (loose, still, guided)] == [True, False, False]
+    assert loose.place < 0.0
+    assert guided.place == pytest.approx(PLACE * 2e-4, rel=1e-12)  # rounding
 
 
 @pytest.mark.parametrize(
@@ -183,14 +185,22 @@ def test_a_centre_beyond_the_play_is_drift_unless_a_land_holds_it():
     ],
 )
 def test_what_the_drive_gives_is_no_early_end(change):
-    """However weak the kick: no growth is known from the drive's energy, no death above the kick's own."""
-    cage, kick = replace(CAGE, **change), 1e-3
+    """However weak the kick: no growth is known from the drive's energy, and rest is no early end."""
+    cage = replace(CAGE, **change)
     joules = cage.mass / time_unit(cage) ** 2
-    for only in (False, True):
-        limits = run_limits(cage, kick, growth_only=only)
-        grows = (limits.grows_above, limits.mean_grows_above, limits.mean_grows_at_once)
-        assert min(grows) * joules > drive_energy(cage)
-        assert max(limits.dies_below, limits.mean_dies_below) * joules < 0.5 * cage.mass * kick**2
+    limits = run_limits(cage, 1e-3, 0.3)
+    assert limits.drive * joules == pytest.approx(drive_energy(cage), rel=1e-12)  # rounding
+    assert min(limits.grown, limits.grows_on, limits.grows_at_once) > limits.drive
+    assert limits.still < 0.0
+
+
+def test_a_run_is_at_most_four_times_its_duration():
+    """A hundred looks in the duration, fewer where one would be shorter than some turns of a whirl."""
+    limits = run_limits(CAGE, 0.5, 0.3)
+    assert (limits.looks, limits.most, limits.least) == (100, 400, 0)
+    assert run_limits(CAGE, 0.5, 0.3, least=True).least == 100  # a history goes on to its duration
+    short = run_limits(CAGE, 0.5, 1e-4)
+    assert (short.looks, short.most) == (5, 20)
 
 
 @pytest.mark.parametrize("land", [{}, {"guidance": Guidance.OUTER, "land_clearance": 4e-4}])
@@ -199,7 +209,7 @@ def test_a_cage_that_turns_the_other_way_has_the_same_ensemble(land):
     cage = replace(CAGE, cage_speed=650.0, gravity=9.81, **land)
     mirrored = replace(cage, cage_speed=-650.0, inner_speed=-1500.0)
     there, back = (run_ensemble(one, SETTINGS) for one in (cage, mirrored))
-    for name in ("outcome", "energy_growth", "largest_offset", "whirl_frequency", "whirl_direction"):
+    for name in ("outcome", "end_energy", "largest_offset", "whirl_frequency", "whirl_direction"):
         np.testing.assert_array_equal(getattr(there, name), getattr(back, name))
 
 

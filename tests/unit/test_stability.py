@@ -113,7 +113,7 @@ def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
 def at_three_kicks(*probabilities):
     """Critical friction where the probability of each kick is known: 0.2, 0.5 and 1 m/s."""
     cage, kicks = cage_state(read_study("cryogenic-turbopump")).cage, (0.2, 0.5, 1.0)
-    settings = StabilitySettings(kicks=kicks, runs=256)
+    settings = StabilitySettings(kicks=kicks, reference_kick=0.5, runs=256)
     counter, looks = GrowthCounter(cage, settings), [response(known) for known in probabilities]
     counter.count = lambda _, f, kick, *, first_run, runs: looks[kicks.index(kick)]._look(f, first_run, runs)
     return critical_friction(cage, 0.5, settings, counter=counter)
@@ -213,22 +213,22 @@ def test_runs_are_numbered_one_after_the_other():
     assert [first for first, _ in asked] == ends[:-1]
 
 
-def test_runs_that_stalled_are_told(monkeypatch):
-    """They count as not growing, and a warning says how many, from which kick, at which friction."""
+def test_unresolved_runs_are_told(monkeypatch):
+    """They count as not whirling, and a warning says how many, from which kick, at which friction."""
     cage = cage_state(read_study("cryogenic-turbopump")).cage
-    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4, growth_only=True)
-    found.outcome[0, :3] = (RunOutcome.GROWS, RunOutcome.STALLED, RunOutcome.STALLED)
+    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
+    found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 2, RunOutcome.SETTLES)
     monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
     counter = GrowthCounter(cage, StabilitySettings())
-    with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not growing"):
+    with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not whirling"):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
 
 
 def test_counts_are_those_of_their_kick_and_restitution_factor(monkeypatch):
     """Parts at one point add up; other kicks and restitution factors have their own."""
     cage = cage_state(read_study("cryogenic-turbopump")).cage
-    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4, growth_only=True)
-    found.outcome[0] = (RunOutcome.GROWS, *[RunOutcome.DIES] * 3)
+    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
+    found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.SETTLES] * 3)
     monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
     counter = GrowthCounter(cage, StabilitySettings())
     for eta, friction, kick, first in (

@@ -67,13 +67,13 @@ def test_a_point_is_the_ensemble_of_its_cage(study):
     )  # column after column
     for point in found.points:
         there = cage_at(cage, point.x, point.y)
-        alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, growth_only=True)
-        assert point.grown == int(alone.count(RunOutcome.GROWS)[0])
+        alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, ledger=False)
+        assert point.grown == int(alone.count(RunOutcome.WHIRLS)[0])
         assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
         evidence = judge(there, alone)
         for name in ("largest_offset", "drift_rate", "largest_contact_force"):
             assert getattr(point, name) == getattr(evidence, name)
-        whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12, growth_only=True)
+        whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12, ledger=False)
         assert point.runs == 6 or point.decision is judge(there, whole).verdict
 
 
@@ -110,7 +110,7 @@ def test_first_runs_that_agree_end_a_point(study):
     for friction in (0.0, 0.08, 0.12, 0.2):
         there = cage_at(cage, 0.6, friction)
         found = decided_ensemble(there, settings, 0.5, 12)
-        whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, growth_only=True)
+        whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, ledger=False)
         runs = found.outcome.shape[1]
         first = whole.outcome[0, :AGREEING]
         assert (runs == AGREEING) == bool((first == first[0]).all())
@@ -125,37 +125,34 @@ def test_first_runs_that_agree_end_a_point(study):
 def test_a_settled_point_keeps_its_answer_however_the_rest_ends(most):
     """Every state of the runs, every end of the others: the same answer, also by the runs that were made."""
     ended = 0
-    for grown, by_drive, dead in itertools.product(range(most + 1), (0, 1, 3), range(most + 1)):
-        made = grown + dead
-        if not by_drive <= grown or not 1 <= made <= most:
+    for whirls, settles, others in itertools.product(range(most + 1), range(most + 1), (0, 1, 3)):
+        made = whirls + settles + others
+        if not 1 <= made < most:
             continue
-        now = Tally(runs=made, grown=grown, gained=grown - by_drive, dead=dead)
-        if made == most or not settled(now, most):
+        now = Tally(runs=made, whirls=whirls, settles=settles)
+        if not settled(now, most):
             continue
         ended += 1
         left = most - made
-        ends = {
-            answer(grown + g, grown - by_drive + g - d, dead + left - g, most)
-            for g in range(left + 1)
-            for d in range(g + 1)
-        }
-        assert ends == {answer(grown, grown - by_drive, dead, made)}
+        ends = {answer(whirls + w, settles + s, most) for w in range(left + 1) for s in range(left + 1 - w)}
+        assert ends == {answer(whirls, settles, made)}
     assert ended > 0
 
 
-def answer(grown: int, gained: int, dead: int, runs: int) -> tuple[int, str]:
+def answer(whirls: int, settles: int, runs: int) -> tuple[int, str]:
     """Side and decision by the letter of the rule."""
-    at_least = {name: wilson_interval(count, runs)[0] for name, count in (("gained", gained), ("dead", dead))}
-    stable = at_least["dead"] > 0.5 and dead >= 0.9 * runs
-    decision = "UNSTABLE" if at_least["gained"] > 0.5 else "STABLE" if stable else "UNDECIDED"
-    return side(*wilson_interval(grown, runs)), decision
+    wild, calm = (wilson_interval(count, runs)[0] for count in (whirls, settles))
+    decision = "UNSTABLE" if wild > 0.5 else "UNDECIDED"
+    if calm > 0.5 and settles >= 0.9 * runs:
+        decision = "STABLE"
+    return side(*wilson_interval(whirls, runs)), decision
 
 
 def test_a_point_is_settled_as_soon_as_its_answer_is():
-    """Of 16 runs: five of each kind are neither; twelve that grow are UNSTABLE; STABLE takes all runs."""
+    """Of 16 runs: five of each kind are neither; twelve that whirl are UNSTABLE; STABLE takes all runs."""
 
-    def at(grown: int, dead: int) -> bool:
-        return settled(Tally(runs=grown + dead, grown=grown, gained=grown, dead=dead), 16)
+    def at(whirls: int, settles: int) -> bool:
+        return settled(Tally(runs=whirls + settles, whirls=whirls, settles=settles), 16)
 
     assert [at(5, 5), at(4, 5), at(5, 4)] == [True, False, False]
     assert [at(12, 1), at(11, 1)] == [True, False]

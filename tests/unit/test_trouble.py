@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from separatrix.cage import PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
+from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
 from separatrix.chain import cage_state
 from separatrix.cli import main
 from separatrix.cli.answers import SimulationAnswer
@@ -182,12 +182,14 @@ def test_a_kick_lost_in_rounding_is_refused_by_the_engine_too():
         simulate(CAGE, kick=1e-300, duration=0.01)
 
 
-def test_a_stalled_run_says_so():
-    """Its history is shorter; the table and the document give the reason, not the length alone."""
+def test_an_unresolved_run_says_so():
+    """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
-    history = replace(simulate(CAGE, kick=0.5, duration=0.01, samples=20), outcome=RunOutcome.STALLED)
+    history = simulate(CAGE, kick=0.5, duration=0.01, samples=20)
+    history = replace(history, outcome=RunOutcome.UNRESOLVED, cause=Cause.IMPACTS)
     answer = SimulationAnswer(cage=cage_state(asked), history=history, kick=0.5, run=0)
     found = document("simulate", answer, asked, [])
     said = " ".join(report("simulate", found).split())
-    assert found["outcome"] == "STALLED"
-    assert "STALLED after 10 ms. Too many impacts in no time: the run was ended undecided." in said
+    assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "IMPACTS")
+    assert "UNRESOLVED" in said
+    assert "The run does not show where the motion ends." in said

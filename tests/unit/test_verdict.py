@@ -95,7 +95,7 @@ def test_a_cage_whose_every_run_whirls_is_unstable():
         "All of the runs from 0.1 m/s whirl, at 1.5e+03 Hz; friction feeds the cage 11 W."
     )
     grown = judge(CAGE, ensemble([[WHIRLS] * 16], whirl_frequency=1500.0))
-    assert grown.reason.endswith("the motion grows without limit.")
+    assert grown.reason.endswith("; the energy passes 10 times that of kick and frame.")
 
 
 def test_the_limits_of_a_verdict_are_a_half_and_nine_in_ten():

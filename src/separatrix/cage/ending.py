@@ -17,7 +17,7 @@ from separatrix.cage.drive import drifts, drive_energy, room
 from separatrix.cage.planar import RunOutcome
 from separatrix.cage.slots import (
     BALL_WORK,
-    BOOKED,
+    DUE,
     GRAVITY_WORK,
     KINETIC,
     LAND_WORK,
@@ -107,7 +107,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         place=-1.0 if drifts(cage) else PLACE * room(cage),
         drifts=drifts(cage),
         drive=drive,
-        still=-1.0 if drive > 0.0 or not landless else STILL * min(given, blow or given),
+        still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(given, blow or given),
         grown=GROWN * scale,
         grows_on=GROWS_ON * scale,
         grows_at_once=GROWS_AT_ONCE * scale,
@@ -131,7 +131,7 @@ def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
 
 @kernel
 def fed(tally, first, last):  # type: ignore[no-untyped-def]
-    """Work of pocket friction, and of friction on the land, in the booked looks; and whether each feeds it.
+    """Work of pocket friction, and of friction on the land, in the looks where it was due; and what feeds.
 
     Returns
     -------
@@ -141,7 +141,7 @@ def fed(tally, first, last):  # type: ignore[no-untyped-def]
     """
     pocket = land = loads = 0.0
     for i in range(first, last):
-        if tally[i, BOOKED] > 0.0:
+        if tally[i, DUE] > 0.0:
             pocket += tally[i, POCKET_WORK]
             land += tally[i, LAND_WORK]
             loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
@@ -168,7 +168,7 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     else:
         memory[ALIKE], memory[LEVEL] = 1, mean
     driven = mean <= limits.drive
-    memory[QUIET] = memory[QUIET] + 1 if driven and tally[i, BOOKED] > 0.0 else 0
+    memory[QUIET] = memory[QUIET] + 1 if driven and tally[i, DUE] > 0.0 else 0
     if memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]:
         return WHIRLS if fed(tally, i + 1 - LOOKS_EVEN // 2, i + 1)[2] else UNKNOWN
     if memory[QUIET] >= limits.window and (i + 1 >= limits.looks or arrived(tally, i + 1, look, limits)):

@@ -86,6 +86,7 @@ def simulate(
     duration: Second = 0.3,
     ball_scatter: Ratio = 0.3,
     samples: int = 4000,
+    until: Second | None = None,
 ) -> History:
     """Follow one run of the ensemble; the motion is the same to the last bit, however it is sampled.
 
@@ -97,6 +98,8 @@ def simulate(
         As in the ensemble: speed of the kick [m/s], number of the run, seed, length [s], scatter [-].
     samples : int
         At most so many rows, evenly spaced; the memory is bounded by it.
+    until : float, optional
+        Time of the last row [s]; by default the duration, or the time up to which the run is judged.
 
     Raises
     ------
@@ -116,6 +119,7 @@ def simulate(
         ball_lead=lead,
         duration=duration,
         samples=samples,
+        until=until,
         half_play=play,
         pocket_angle=angles,
     )
@@ -148,8 +152,11 @@ def follow(
     samples: int = 4000,
     half_play: Array | None = None,
     pocket_angle: Array | None = None,
+    until: Second | None = None,
 ) -> History:
     """Follow the run that starts with this direction of the kick [rad] and these leads, shape (ball,) [m].
+
+    Rows are spread over the duration, or as far as the run is judged; or over the time `until` [s].
 
     Raises
     ------
@@ -171,7 +178,7 @@ def follow(
     evidence = np.zeros((1, slots.EVIDENCE))
     hits = np.zeros((1, cage.ball_count), dtype=np.int64)
     run_rows(cage, duration, kick, starts, evidence, hits, ledger=False)
-    length = max(duration, float(evidence[0, slots.FOLLOWED]))
+    length = until or max(duration, float(evidence[0, slots.FOLLOWED]))
     rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
     rows[:, slots.CLOCK] = np.linspace(0.0, length / time_unit(cage), samples)
     run_rows(cage, duration, kick, starts, evidence, hits, rows=rows)

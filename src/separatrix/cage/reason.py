@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage.drive import drift_rate_law, room
-from separatrix.cage.ending import LONGEST
+from separatrix.cage.ending import GROWS_ON, LONGEST
 from separatrix.cage.orbit import LEFT, largest_room
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
 from separatrix.units import Array
@@ -51,9 +51,8 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {pace:.3g} Hz"
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
-    grown = int(np.count_nonzero(whirling & (fed <= 0.0)))
-    if power.size <= grown:
-        return f"{first}; the motion grows without limit."
+    if not power.size:
+        return f"{first}; the energy passes {GROWS_ON:g} times that of kick and frame."
     return f"{first}; friction feeds the cage {_watt(float(np.median(power)))}."
 
 

@@ -36,6 +36,7 @@ from separatrix.cage.slots import (
     DIRECTION,
     DRIFT_RATE,
     DRIVE,
+    DUE,
     END_ENERGY,
     FOLLOWED,
     FORCE,
@@ -121,10 +122,11 @@ def watch(  # type: ignore[no-untyped-def]
         Outcome, the looks up to which it was judged, and the cause if it is unresolved.
     """
     memory = np.zeros(MEMORY)
-    outcome, judged, touches, mean = UNKNOWN, 0, 0, 0.0
+    outcome, judged, touches, mean, touched = UNKNOWN, 0, 0, 0.0, mode[0] > 0
     for i in range(limits.most):
         tally[i] = 0.0
-        booked = books or wants_books(memory, i, mean, limits)
+        due = wants_books(memory, i, mean, limits)
+        booked = books or due  # booking every look changes no end
         pocket, land = ledger[POCKET_FRICTION], ledger[LAND_FRICTION]
         ball, gravity = ledger[BALL_DRIVE], ledger[GRAVITY]
         going = advance(
@@ -133,7 +135,7 @@ def watch(  # type: ignore[no-untyped-def]
         tally[i, POCKET_WORK] = ledger[POCKET_FRICTION] - pocket
         tally[i, LAND_WORK] = ledger[LAND_FRICTION] - land
         tally[i, BALL_WORK], tally[i, GRAVITY_WORK] = ledger[BALL_DRIVE] - ball, ledger[GRAVITY] - gravity
-        tally[i, BOOKED] = 1.0 if booked else 0.0
+        tally[i, BOOKED], tally[i, DUE] = 1.0 if booked else 0.0, 1.0 if due else 0.0
         energy, mean = kinetic(p, s), tally[i, KINETIC] / look
         held = held_energy(p, pockets, touch, mode[0])
         if not (going and np.isfinite(energy + mean)):
@@ -142,19 +144,20 @@ def watch(  # type: ignore[no-untyped-def]
         hit = np.sum(hits)
         met = mode[0] > 0 or hit > touches
         touches = hit
+        touched = touched or met or tally[i, LAND_HITS] > 0.0
         if energy + held > limits.grown:
             return (WHIRLS, i + 1, NONE) if outcome == UNKNOWN else (outcome, judged, NONE)
         if outcome == UNKNOWN:
             judged = i + 1
-            if energy + held < limits.still and touches > 0:
+            if touched and energy + held < limits.still:
                 outcome = SETTLES
-            elif s[CLOCK] >= p.ramp_time:
+            elif touched and s[CLOCK] >= p.ramp_time:
                 outcome = plain_end(tally, i, look, met, limits, memory)
             if outcome == UNKNOWN and judged == limits.most:
                 outcome = end_by_trend(tally, judged, look, limits)
         if outcome != UNKNOWN and i + 1 >= limits.least:
             break
-    if touches == 0 and np.sum(tally[:judged, LAND_HITS]) == 0.0:
+    if not touched:
         return UNRESOLVED, judged, NO_CONTACT
     return outcome, judged, FALLING if outcome == UNRESOLVED else NONE
 

@@ -230,7 +230,7 @@ def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble
         grown=grown,
         growth_rate=growth_rate(ensemble),
         largest_offset=float(ensemble.largest_offset.max()),
-        drift_rate=float(np.median(ensemble.drift_rate)),
+        drift_rate=drift_rate(ensemble),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         restitution_factor=eta,
         reason=reason,
@@ -240,6 +240,12 @@ def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble
 def growth_rate(ensemble: Ensemble) -> float:
     """Median growth rate of the runs [1/s]."""
     return float(np.median(ensemble.growth_rate))
+
+
+def drift_rate(ensemble: Ensemble) -> float:
+    """Median drift rate of the runs that do not whirl [1/s]; 0 where all do."""
+    calm = ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS]
+    return float(np.median(calm)) if calm.size else 0.0
 
 
 def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:

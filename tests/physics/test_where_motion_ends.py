@@ -1,0 +1,197 @@
+"""The outcome of a run is where its motion ends: kicks, loads, land friction, states beyond all range."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from separatrix.cage import (
+    CageMotion,
+    Cause,
+    Ensemble,
+    Judgement,
+    PlanarCage,
+    RunOutcome,
+    Verdict,
+    judge,
+    run_ensemble,
+    simulate,
+)
+from separatrix.cage.orbit import largest_room
+from separatrix.cage.verdict import kick_counts
+from separatrix.chain import cage_state
+from separatrix.study import StabilitySettings
+from separatrix.study_file import read_study
+
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+
+RUNS, DURATION = 8, 0.1
+KICKS = (0.1, 0.5, 2.0, 4.0)
+
+
+@lru_cache
+def shipped(name: str, radial_load: float = 0.0, friction: float = 0.08) -> PlanarCage:
+    """Cage of a shipped study with another radial load [N] and pocket friction [-]."""
+    study = read_study(name)
+    study = replace(study, operation=replace(study.operation, radial_load=radial_load))
+    return cage_state(study, friction=friction).cage
+
+
+def wheel(friction: float) -> PlanarCage:
+    """Cage of the momentum wheel with the pocket stiffness of a cage of 3.5 GPa, whatever the candidate's."""
+    return replace(shipped("momentum-wheel", friction=friction), ball_cage_stiffness=1.9e6)
+
+
+@lru_cache
+def wheel_runs(friction: float) -> Ensemble:
+    """Runs of the momentum wheel from every kick of `KICKS`."""
+    return ends(wheel(friction), KICKS)
+
+
+def ends(cage: PlanarCage, kicks: tuple[float, ...]) -> Ensemble:
+    """A few runs from each kick."""
+    return run_ensemble(cage, StabilitySettings(kicks=kicks, runs=RUNS, duration=DURATION))
+
+
+def judged(friction: float, kicks: tuple[float, ...]) -> Judgement:
+    """Verdict on the momentum wheel from some of the kicks."""
+    whole, rows = wheel_runs(friction), [KICKS.index(kick) for kick in kicks]
+    arrays = {
+        name: getattr(whole, name)[rows] for name in Ensemble.__slots__ if np.ndim(getattr(whole, name)) > 0
+    }
+    return judge(wheel(friction), replace(whole, **arrays))
+
+
+def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
+    """Dry phenolic, f 0.30: from 0.5 and from 4 m/s alike; the friction of the pockets feeds it."""
+    runs = wheel_runs(0.30)
+    for kick in (0.5, 4.0):
+        at = KICKS.index(kick)
+        assert np.count_nonzero(runs.outcome[at] == RunOutcome.WHIRLS) >= RUNS - 1
+        assert np.median(runs.end_energy[at]) > 1e-3  # J, against the 0.003 mJ that the frame can give
+        fed = runs.pocket_power[at][runs.pocket_power[at] != 0.0]
+        assert np.median(fed) > 1.0  # W, into 3.5 g
+    cage, levels = wheel(0.30), []
+    for kick in (0.5, 4.0):
+        seen = simulate(cage, kick=kick, duration=DURATION)
+        levels.append(seen.kinetic_energy[seen.time > 0.5 * DURATION].mean())
+    assert levels[0] == pytest.approx(levels[1], rel=0.5)  # one whirl: its energy wanders by a third
+
+
+@pytest.mark.parametrize("kicks", [(0.1, 0.5, 2.0), (0.1, 0.5, 2.0, 4.0), (2.0, 4.0)])
+def test_the_list_of_kicks_does_not_change_the_verdict(kicks):
+    """Phenolic is unstable with P(stable) 0, whichever kicks are asked for."""
+    phenolic = judged(0.30, kicks)
+    assert (phenolic.verdict, phenolic.probability_stable) == (Verdict.UNSTABLE, 0.0)
+    assert phenolic.cage_motion is CageMotion.WHIRLING
+    assert len(phenolic.by_kick) == len(kicks)
+
+
+@pytest.mark.parametrize("kicks", [(0.5, 2.0), (4.0,)])
+def test_a_kick_from_which_all_settle_changes_no_verdict(kicks):
+    """Vespel, f 0.08, and a kick of 0.05 m/s: it is shown, and nothing else changes."""
+    with_it = judge(wheel(0.08), ends(wheel(0.08), (0.05, *kicks)))
+    without = judged(0.08, kicks)
+    assert with_it.by_kick[0].settles == RUNS
+    assert (with_it.verdict, with_it.probability_stable) == (without.verdict, without.probability_stable)
+    assert with_it.by_kick[1:] == without.by_kick
+
+
+def test_a_run_is_not_settled_before_it_touches_anything():
+    """A kick of 1 mm/s meets its first pocket after 0.15 s: a run of 0.1 s goes on until then."""
+    found = ends(wheel(0.08), (1e-3,))
+    assert np.all(found.outcome == RunOutcome.SETTLES)
+    assert found.followed.min() > DURATION
+    assert found.pocket_impacts.sum(axis=2).min() > 0
+
+
+@pytest.mark.parametrize("radial_load", [0.0, 500.0])
+def test_a_fast_or_radially_loaded_bearing_is_decided(radial_load):
+    """Liquid oxygen turbopump, 40 000 rpm, f 0.08, default kicks: STABLE with and without a radial load."""
+    cage = shipped("lox-turbopump", radial_load)
+    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION), ledger=False))
+    assert (found.verdict, found.probability_stable) == (Verdict.STABLE, 1.0), found.reason
+
+
+def test_a_settled_cage_that_rubs_its_land_says_how_hard():
+    """Thrown out by the turning frame it rides on the land: its class, force, speed and heat are stated."""
+    cage = shipped("lox-turbopump")
+    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
+    assert found.cage_motion is CageMotion.ON_THE_LAND
+    assert found.mean_offset == pytest.approx(cage.land_gap, rel=0.01)
+    # M Omega^2 r presses a cage that turns with its balls; the pockets carry part of it
+    pressed = cage.mass * cage.cage_speed**2 * cage.land_gap
+    assert 0.3 * pressed < found.rubbing_force < 1.02 * pressed
+    sliding = abs(cage.inner_speed - cage.cage_speed) * cage.pitch_radius
+    assert found.rubbing_speed == pytest.approx(sliding, rel=0.05)  # the cage turns with its balls
+    expected = cage.land_friction * found.rubbing_force * found.rubbing_speed
+    assert found.rubbing_power == pytest.approx(
+        expected, rel=0.02
+    )  # medians of products and products of medians
+    assert found.pocket_power < 1e-3 * found.rubbing_power
+    assert "rubs on its land" in found.reason
+
+
+def test_friction_on_the_land_alone_makes_a_whirl_or_a_drag():
+    """Without pocket friction: at land friction 0.6 a whirl that the land feeds, at 0.1 the cage settles."""
+    cage = shipped("momentum-wheel", friction=0.0)
+    whirling = ends(replace(cage, land_friction=0.6), (2.0,))
+    assert np.all(whirling.outcome == RunOutcome.WHIRLS)
+    assert np.median(whirling.land_power) > 0.0
+    assert np.all(whirling.pocket_power == 0.0)
+    dragged = ends(replace(cage, land_friction=0.1), (0.1, 2.0))
+    assert np.all(dragged.outcome == RunOutcome.SETTLES)
+
+
+INTO_THE_LAND = """
+[bearing]
+ball_diameter = "19.984807204593117 mm"
+pitch_diameter = "68.82774148021104 mm"
+ball_count = 7
+contact_angle = "0 deg"
+inner_conformity = 0.53
+outer_conformity = 0.51
+ball_material = "440C"
+ring_material = { elastic_modulus = "231.86 GPa", poisson_ratio = 0.0, density = "1262.8 kg/m3" }
+[operation]
+inner_speed = "50000.0 rpm"
+axial_load = "11.25 N"
+radial_load = "3.375 N"
+[film]
+race_friction = 0.01
+[cage]
+mass = "9.084 g"
+pocket_clearance = "4.9392 mm"
+ball_cage_stiffness = "323998 N/m"
+pocket_position_scatter = "0.815 mm"
+guidance = "outer"
+land_clearance = "1 mm"
+land_friction = 0.0
+land_stiffness = "1e7 N/m"
+land_restitution = 0.5
+moment_of_inertia = "10.758 kg mm2"
+"""
+
+
+def test_a_cage_driven_21_mm_into_its_land_is_not_stable(tmp_path):
+    """A kick of 1000 m/s goes through a clearance of 1 mm: whatever it ends as, no verdict is STABLE."""
+    (tmp_path / "study.toml").write_text(INTO_THE_LAND, encoding="utf-8")
+    cage = cage_state(read_study(tmp_path / "study.toml"), friction=0.01).cage
+    settings = StabilitySettings(kicks=(1000.0,), runs=4, duration=1.7256639e-3, seed=0)
+    found = judge(cage, run_ensemble(cage, settings))
+    assert found.largest_offset > largest_room(cage)
+    assert found.verdict is not Verdict.STABLE
+
+
+def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
+    """A land of 1 nm and a kick of 1000 m/s: NaN once counted as a motion that dies."""
+    cage = replace(shipped("cryogenic-turbopump"), land_clearance=1e-9)
+    found = run_ensemble(cage, StabilitySettings(kicks=(1000.0,), runs=8, duration=5e-3))
+    finite = np.isfinite(found.end_energy) & np.isfinite(found.largest_offset)
+    lost = found.cause == Cause.NOT_FINITE
+    assert np.all(found.outcome[lost] == RunOutcome.UNRESOLVED)
+    settled = found.outcome == RunOutcome.SETTLES
+    assert np.all(finite[settled] & (found.end_energy[settled] < 0.5 * cage.mass * 1000.0**2))
+    assert judge(cage, found).verdict is not Verdict.STABLE
+    assert sum(count.runs for count in kick_counts(found)) == 8

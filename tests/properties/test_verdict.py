@@ -1,0 +1,98 @@
+"""Verdict, probability and worst kick of counts nobody thought of."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from separatrix.cage import Cause, Ensemble, PlanarCage, RunOutcome, Verdict, judge
+from separatrix.study import Guidance
+
+quick = settings(derandomize=True, max_examples=150, deadline=None)
+
+CAGE = PlanarCage(
+    mass=0.025, moment_of_inertia=26.4e-6, ball_count=3, pitch_radius=0.0325, cage_speed=670.0,
+    inner_speed=1570.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=600.0,
+    ball_cage_friction=0.1, guidance=Guidance.OUTER, land_clearance=1e-3,
+)  # fmt: skip
+SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
+WHOLE = ("outcome", "cause", "whirl_direction", "land_impacts")
+
+
+@st.composite
+def ensembles(draw: st.DrawFn) -> Ensemble:
+    """Up to four kicks and 24 runs of any outcome; most kicks have one that is frequent."""
+    runs, kicks = draw(st.integers(1, 24)), draw(st.integers(1, 4))
+    any_end = st.sampled_from([int(end) for end in RunOutcome])
+    rows = []
+    for _ in range(kicks):
+        usual, few = draw(any_end), draw(st.integers(0, runs))
+        others = draw(st.lists(any_end, min_size=few, max_size=few))
+        rows.append(others + [usual] * (runs - few))
+    return made(np.array(rows), rubbing=draw(st.sampled_from([0.0, 3.0])))
+
+
+def made(outcome: np.ndarray, rubbing: float = 0.0) -> Ensemble:
+    """Ensemble with these outcomes and plain evidence."""
+    evidence = {f.name: np.zeros(outcome.shape) for f in fields(Ensemble)}
+    evidence |= {name: np.zeros(outcome.shape, dtype=np.int64) for name in WHOLE}
+    evidence |= {
+        "outcome": outcome,
+        "cause": np.where(outcome == RunOutcome.UNRESOLVED, int(Cause.FALLING), 0),
+        "kicks": 0.1 * np.arange(1, outcome.shape[0] + 1),
+        "pocket_impacts": np.zeros((*outcome.shape, CAGE.ball_count), dtype=np.int64),
+        "rubbing_force": np.where(outcome == SETTLES, rubbing, 0.0),
+        "duration": 0.3,
+    }
+    return Ensemble(**evidence)
+
+
+def with_kick(runs: Ensemble, at: int, end: int) -> Ensemble:
+    """The ensemble with a kick more, from which all runs end alike."""
+    rows = np.insert(runs.outcome, at, end, axis=0)
+    return replace(made(rows), rubbing_force=np.insert(runs.rubbing_force, at, 0.0, axis=0))
+
+
+@quick
+@given(ensembles(), st.integers(0, 4))
+def test_a_kick_from_which_all_runs_settle_changes_neither_verdict_nor_probability(runs, at):
+    """Wherever it stands in the list; the other kicks keep their counts."""
+    at = min(at, runs.outcome.shape[0])
+    before, after = judge(CAGE, runs), judge(CAGE, with_kick(runs, at, SETTLES))
+    assert after.verdict is before.verdict
+    for name in ("probability_stable", "probability_low", "probability_high"):
+        assert getattr(after, name) == getattr(before, name)
+    ends = [(k.settles, k.whirls, k.drifts, k.unresolved) for k in after.by_kick]
+    del ends[at]
+    assert ends == [(k.settles, k.whirls, k.drifts, k.unresolved) for k in before.by_kick]
+
+
+@quick
+@given(ensembles())
+def test_no_verdict_contradicts_its_counts(runs):
+    """Probability in its interval; UNSTABLE with most runs whirling, STABLE with few and from every kick."""
+    found = judge(CAGE, runs)
+    assert 0.0 <= found.probability_low <= found.probability_stable <= found.probability_high <= 1.0
+    kicks = {k.kick: k for k in found.by_kick}
+    worst = kicks[found.worst_kick]
+    assert found.probability_stable == worst.settles / worst.runs
+    assert sum(k.runs for k in found.by_kick) == runs.outcome.size
+    most_whirl = any(k.whirls > 0.5 * k.runs for k in found.by_kick)
+    if found.verdict is Verdict.UNSTABLE:
+        assert worst.settles < 0.5 * worst.runs < worst.whirls
+    if found.verdict is Verdict.STABLE:
+        assert all(k.whirls <= 0.1 * k.runs and k.settles >= 0.9 * k.runs for k in found.by_kick)
+        assert not most_whirl
+    if worst.whirls == 0 and worst.settles == worst.runs:
+        assert found.verdict is not Verdict.UNSTABLE
+
+
+@quick
+@given(ensembles())
+def test_a_kick_from_which_all_runs_whirl_is_the_worst(runs):
+    """With four runs or more it makes the cage unstable, whatever the others do."""
+    found = judge(CAGE, with_kick(runs, 0, WHIRLS))
+    if runs.outcome.shape[1] >= 4:
+        assert (found.verdict, found.probability_stable) == (Verdict.UNSTABLE, 0.0)
+    assert found.worst_kick in {k.kick for k in found.by_kick if k.settles == 0 or k.whirls > 0.5 * k.runs}
