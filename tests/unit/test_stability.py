@@ -479,7 +479,7 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
     text = "\n".join(curve(document))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())
     assert "Every kick settles below  none" in text
-    assert "Every kick whirls above  a friction of 0.258" in text
+    assert "Every kick whirls above   a friction of 0.258" in text
     assert "0.190 from 0.1 m/s, - from 2 m/s" in text
     assert "so it is" in text
 
