@@ -48,8 +48,8 @@ that make a whirl plain. A whirl whose energy wanders, or one near the drive ene
 after a second."""
 
 GROWN, GROWS_ON, GROWS_AT_ONCE = 100.0, 10.0, 30.0
-"""Multiples of the energy scale (kick's, and what the frame does) beyond which a growing motion does not turn
-back: at any time, in the mean of `LOOKS_ABOVE` looks, in the mean of one."""
+"""Multiples of the energy scale (the kick's, and what frame and loads give) beyond which a growing motion
+does not turn back: at any time, in the mean of `LOOKS_ABOVE` looks, in the mean of one."""
 
 STILL = 1e-4
 """Share of the energy of the kick, and of an impact as deep as the clearance, at which an undriven cage is at
@@ -57,6 +57,19 @@ rest."""
 
 FALLS = 2.0 / 3.0
 """Energy in the last fifth of the longest run over that half way, below which the motion still falls."""
+
+REST = 0.01
+"""Share of the drive energy below which a cage is at rest, whatever friction does to it."""
+
+RISES = 1.2
+"""Ratio of the energy in the second half of a window to that in the first above which it rises."""
+
+PATIENCE = 3
+"""Windows that a motion between rest and drive energy must last unfed. Out of what leading balls, gravity or
+a dragging land keep up a whirl may still begin by chance, later than any run lasts."""
+
+FAR = 10.0
+"""Mean offset, in half clearances of the pockets, at which a cage that nothing holds has left them."""
 
 PLACE = 0.02
 """Share of its room by which the mean offset of a cage in its place may change in half a window."""
@@ -79,6 +92,7 @@ class Limits(NamedTuple):
     window: int
     place: float  # change of the mean offset that is none, in half a window; below 0 where nothing holds it
     drifts: bool  # nothing holds the centre
+    far: float  # mean offset at which that is plain
     drive: float
     still: float
     grown: float
@@ -94,8 +108,8 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
     unit, landless = time_unit(cage), math.isinf(cage.land_gap)
     looks = max(FEWEST_LOOKS, min(LOOKS, int(duration / (LONG_LOOK * unit))))
     per_mass = unit**2 / cage.mass
-    scale = energy_scale(cage, kick) * per_mass
     drive = drive_energy(cage) * per_mass
+    scale = energy_scale(cage, kick) * per_mass + drive
     turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (duration / looks)) if cage.cage_speed else 0
     blow = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
     given = 0.5 * (kick * unit) ** 2
@@ -106,6 +120,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
         drifts=drifts(cage),
+        far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
         still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(given, blow or given),
         grown=GROWN * scale,
@@ -168,16 +183,30 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     else:
         memory[ALIKE], memory[LEVEL] = 1, mean
     driven = mean <= limits.drive
+    if driven and tally[i, OFFSET] > limits.far * look:
+        return SETTLES
     memory[QUIET] = memory[QUIET] + 1 if driven and tally[i, DUE] > 0.0 else 0
     if memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]:
         return WHIRLS if fed(tally, i + 1 - LOOKS_EVEN // 2, i + 1)[2] else UNKNOWN
-    if memory[QUIET] >= limits.window and (i + 1 >= limits.looks or arrived(tally, i + 1, look, limits)):
-        first = i + 1 - limits.window
-        work, feeds, _ = fed(tally, first, i + 1)
-        if not feeds or work < mean_energy(tally, first, i + 1, look):
-            return SETTLES
-        memory[QUIET] = 0
+    if memory[QUIET] < limits.window:
+        return UNKNOWN
+    if i + 1 >= limits.looks or arrived(tally, i + 1, look, limits):
+        return at_rest(tally, i + 1, memory[QUIET], look, limits)
     return UNKNOWN
+
+
+@kernel
+def at_rest(tally, end, quiet, look, limits):  # type: ignore[no-untyped-def]
+    """`SETTLES` at rest, or in a lasting motion that pocket friction does not feed."""
+    first, half = end - limits.window, limits.window // 2
+    mean = mean_energy(tally, first, end, look)
+    if mean <= REST * limits.drive:
+        early, late = mean_energy(tally, first, first + half, look), mean_energy(tally, end - half, end, look)
+        return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
+    if quiet < PATIENCE * limits.window:
+        return UNKNOWN
+    work, feeds, _ = fed(tally, end - PATIENCE * limits.window, end)
+    return SETTLES if not feeds or work < mean else UNKNOWN
 
 
 @kernel
@@ -197,7 +226,7 @@ def end_by_trend(tally, end, look, limits):  # type: ignore[no-untyped-def]
     before = mean_energy(tally, middle - n // 2, middle - n // 2 + n, look)
     work, pocket_feeds, friction_feeds = fed(tally, end - n, end)
     if last <= limits.drive:
-        return WHIRLS if pocket_feeds and work > last else SETTLES
+        return WHIRLS if pocket_feeds and work > last > REST * limits.drive else SETTLES
     if last >= FALLS * before:
         return WHIRLS if friction_feeds else SETTLES
     return SETTLES if limits.drive == 0.0 else UNRESOLVED
