@@ -12,7 +12,9 @@ known = [c for c in study.ranking.candidates if c.name in ("Armalon", "PEEK 450 
 mine = Candidate(
     name="My compound", friction={environment: Friction(mean=0.12, standard_deviation=0.02, count=8)}
 )
-question = RankingQuestion(environments=study.ranking.environments, candidates=(*known, mine))
+question = RankingQuestion(
+    environments=study.ranking.environments, environment=environment, candidates=(*known, mine)
+)
 # a small ensemble, for a quick look
 quick = StabilitySettings(kicks=(0.5,), runs=12, duration=0.05, restitution_factors=(0.1, 0.3, 0.5, 0.7, 0.9))
 

@@ -30,7 +30,9 @@ from separatrix.uncertainty.terms import scale_of
 from separatrix.uncertainty.traced import TracedBoundary, boundary_of_points, clear_share, traced_boundary
 from separatrix.uncertainty.training import changed_cage, moving_inputs
 
-QUICK = StabilitySettings(kicks=(0.5,), runs=16, duration=0.05, restitution_factors=(0.2, 0.5, 0.8), seed=3)
+QUICK = StabilitySettings(
+    kicks=(0.5,), reference_kick=0.5, runs=16, duration=0.05, restitution_factors=(0.2, 0.5, 0.8), seed=3
+)
 
 
 def quick_study(**distributions):

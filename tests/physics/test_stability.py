@@ -161,9 +161,12 @@ def test_a_weaker_kick_needs_more_friction(curve):
 
 
 def test_hard_impacts_tend_to_the_closed_limit():
-    """Even pockets, eta of 1e-3: half grow from tan(pi/22) on, within 5 %, as far as 64 runs tell."""
-    found = hard_limit(CAGE, 1e-3, SETTINGS)
-    assert 0.1438 <= found.critical_friction <= 1.05 * 0.1438
+    """Even pockets, eta of 1e-3: half grow from tan(pi/22) on, within 5 %.
+
+    Over six seeds 0.1399 to 0.1477 with 32 runs, 0.1415 to 0.1441 with 64.
+    """
+    found = hard_limit(CAGE, 1e-3, replace(SETTINGS, runs=64))
+    assert found.critical_friction == pytest.approx(0.1438, rel=0.05)
 
 
 def test_hard_limits_stand_beside_every_point(curve):

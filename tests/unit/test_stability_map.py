@@ -103,7 +103,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
 
 
 def test_first_runs_that_agree_end_a_point(study):
-    """Six runs where the first six agree, more otherwise; they are the first of all the runs."""
+    """Six runs where the first six agree, as many as could change the answer otherwise; the first of all."""
     cage = cage_state(study, friction=0.0).cage
     settings = replace(study.stability, duration=0.05)
     sizes = set()
@@ -113,7 +113,7 @@ def test_first_runs_that_agree_end_a_point(study):
         whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, ledger=False)
         runs = found.outcome.shape[1]
         first = whole.outcome[0, :AGREEING]
-        assert (runs == AGREEING) == bool((first == first[0]).all())
+        assert runs == AGREEING or not (first == first[0]).all()
         assert (found.outcome == whole.outcome[:, :runs]).all()
         assert runs == AGREEING or judge(there, found).verdict is judge(there, whole).verdict
         sizes.add(runs)

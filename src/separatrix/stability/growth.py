@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from math import inf
 from threading import Event
 
-from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, settings_for, wilson_interval
+import numpy as np
+
+from separatrix.cage import Cause, PlanarCage, RunOutcome, run_ensemble, settings_for, wilson_interval
 from separatrix.errors import ValidityWarning
 from separatrix.restitution import damping_for
 from separatrix.stability.pool import Stopped
@@ -101,7 +103,8 @@ class GrowthCounter:
             found = run_ensemble(
                 cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, ledger=False
             )
-            if open_ends := int(found.count(RunOutcome.UNRESOLVED)[0]):
+            open_ends = int(np.count_nonzero((found.cause != Cause.NONE) & (found.cause != Cause.FALLING)))
+            if open_ends:  # a motion that still falls does not whirl
                 note = UNRESOLVED.format(open_ends, runs, kick, friction)
                 warnings.warn(note, ValidityWarning, stacklevel=2)
             self._counts[key] = Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
