@@ -163,7 +163,7 @@ def test_a_picture_says_how_many_times_too_large_movements_are():
     at_all, moments = at(), np.arange(SMALL.sizes["time"])
     assert f"{at_all.enlarged:g} times" in frames._notes(SMALL, at_all, moments)
     dying = drawn.run(samples=40, outcome="SETTLES")
-    assert "ever faster" in frames._notes(dying, scene.scene(dying, np.arange(40)), np.arange(40))
+    assert "Logarithmic time" in frames._notes(dying, scene.scene(dying, np.arange(40)), np.arange(40))
 
 
 @pytest.mark.parametrize("outcome", ["WHIRLS", "SETTLES"])

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from separatrix.cage import RunOutcome, run_ensemble
+from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain import cage_state
 from separatrix.errors import ValidityWarning
 from separatrix.report.stability import curve
@@ -214,10 +214,11 @@ def test_runs_are_numbered_one_after_the_other():
 
 
 def test_unresolved_runs_are_told(monkeypatch):
-    """They count as not whirling, and a warning says how many, from which kick, at which friction."""
+    """They count as not whirling, and a warning says how many, but for those whose motion falls."""
     cage = cage_state(read_study("cryogenic-turbopump")).cage
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
-    found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 2, RunOutcome.SETTLES)
+    found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 3)
+    found.cause[0] = (Cause.NONE, Cause.IMPACTS, Cause.NO_CONTACT, Cause.FALLING)
     monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
     counter = GrowthCounter(cage, StabilitySettings())
     with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not whirling"):
