@@ -16,6 +16,7 @@ from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.lowest import lowest_among, may_be_lower
 from separatrix.ranking.order import Interval, meet, ranks
+from separatrix.ranking.plausible import beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
@@ -113,6 +114,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
     found = _compute(question, keys, jobs=jobs, progress=progress)
+    ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
     return Ranking(
         environment=environment,
         candidate=reference_candidate(study, asked).name,
@@ -125,16 +127,14 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         friction_scatter=asked.friction_scatter,
         solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
         paper_statement=PAPER_STATEMENT,
-        environments=tuple(
-            RankedEnvironment(name=name, materials=_ranked(question, found, table, name))
-            for name, table in frictions.items()
-        ),
+        environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
         overall=_ranked(question, found, means, ""),
         stability=_curve(question, found, jobs),
         **_own_curves(question, found),
         kicks=question.settings.kicks,
         runs=question.settings.runs,
         duration=question.settings.duration,
+        notes=tuple(beyond_motion(study, question.cages[question.reference], ranked[environment])),
         complete=found.complete,
     )
 

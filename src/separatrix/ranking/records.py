@@ -148,7 +148,8 @@ class Ranking:
     candidate where the study does not name it. `pocket` is what rubs there, `friction_scatter` what an
     unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
     Where candidates differ in stiffness, each has its curve in `own_curves`, at the restitution factors
-    `own_eta`. `complete` is False if an interrupt left something out.
+    `own_eta`. `notes` say where pocket forces or offsets leave the range of the model. `complete` is False if
+    an interrupt left something out.
     """
 
     environment: str
@@ -168,4 +169,5 @@ class Ranking:
     kicks: tuple[MetrePerSecond, ...]
     runs: int
     duration: Second
+    notes: tuple[str, ...] = ()
     complete: bool

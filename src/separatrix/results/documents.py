@@ -44,6 +44,7 @@ def document(verb: str, record: Any, study: Study, notes: Sequence[str]) -> Docu
         "seed": study.stability.seed,
         "warnings": [*notes, *_overflown(left_out)],
     }
+    head["warnings"] += body.pop("warnings", [])
     return head | body
 
 
@@ -178,7 +179,8 @@ def outcome_sentence(history: Any) -> str:
 
 def ranking(record: Any) -> Document:
     """Return verdict, margin, rank and reason of each candidate, with the curve and the chain behind them."""
-    return plain_record(record.ranking, "ranking") | cage(record.cage)
+    answer = plain_record(record.ranking, "ranking")
+    return answer | {"warnings": answer.pop("notes")} | cage(record.cage)
 
 
 def stability_map(record: Any) -> Document:

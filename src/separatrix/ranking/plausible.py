@@ -1,0 +1,44 @@
+"""Where the motion behind verdicts leaves the range of its model or of hardware: a sentence each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from separatrix.chain import CageState
+from separatrix.ranking.records import RankedMaterial
+from separatrix.study import Study
+from separatrix.units import Newton, Ratio, format_quantity
+
+BEYOND_LAND: Ratio = 1.2
+"""Offset over the land clearance beyond which the land's spring is the question, not the cage."""
+
+
+def transmitted_force(study: Study, state: CageState) -> Newton:
+    """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
+    contacts = state.restitution.traction.bearing
+    return study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
+
+
+def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]) -> Iterator[str]:
+    """Sentences on the rows of the bearing's own environment: pocket forces, and offsets on the land."""
+    judged = [row for row in rows if row.largest_contact_force is not None]
+    if not judged:
+        return
+    most, limit = max(row.largest_contact_force or 0.0 for row in judged), transmitted_force(study, state)
+    if most > limit:
+        yield (
+            f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
+            f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
+            "the ball slips, and the linear race damping is outside its range. The model then returns too "
+            "much speed to the cage, more so in lightly loaded bearings; what that does to a verdict is not "
+            "known."
+        )
+    gap = state.cage.land_gap
+    far = [row for row in judged if (row.largest_offset or 0.0) > BEYOND_LAND * gap]
+    if far:
+        worst = max(row.largest_offset or 0.0 for row in far)
+        yield (
+            f"{', '.join(row.name for row in far)}: the cage centre reaches "
+            f"{format_quantity(worst, 'm', 3)}, beyond the land at {format_quantity(gap, 'm', 3)} by more "
+            f"than {100 * (BEYOND_LAND - 1):.0f} %. The land's stiffness decides such numbers, a real cage may break first: they are bounds."
+        )
