@@ -40,6 +40,6 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
         yield (
             f"{', '.join(row.name for row in far)}: the cage centre reaches "
             f"{format_quantity(worst, 'm', 3)}, beyond the land at {format_quantity(gap, 'm', 3)} by more "
-            f"than {100 * (BEYOND_LAND - 1):.0f} %. The land's stiffness decides such numbers, a real cage may "
-            "break first: they are bounds."
+            f"than {100 * (BEYOND_LAND - 1):.0f} %. The land's stiffness decides such numbers, a real cage "
+            "may break first: they are bounds."
         )
