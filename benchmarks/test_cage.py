@@ -39,13 +39,12 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("ledger", [False, True], ids=["evidence", "evidence and ledger"])
 @pytest.mark.parametrize("name", CASES)
-def test_planar_motion(benchmark, name, ledger):
+def test_planar_motion(benchmark, name):
     """Runs of 0.3 s on one core."""
     settings = StabilitySettings(kicks=(0.5,), runs=RUNS, duration=0.3)
     run_ensemble(CASES[name], settings, runs=1)
-    found = benchmark(run_ensemble, CASES[name], settings, ledger=ledger)
+    found = benchmark(run_ensemble, CASES[name], settings)
     impacts = int(found.pocket_impacts.sum() + found.land_impacts.sum())
     benchmark.extra_info["simulated_seconds_per_second"] = 0.3 * RUNS / benchmark.stats["mean"]
     benchmark.extra_info["impacts_per_second"] = impacts / benchmark.stats["mean"]

@@ -43,7 +43,7 @@ def pair(cage: PlanarCage, settings: StabilitySettings, rng: np.random.Generator
     number = int(rng.integers(1_000_000))
     cage = replace(cage, ball_cage_friction=friction)
     found = [
-        run_ensemble(cage, one, kicks=(kick,), runs=1, first_run=number, ledger=False)
+        run_ensemble(cage, one, kicks=(kick,), runs=1, first_run=number)
         for one in (settings, replace(settings, duration=LONGER * settings.duration))
     ]
     outcomes = [RunOutcome(int(each.outcome[0, 0])) for each in found]

@@ -72,7 +72,7 @@ def test_one_half_of_the_runs_end_with_more_than_the_kick_at_the_known_friction(
     """The other programs count so: mean energy of the last fifth above the kick's. Tolerance as above."""
 
     def grown(f):
-        found = run_ensemble(cage_at(eta, f), SETTINGS, ledger=False)
+        found = run_ensemble(cage_at(eta, f), SETTINGS)
         return np.mean(found.end_energy > 0.5 * M * 0.5**2)
 
     frictions = friction * np.linspace(0.75, 1.25, 9)

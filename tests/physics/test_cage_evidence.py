@@ -79,7 +79,8 @@ def told(cage, ours):
     a touch at an end of the last part is cut by a row (seen: 3.3e-3 of the work there).
     """
     near, cut, largest = {"rel": 1e-3}, {"rel": 5e-3}, {"rel": 5e-4}
-    look = SETTINGS.duration / run_limits(cage, 0.5, SETTINGS.duration).looks
+    limits = run_limits(cage, 0.5, SETTINGS.duration)
+    look = limits.beats * limits.beat * time_unit(cage)
     end = round(ours.judged_until / look)
     n, half = end // 5, end // 2 - end // 5 // 2
     last = between(ours, ours.judged_from, ours.judged_until)

@@ -235,7 +235,7 @@ def test_as_many_runs_grow_with_everything_on():
     cage = replace(cage, ramp_start=0.5)
     kick, runs, duration = 0.5, 96, 0.1
     settings = StabilitySettings(kicks=(kick,), runs=runs, duration=duration)
-    ours = np.mean(run_ensemble(cage, settings, ledger=False).outcome == RunOutcome.WHIRLS)
+    ours = np.mean(run_ensemble(cage, settings).outcome == RunOutcome.WHIRLS)
     ends = []
     for begun in random_starts(cage, settings, 0, runs):
         start = {"kick": kick, "direction": begun[0], "ball_lead": begun[1:14]}

@@ -205,7 +205,7 @@ def test_without_play_a_motion_settles_below_the_linear_limit_and_whirls_above_i
     """The motion is linear: part of a kick decays, the rest grows, slowly at first."""
     gripped = replace(CAGE, pocket_clearance=0.0)
     cage = replace(gripped, ball_cage_friction=(1.0 + excess) * linear_critical_friction(gripped))
-    found = run_ensemble(cage, StabilitySettings(runs=4, duration=0.5), kicks=(0.5,), ledger=False)
+    found = run_ensemble(cage, StabilitySettings(runs=4, duration=0.5), kicks=(0.5,))
     assert np.all(found.outcome == (RunOutcome.WHIRLS if excess > 0.0 else RunOutcome.SETTLES))
 
 

@@ -20,7 +20,7 @@ from separatrix.stability import (
     threshold_points,
 )
 from separatrix.stability.pool import Stopped
-from separatrix.stability.whole import LEDGERS, PART, whole_ensemble
+from separatrix.stability.whole import PART, whole_ensemble
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05
@@ -235,8 +235,6 @@ def test_an_ensemble_in_parts_is_the_whole_one():
     settings = replace(SETTINGS, kicks=(0.2, 0.5), runs=PART + 5, duration=0.05)
     at_once = run_ensemble(CAGE, settings)
     parts = whole_ensemble(CAGE, settings, threading.Event())
-    assert (parts.energy_imbalance[:, :LEDGERS] == at_once.energy_imbalance[:, :LEDGERS]).all()
-    assert (parts.energy_imbalance[:, LEDGERS:] == 0.0).all()
     works = ("energy_imbalance", "pocket_power", "land_power")  # known where the ledger is kept
     at_once = replace(at_once, **{name: getattr(parts, name) for name in works})
     assert repr(judge(CAGE, parts)) == repr(judge(CAGE, at_once))  # one field is an array

@@ -110,7 +110,7 @@ def test_a_run_is_not_settled_before_it_touches_anything():
 def test_a_fast_or_radially_loaded_bearing_is_decided(radial_load):
     """Liquid oxygen turbopump, 40 000 rpm, f 0.08, default kicks: STABLE with and without a radial load."""
     cage = shipped("lox-turbopump", radial_load)
-    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION), ledger=False))
+    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
     assert (found.verdict, found.probability_stable) == (Verdict.STABLE, 1.0), found.reason
 
 

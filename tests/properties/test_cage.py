@@ -279,10 +279,6 @@ def test_a_history_is_the_run_of_the_ensemble(cage, run, samples):
     for name in ("end_energy", "growth_rate", "rubbing_force", "rubbing_speed", "judged_from"):
         assert getattr(history, name) == getattr(whole, name)[0, run], name
     assert history.judged_until == whole.followed[0, run]
-    unbooked = run_ensemble(cage, how, ledger=False)
-    for field in fields(Ensemble):
-        if field.name not in ("energy_imbalance", "pocket_power", "land_power"):  # differ by rounding
-            assert np.array_equal(getattr(unbooked, field.name), getattr(whole, field.name)), field.name
 
 
 @few

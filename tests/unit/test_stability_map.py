@@ -67,13 +67,13 @@ def test_a_point_is_the_ensemble_of_its_cage(study):
     )  # column after column
     for point in found.points:
         there = cage_at(cage, point.x, point.y)
-        alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs, ledger=False)
+        alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs)
         assert point.grown == int(alone.count(RunOutcome.WHIRLS)[0])
         assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
         evidence = judge(there, alone)
         for name in ("largest_offset", "drift_rate", "largest_contact_force"):
             assert getattr(point, name) == getattr(evidence, name)
-        whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12, ledger=False)
+        whole = run_ensemble(there, study.stability, kicks=(0.5,), runs=12)
         assert point.runs == 6 or point.decision is judge(there, whole).verdict
 
 
@@ -110,7 +110,7 @@ def test_first_runs_that_agree_end_a_point(study):
     for friction in (0.0, 0.08, 0.12, 0.2):
         there = cage_at(cage, 0.6, friction)
         found = decided_ensemble(there, settings, 0.5, 12)
-        whole = run_ensemble(there, settings, kicks=(0.5,), runs=12, ledger=False)
+        whole = run_ensemble(there, settings, kicks=(0.5,), runs=12)
         runs = found.outcome.shape[1]
         first = whole.outcome[0, :AGREEING]
         assert runs == AGREEING or not (first == first[0]).all()

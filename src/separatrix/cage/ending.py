@@ -1,8 +1,8 @@
 """Where the motion of a run ends, and when that is plain: by its energy and by the work of friction.
 
-A look is a hundredth of the duration. What frame and loads can give the cage without friction is its drive
-energy; a motion with more of it that neither falls nor is fed by the loads is a whirl, and so is one with
-less that pocket friction feeds (docs/theory/cage.md).
+A look is about a hundredth of the duration. What frame and loads can give the cage without friction is its drive
+energy. A motion that lasts or grows and that the friction of the pockets feeds is a whirl; one that frame,
+loads or friction on the land keep up is not (docs/theory/cage.md).
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from separatrix.cage.drive import drifts, drive_energy, room
 from separatrix.cage.planar import RunOutcome
 from separatrix.cage.slots import (
     BALL_WORK,
-    DUE,
     GRAVITY_WORK,
     KINETIC,
     LAND_WORK,
@@ -31,21 +30,35 @@ if TYPE_CHECKING:
     from separatrix.units import MetrePerSecond, Second
 
 LOOKS, FEWEST_LOOKS = 100, 5
-"""Looks in the duration of a run, and the fewest of a very short one."""
+"""Looks in the duration of a run, up to twice as many, and the fewest of a very short one."""
 
 LONG_LOOK = 25.0
 """Shortest look, in radians of the motion with one ball in touch: some turns of a whirl."""
 
-LONGEST = 4
-"""A run whose end is not plain after its duration goes on, to this multiple of it at most."""
+ROUND = 1.0, 2.0, 5.0, 10.0
+"""Leading digits of the time between two beats."""
+
+LONGEST, LONGEST_ADRIFT = 4, 20
+"""A run whose end is not plain after its duration goes on, to this multiple of it at most: of a cage that a
+land holds, and of one that drifts, whose weak whirl dies only when its centre has crept out of place."""
 
 WINDOW = 10
 """Looks, and at least a turn of the ball set, over which the work of friction is weighed."""
 
 LOOKS_ABOVE, LOOKS_EVEN, EVEN, FAR_ABOVE = 3, 12, 0.03, 3.0
 """Looks in a row at high energy, or alike within this share at this multiple of the drive energy or more,
-that make a whirl plain. A whirl whose energy wanders, or one near the drive energy, is followed on: some die
+that make the end plain. A motion whose energy wanders, or one near the drive energy, is followed on: some die
 after a second."""
+
+LEVEL_ENOUGH, LOWEST = 0.1, 0.5
+"""After the duration, change of the mean energy within the last half of it, and its lowest look over its
+highest, by which a motion high above the drive energy lasts though it wanders."""
+
+ROUNDING = 1e-9
+"""Share by which a duration may miss a whole number of looks."""
+
+FED = 6
+"""Looks, the last, whose work says what feeds a motion that is high."""
 
 GROWN, GROWS_ON, GROWS_AT_ONCE = 100.0, 10.0, 30.0
 """Multiples of the energy scale (the kick's, and what frame and loads give) beyond which a growing motion
@@ -86,6 +99,8 @@ MEMORY = 4
 class Limits(NamedTuple):
     """How long a run is, in looks, and its limits: energies are over the mass, in the engine's units."""
 
+    beat: float  # time between two ends of a step that every run of this cage has, however long it is
+    beats: int  # in a look
     looks: int  # in the duration
     most: int
     least: int  # made even where the end is plain before
@@ -106,16 +121,18 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
     The land holds a guided cage, so its offset is no drift.
     """
     unit, landless = time_unit(cage), math.isinf(cage.land_gap)
-    looks = max(FEWEST_LOOKS, min(LOOKS, int(duration / (LONG_LOOK * unit))))
+    beat, beats, looks = beat_of(unit, duration)
     per_mass = unit**2 / cage.mass
     drive = drive_energy(cage) * per_mass
     scale = energy_scale(cage, kick) * per_mass + drive
-    turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (duration / looks)) if cage.cage_speed else 0
+    turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (beat * beats)) if cage.cage_speed else 0
     blow = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
     given = 0.5 * (kick * unit) ** 2
     return Limits(
+        beat=beat / unit,
+        beats=beats,
         looks=looks,
-        most=LONGEST * looks,
+        most=(LONGEST_ADRIFT if drifts(cage) else LONGEST) * looks,
         least=looks if least else 0,
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
@@ -127,6 +144,21 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         grows_on=GROWS_ON * scale,
         grows_at_once=GROWS_AT_ONCE * scale,
     )
+
+
+def beat_of(unit: Second, duration: Second) -> tuple[Second, int, int]:
+    """Time between two beats [s], beats in a look, and looks in the duration.
+
+    A step ends at every beat, so that a motion is the same to the last bit however long it is followed, but
+    for runs shorter than five beats. The last look ends with the duration, or less than a look after it.
+    """
+    least = LONG_LOOK * unit
+    decade = 10.0 ** math.floor(math.log10(least))
+    beat = next(digit * decade for digit in ROUND if digit * decade >= least)
+    if duration < FEWEST_LOOKS * beat:
+        return duration / FEWEST_LOOKS, 1, FEWEST_LOOKS
+    beats = max(1, math.floor(duration / (LOOKS * beat) * (1.0 + ROUNDING)))
+    return beat, beats, math.ceil(duration / (beats * beat) * (1.0 - ROUNDING))
 
 
 def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
@@ -146,38 +178,29 @@ def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
 
 @kernel
 def fed(tally, first, last):  # type: ignore[no-untyped-def]
-    """Work of pocket friction, and of friction on the land, in the looks where it was due; and what feeds.
-
-    Returns
-    -------
-    tuple
-        Pocket friction's work; whether pocket friction gives more than half of what is put in; whether both
-        frictions together do.
-    """
+    """Work of pocket friction; whether it, and whether that of the land, is most of what is put in."""
     pocket = land = loads = 0.0
     for i in range(first, last):
-        if tally[i, DUE] > 0.0:
-            pocket += tally[i, POCKET_WORK]
-            land += tally[i, LAND_WORK]
-            loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
-    given = max(0.0, pocket) + max(0.0, land) + loads
-    return pocket, pocket > 0.5 * given, max(0.0, pocket) + max(0.0, land) > 0.5 * given
+        pocket += tally[i, POCKET_WORK]
+        land += tally[i, LAND_WORK]
+        loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
+    half = 0.5 * (max(0.0, pocket) + max(0.0, land) + loads)
+    return pocket, pocket > half, land > half
 
 
 @kernel
-def wants_books(memory, i, mean, limits):  # type: ignore[no-untyped-def]
-    """Whether the work of the next look is wanted: where friction may decide."""
-    late = i >= limits.most - limits.most // FEWEST_LOOKS
-    return late or mean <= limits.drive or memory[ALIKE] >= LOOKS_EVEN // 2
+def high_end(tally, end):  # type: ignore[no-untyped-def]
+    """`WHIRLS` if the friction of the pockets feeds a motion that is high: else something else does."""
+    return WHIRLS if fed(tally, max(0, end - FED), end)[1] else SETTLES
 
 
 @kernel
 def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-def]
-    """Outcome that is plain before the duration is over; `UNKNOWN` if none is."""
+    """Outcome that is plain after look i; `UNKNOWN` if none is."""
     mean = tally[i, KINETIC] / look
     memory[ABOVE] = memory[ABOVE] + 1 if mean > limits.grows_on else 0
     if memory[ABOVE] >= LOOKS_ABOVE or mean > limits.grows_at_once:
-        return WHIRLS
+        return high_end(tally, i + 1)
     if met and abs(mean - memory[LEVEL]) <= EVEN * memory[LEVEL]:
         memory[ALIKE] += 1
     else:
@@ -185,14 +208,28 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     driven = mean <= limits.drive
     if driven and tally[i, OFFSET] > limits.far * look:
         return SETTLES
-    memory[QUIET] = memory[QUIET] + 1 if driven and tally[i, DUE] > 0.0 else 0
-    if memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]:
-        return WHIRLS if fed(tally, i + 1 - LOOKS_EVEN // 2, i + 1)[2] else UNKNOWN
-    if memory[QUIET] < limits.window:
-        return UNKNOWN
-    if i + 1 >= limits.looks or arrived(tally, i + 1, look, limits):
+    memory[QUIET] = memory[QUIET] + 1 if driven else 0
+    even = memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]
+    if even or (i + 1 >= limits.looks and lasts(tally, i + 1, look, limits)):
+        _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
+        if pockets_feed or land_feeds:
+            return WHIRLS if pockets_feed else SETTLES
+    if memory[QUIET] >= limits.window and (i + 1 >= limits.looks or arrived(tally, i + 1, look, limits)):
         return at_rest(tally, i + 1, memory[QUIET], look, limits)
     return UNKNOWN
+
+
+@kernel
+def lasts(tally, end, look, limits):  # type: ignore[no-untyped-def]
+    """Whether the motion stayed high above the drive energy over the last half of a duration, and level."""
+    half, quarter = limits.looks // 2, limits.looks // 4
+    lowest, highest = np.inf, 0.0
+    for i in range(end - half, end):
+        lowest, highest = min(lowest, tally[i, KINETIC]), max(highest, tally[i, KINETIC])
+    if lowest <= FAR_ABOVE * limits.drive * look or lowest < LOWEST * highest or quarter == 0:
+        return False
+    early = mean_energy(tally, end - half, end - quarter, look)
+    return abs(mean_energy(tally, end - quarter, end, look) - early) <= LEVEL_ENOUGH * early
 
 
 @kernel
@@ -224,9 +261,9 @@ def end_by_trend(tally, end, look, limits):  # type: ignore[no-untyped-def]
     n, middle = end // FEWEST_LOOKS, end // 2
     last = mean_energy(tally, end - n, end, look)
     before = mean_energy(tally, middle - n // 2, middle - n // 2 + n, look)
-    work, pocket_feeds, friction_feeds = fed(tally, end - n, end)
+    work, pockets_feed, land_feeds = fed(tally, end - n, end)
     if last <= limits.drive:
-        return WHIRLS if pocket_feeds and work > last > REST * limits.drive else SETTLES
+        return WHIRLS if pockets_feed and work > last > REST * limits.drive else SETTLES
     if last >= FALLS * before:
-        return WHIRLS if friction_feeds else SETTLES
-    return SETTLES if limits.drive == 0.0 else UNRESOLVED
+        return WHIRLS if pockets_feed else SETTLES
+    return SETTLES if limits.drive == 0.0 or land_feeds else UNRESOLVED

@@ -135,7 +135,6 @@ def run_ensemble(
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
     first_run: int = 0,
-    ledger: bool = True,
     jobs: int = 1,
 ) -> Ensemble:
     """Run the cage from every kick and seed; one that turns backward as its mirror image.
@@ -150,8 +149,6 @@ def run_ensemble(
         Instead of those of the settings.
     first_run : int
         Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
-    ledger : bool
-        Whether to keep the ledger of work from the start, which takes half as long again.
     jobs : int
         Threads. The result is the same to the last bit for any number.
 
@@ -169,9 +166,7 @@ def run_ensemble(
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
 
     def work(i: int, rows: slice) -> None:
-        run_rows(
-            cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows], ledger=ledger
-        )
+        run_rows(cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows])
 
     size = max(1, int(CHUNK_RADIANS / (settings.duration * fastest_rate(cage))))
     spread(work, len(speeds), runs, size, jobs)
@@ -186,21 +181,18 @@ def run_rows(
     evidence: Array,
     hits: NDArray[np.int64],
     *,
-    ledger: bool = True,
     rows: Array | None = None,
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
 
-    The motion is the same with the ledger of work and without it. With rows of a history a run goes on to
-    their last, whatever is plain before.
+    With rows of a history a run goes on to their last, whatever is plain before.
     """
     unit, balls = time_unit(cage), cage.ball_count
     p, drive = as_record(coefficients(cage, kick)), free_speeds(cage, np.array(cage.ball_angles))
     history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
     limits = run_limits(cage, kick, duration, least=rows is not None)
-    look = duration / limits.looks / unit
     series = series_of(series_columns(cage))
-    run_chunk(p, drive, starts, kick * unit, series, look, limits, history, ledger, evidence, hits)
+    run_chunk(p, drive, starts, kick * unit, series, limits, history, evidence, hits)
     evidence[:, PER_MASS] *= cage.mass
 
 

@@ -177,7 +177,7 @@ def follow(
     starts = np.concatenate([[direction], lead, play, angles])[np.newaxis]
     evidence = np.zeros((1, slots.EVIDENCE))
     hits = np.zeros((1, cage.ball_count), dtype=np.int64)
-    run_rows(cage, duration, kick, starts, evidence, hits, ledger=False)
+    run_rows(cage, duration, kick, starts, evidence, hits)
     length = until or max(duration, float(evidence[0, slots.FOLLOWED]))
     rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
     rows[:, slots.CLOCK] = np.linspace(0.0, length / time_unit(cage), samples)

@@ -272,7 +272,7 @@ def make_room(balls):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def advance(  # type: ignore[no-untyped-def]
-    p, pockets, touch, s, w, mode, ledger, tally, hits, length, ceiling, rows, books, room
+    p, pockets, touch, s, w, mode, ledger, tally, hits, length, ceiling, rows, room
 ):
     """Advance the cage by a time, in place.
 
@@ -290,8 +290,6 @@ def advance(  # type: ignore[no-untyped-def]
         Time to advance, and the kinetic energy above which to stop.
     rows : ndarray
         History; the slot of the time of an unfilled row holds the time from which it is due.
-    books : bool
-        Whether the ledger is kept.
 
     Returns
     -------
@@ -330,8 +328,7 @@ def advance(  # type: ignore[no-untyped-def]
             mode[2] = record(
                 p, pockets, touch, w, s, count, land, now, h, end, sums, ledger, rows, mode[2], work
             )
-        if books:
-            enter_work(p, pockets, touch, w, count, land, now, h, end, sums, ledger, work)
+        enter_work(p, pockets, touch, w, count, land, now, h, end, sums, ledger, work)
         after = motion_at(w, end)
         enter_step(p, pockets, touch, w, count, land, deepest, h, end, after, tally, c)
         finish_step(p, pockets, touch, w, s, count, h, end, after)

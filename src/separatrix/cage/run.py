@@ -15,11 +15,10 @@ from separatrix.cage.ending import (
     SETTLES,
     UNKNOWN,
     UNRESOLVED,
-    WHIRLS,
     end_by_trend,
+    high_end,
     mean_energy,
     plain_end,
-    wants_books,
 )
 from separatrix.cage.evidence import pocket_energy
 from separatrix.cage.motion import advance, kinetic, land_energy, make_room
@@ -28,7 +27,6 @@ from separatrix.cage.series import POWERS
 from separatrix.cage.slots import (
     BALL_DRIVE,
     BALL_WORK,
-    BOOKED,
     CAUSE,
     CLEAR,
     CLOCK,
@@ -36,7 +34,6 @@ from separatrix.cage.slots import (
     DIRECTION,
     DRIFT_RATE,
     DRIVE,
-    DUE,
     END_ENERGY,
     FOLLOWED,
     FORCE,
@@ -112,7 +109,7 @@ def held_energy(p, pockets, touch, count):  # type: ignore[no-untyped-def]
 
 @kernel
 def watch(  # type: ignore[no-untyped-def]
-    p, pockets, touch, s, w, mode, ledger, tally, hits, look, limits, rows, books, room
+    p, pockets, touch, s, w, mode, ledger, tally, hits, limits, rows, room
 ):
     """Run, look by look, until the end of the motion is plain.
 
@@ -121,24 +118,24 @@ def watch(  # type: ignore[no-untyped-def]
     tuple
         Outcome, the looks up to which it was judged, and the cause if it is unresolved.
     """
-    memory = np.zeros(MEMORY)
-    outcome, judged, touches, mean, touched = UNKNOWN, 0, 0, 0.0, mode[0] > 0
+    memory, look = np.zeros(MEMORY), limits.beats * limits.beat
+    outcome, judged, touches, touched = UNKNOWN, 0, 0, mode[0] > 0
     for i in range(limits.most):
         tally[i] = 0.0
-        due = wants_books(memory, i, mean, limits)
-        booked = books or due  # booking every look changes no end
         pocket, land = ledger[POCKET_FRICTION], ledger[LAND_FRICTION]
         ball, gravity = ledger[BALL_DRIVE], ledger[GRAVITY]
-        going = advance(
-            p, pockets, touch, s, w, mode, ledger, tally[i], hits, look, limits.grown, rows, booked, room
-        )
+        going, beat = True, 0
+        while going and beat < limits.beats and kinetic(p, s) < limits.grown:
+            going = advance(
+                p, pockets, touch, s, w, mode, ledger, tally[i], hits, limits.beat, limits.grown, rows, room
+            )
+            beat += 1
         tally[i, POCKET_WORK] = ledger[POCKET_FRICTION] - pocket
         tally[i, LAND_WORK] = ledger[LAND_FRICTION] - land
         tally[i, BALL_WORK], tally[i, GRAVITY_WORK] = ledger[BALL_DRIVE] - ball, ledger[GRAVITY] - gravity
-        tally[i, BOOKED], tally[i, DUE] = 1.0 if booked else 0.0, 1.0 if due else 0.0
-        energy, mean = kinetic(p, s), tally[i, KINETIC] / look
+        energy = kinetic(p, s)
         held = held_energy(p, pockets, touch, mode[0])
-        if not (going and np.isfinite(energy + mean)):
+        if not (going and np.isfinite(energy + tally[i, KINETIC])):
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
         hit = np.sum(hits)
@@ -146,7 +143,7 @@ def watch(  # type: ignore[no-untyped-def]
         touches = hit
         touched = touched or met or tally[i, LAND_HITS] > 0.0
         if energy + held > limits.grown:
-            return (WHIRLS, i + 1, NONE) if outcome == UNKNOWN else (outcome, judged, NONE)
+            return (high_end(tally, i + 1), i + 1, NONE) if outcome == UNKNOWN else (outcome, judged, NONE)
         if outcome == UNKNOWN:
             judged = i + 1
             if touched and energy + held < limits.still:
@@ -203,12 +200,12 @@ def imbalance(p, pockets, touch, s, w, mode, ledger, start):  # type: ignore[no-
 
 
 @kernel
-def run_one(p, pockets, direction, kick, w, look, limits, tally, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_one(p, pockets, direction, kick, w, limits, tally, rows, out, hits):  # type: ignore[no-untyped-def]
     """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
-    `kick` and `look` are in units of the engine; `tally` is room for the looks.
+    `kick` is in units of the engine; `tally` is room for the looks.
     """
-    balls = pockets.shape[1]
+    balls, look = pockets.shape[1], limits.beats * limits.beat
     s, ledger = np.zeros(STATE), np.zeros(LEDGER)
     touch, mode = np.zeros((2, balls), np.int64), np.zeros(3, np.int64)
     if p.gripped:
@@ -219,13 +216,13 @@ def run_one(p, pockets, direction, kick, w, look, limits, tally, rows, books, ou
     s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
     start = kinetic(p, s)
     outcome, end, cause = watch(
-        p, pockets, touch, s, w, mode, ledger, tally, hits, look, limits, rows, books, make_room(balls)
+        p, pockets, touch, s, w, mode, ledger, tally, hits, limits, rows, make_room(balls)
     )
     out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:end, OFFSET_MAX]))
     if limits.drifts and outcome == SETTLES:
         outcome = DRIFTS
     out[OUTCOME], out[CAUSE] = outcome, cause
-    out[IMBALANCE] = imbalance(p, pockets, touch, s, w, mode, ledger, start) if books else 0.0
+    out[IMBALANCE] = imbalance(p, pockets, touch, s, w, mode, ledger, start)
     out[ROWS] = mode[2]
     if cause == NOT_FINITE:
         out[LARGEST_OFFSET] = 0.0
@@ -257,18 +254,14 @@ def enter_end(p, tally, end, look, limits, out):  # type: ignore[no-untyped-def]
     out[OFFSET_SPREAD] = np.sqrt(max(0.0, last[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
     orbit = last[SWEPT] / last[OFFSET_SQUARED] if last[OFFSET_SQUARED] > 0.0 else 0.0
     out[ORBIT_SPEED] = (orbit + p.turning) / p.unit
-    booked = last[BOOKED] * look
     for k in range(2):
-        work = 0.0
-        for i in range(first, end):
-            work += tally[i, POCKET_WORK + k]
-        out[POCKET_POWER + k] = work / booked / p.unit**3 if booked > 0.0 else 0.0
+        out[POCKET_POWER + k] = last[POCKET_WORK + k] / length / p.unit**3
     out[RUBBING_FORCE] = last[PRESSED] / length / p.unit**2
     out[RUBBING_SPEED] = last[RUBBED] / last[PRESSED] / p.unit if last[PRESSED] > 0.0 else 0.0
 
 
 @kernel
-def run_chunk(p, drive, starts, kick, w, look, limits, rows, books, out, hits):  # type: ignore[no-untyped-def]
+def run_chunk(p, drive, starts, kick, w, limits, rows, out, hits):  # type: ignore[no-untyped-def]
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
@@ -283,7 +276,7 @@ def run_chunk(p, drive, starts, kick, w, look, limits, rows, books, out, hits): 
         angle = start[1 + 2 * balls :]
         pockets[COSINE], pockets[SINE], pockets[PENETRATION] = np.cos(angle), np.sin(angle), 0.0
         pockets[LEAD], pockets[PLAY] = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
-        run_one(p, pockets, start[0], kick, w, look, limits, tally, rows, books, out[i], hits[i])
+        run_one(p, pockets, start[0], kick, w, limits, tally, rows, out[i], hits[i])
 
 
 @lru_cache(maxsize=512)

@@ -139,7 +139,7 @@ def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
     """Time of a run, the mean over the kicks; the compiled code is loaded beforehand."""
     from separatrix.cage import run_ensemble
 
-    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1, ledger=False)
+    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1)
     begun = time.perf_counter()
-    run_ensemble(cage, settings, runs=SAMPLED, ledger=False)
+    run_ensemble(cage, settings, runs=SAMPLED)
     return (time.perf_counter() - begun) / (SAMPLED * len(settings.kicks))

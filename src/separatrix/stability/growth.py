@@ -100,9 +100,7 @@ class GrowthCounter:
             if self.stop.is_set():
                 raise Stopped
             cage = self.cage_at(restitution_factor, friction)
-            found = run_ensemble(
-                cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run, ledger=False
-            )
+            found = run_ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
             open_ends = int(np.count_nonzero((found.cause != Cause.NONE) & (found.cause != Cause.FALLING)))
             if open_ends:  # a motion that still falls does not whirl
                 note = UNRESOLVED.format(open_ends, runs, kick, friction)

@@ -195,7 +195,7 @@ def decided_ensemble(
     """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
 
     def run(first: int, count: int) -> Ensemble:
-        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first, ledger=False)
+        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
 
     ensemble = run(0, first_look(runs))
     if _agree(ensemble):

@@ -15,12 +15,9 @@ from separatrix.study import StabilitySettings
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
-LEDGERS = 2
-"""Runs from each kick whose ledger of work is kept from their start."""
-
 
 def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -> Ensemble:
-    """Every run of the settings from every kick, the first `LEDGERS` of each with their ledger.
+    """Every run of the settings from every kick.
 
     Raises
     ------
@@ -28,13 +25,10 @@ def whole_ensemble(cage: PlanarCage, settings: StabilitySettings, stop: Event) -
         `stop` was set before the last part.
     """
     parts: list[Ensemble] = []
-    first, size = 0, LEDGERS
-    while first < settings.runs:
+    for first in range(0, settings.runs, PART):
         if stop.is_set():
             raise Stopped
-        runs = min(size, settings.runs - first)
-        parts.append(run_ensemble(cage, settings, runs=runs, first_run=first, ledger=first < LEDGERS))
-        first, size = first + runs, PART
+        parts.append(run_ensemble(cage, settings, runs=min(PART, settings.runs - first), first_run=first))
     return joined(parts)
 
 

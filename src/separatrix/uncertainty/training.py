@@ -361,7 +361,6 @@ def _run(
                 kicks=(kick,),
                 runs=1,
                 first_run=first + k,
-                ledger=False,
             )
             grew[k] = found.outcome[0, 0] == RunOutcome.WHIRLS
         return len(part)
