@@ -1,8 +1,8 @@
 """Where the motion of a run ends, and when that is plain: by its energy and by the work of friction.
 
-A look is about a hundredth of the duration. What frame and loads can give the cage without friction is its drive
-energy. A motion that lasts or grows and that the friction of the pockets feeds is a whirl; one that frame,
-loads or friction on the land keep up is not (docs/theory/cage.md).
+A look is about a hundredth of the duration. What frame and loads can give the cage without friction is its
+drive energy. A motion that lasts or grows and that the friction of the pockets feeds is a whirl; one that
+frame, loads or friction on the land keep up is not (docs/theory/cage.md).
 """
 
 from __future__ import annotations
@@ -106,6 +106,7 @@ class Limits(NamedTuple):
     least: int  # made even where the end is plain before
     window: int
     place: float  # change of the mean offset that is none, in half a window; below 0 where nothing holds it
+    reach: float  # mean offset from which a cage that frame or loads move has come to its land
     drifts: bool  # nothing holds the centre
     far: float  # mean offset at which that is plain
     drive: float
@@ -136,6 +137,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         least=looks if least else 0,
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
+        reach=0.0 if drive == 0.0 or landless else (1.0 - PLACE) * cage.land_gap,
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
@@ -214,7 +216,8 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
         _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
         if pockets_feed or land_feeds:
             return WHIRLS if pockets_feed else SETTLES
-    if memory[QUIET] >= limits.window and (i + 1 >= limits.looks or arrived(tally, i + 1, look, limits)):
+    quiet = memory[QUIET] >= limits.window
+    if quiet and (memory[QUIET] >= limits.looks or arrived(tally, i + 1, look, limits)):
         return at_rest(tally, i + 1, memory[QUIET], look, limits)
     return UNKNOWN
 
@@ -248,11 +251,11 @@ def at_rest(tally, end, quiet, look, limits):  # type: ignore[no-untyped-def]
 
 @kernel
 def arrived(tally, end, look, limits):  # type: ignore[no-untyped-def]
-    """Whether the mean offset is the same in both halves of the last window: the cage is in its place."""
+    """Whether the cage is in its place: on its land if anything moves it, and no further than before."""
     half = limits.window // 2
     late = np.sum(tally[end - half : end, OFFSET]) / (half * look)
     early = np.sum(tally[end - 2 * half : end - half, OFFSET]) / (half * look)
-    return abs(late - early) <= limits.place
+    return late >= limits.reach and abs(late - early) <= limits.place
 
 
 @kernel
