@@ -134,14 +134,20 @@ def test_a_settled_cage_that_rubs_its_land_says_how_hard():
 
 
 def test_friction_on_the_land_alone_makes_a_whirl_or_a_drag():
-    """Without pocket friction: at land friction 0.6 a whirl that the land feeds, at 0.1 the cage settles."""
+    """Without pocket friction: at land friction 0.6 the land keeps up a whirl, which decides nothing."""
     cage = shipped("momentum-wheel", friction=0.0)
-    whirling = ends(replace(cage, land_friction=0.6), (2.0,))
-    assert np.all(whirling.outcome == RunOutcome.WHIRLS)
+    rough = replace(cage, land_friction=0.6)
+    whirling = ends(rough, (2.0,))
+    assert np.all(whirling.outcome == RunOutcome.SETTLES)
+    assert np.all(whirling.cause == Cause.LAND_FRICTION)
     assert np.median(whirling.land_power) > 0.0
     assert np.all(whirling.pocket_power == 0.0)
+    found = judge(rough, whirling)
+    assert (found.verdict, found.by_kick[0].kept_by_land) == (Verdict.UNDECIDED, RUNS)
+    assert "land_friction" in found.reason
     dragged = ends(replace(cage, land_friction=0.1), (0.1, 2.0))
     assert np.all(dragged.outcome == RunOutcome.SETTLES)
+    assert np.all(dragged.cause == Cause.NONE)
 
 
 INTO_THE_LAND = """

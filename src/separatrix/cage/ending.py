@@ -47,12 +47,11 @@ WINDOW = 10
 
 LOOKS_ABOVE, LOOKS_EVEN, EVEN, FAR_ABOVE = 3, 12, 0.03, 3.0
 """Looks in a row at high energy, or alike within this share at this multiple of the drive energy or more,
-that make the end plain. A motion whose energy wanders, or one near the drive energy, is followed on: some die
-after a second."""
+that make the end plain. A motion near the drive energy is followed on: some die after a second."""
 
-LEVEL_ENOUGH, LOWEST = 0.1, 0.5
-"""After the duration, change of the mean energy within the last half of it, and its lowest look over its
-highest, by which a motion high above the drive energy lasts though it wanders."""
+LOOKS_FAR, STEADY = 50, 0.1
+"""Looks in a row far above the drive energy, and the share by which the means of their halves may differ,
+that make it plain that a motion lasts though its energy wanders."""
 
 ROUNDING = 1e-9
 """Share by which a duration may miss a whole number of looks."""
@@ -92,8 +91,8 @@ SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 UNRESOLVED = int(RunOutcome.UNRESOLVED)
 
 # What is remembered from look to look.
-ABOVE, ALIKE, LEVEL, QUIET = range(4)
-MEMORY = 4
+ABOVE, ALIKE, LEVEL, QUIET, HIGH = range(5)
+MEMORY = 5
 
 
 class Limits(NamedTuple):
@@ -211,8 +210,9 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     if driven and tally[i, OFFSET] > limits.far * look:
         return SETTLES
     memory[QUIET] = memory[QUIET] + 1 if driven else 0
-    even = memory[ALIKE] >= LOOKS_EVEN and mean > FAR_ABOVE * limits.drive and mean >= memory[LEVEL]
-    if even or (i + 1 >= limits.looks and lasts(tally, i + 1, look, limits)):
+    memory[HIGH] = memory[HIGH] + 1 if mean > FAR_ABOVE * limits.drive else 0
+    even = memory[HIGH] > 0 and memory[ALIKE] >= LOOKS_EVEN and mean >= memory[LEVEL]
+    if even or (memory[HIGH] >= LOOKS_FAR and steady(tally, i + 1, look)):
         _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
         if pockets_feed or land_feeds:
             return WHIRLS if pockets_feed else SETTLES
@@ -223,16 +223,11 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
 
 
 @kernel
-def lasts(tally, end, look, limits):  # type: ignore[no-untyped-def]
-    """Whether the motion stayed high above the drive energy over the last half of a duration, and level."""
-    half, quarter = limits.looks // 2, limits.looks // 4
-    lowest, highest = np.inf, 0.0
-    for i in range(end - half, end):
-        lowest, highest = min(lowest, tally[i, KINETIC]), max(highest, tally[i, KINETIC])
-    if lowest <= FAR_ABOVE * limits.drive * look or lowest < LOWEST * highest or quarter == 0:
-        return False
-    early = mean_energy(tally, end - half, end - quarter, look)
-    return abs(mean_energy(tally, end - quarter, end, look) - early) <= LEVEL_ENOUGH * early
+def steady(tally, end, look):  # type: ignore[no-untyped-def]
+    """Whether the mean energy of the last `LOOKS_FAR` looks is the same in both their halves."""
+    half = LOOKS_FAR // 2
+    early = mean_energy(tally, end - LOOKS_FAR, end - half, look)
+    return abs(mean_energy(tally, end - half, end, look) - early) <= STEADY * early
 
 
 @kernel

@@ -29,8 +29,8 @@ class CageMotion(Enum):
     """What the cage does at the end of the runs."""
 
     CENTRED = "The cage rests among its balls, clear of its land."
-    ON_THE_LAND = "The cage rests on its land, or rides on it as its loads make it."
-    WHIRLING = "Friction sustains the motion of the cage, or makes it grow."
+    ON_THE_LAND = "The cage rests on its land, or moves on it as loads and the land's friction make it."
+    WHIRLING = "Friction in the pockets sustains the motion of the cage, or makes it grow."
     DRIFTING = "The cage has no land, and its centre leaves the clearance of its pockets."
 
     @property

@@ -41,20 +41,21 @@ class RunOutcome(IntEnum):
 
 OUTCOME_SENTENCES = {
     RunOutcome.SETTLES: "The cage comes to rest relative to the ball set, but for what its loads maintain.",
-    RunOutcome.WHIRLS: "Friction sustains the motion, or makes it grow.",
+    RunOutcome.WHIRLS: "Friction in the pockets sustains the motion, or makes it grow.",
     RunOutcome.DRIFTS: "The cage has no land, and its centre left the clearance of its pockets.",
     RunOutcome.UNRESOLVED: "The run does not show where the motion ends.",
 }
 
 
 class Cause(IntEnum):
-    """Why a run is unresolved."""
+    """Why a run is unresolved; `LAND_FRICTION`: what keeps one moving that counts as settled."""
 
     NONE = 0
     IMPACTS = 1
     NO_CONTACT = 2
     FALLING = 3
     NOT_FINITE = 4
+    LAND_FRICTION = 5
 
 
 class Verdict(Enum):

@@ -23,6 +23,7 @@ CAUSES = {
     Cause.IMPACTS: "impacts accumulate without limit; raise [cage] land_restitution or soften the contacts",
     Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
     Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
+    Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
     Cause.NOT_FINITE: "the motion leaves the range of numbers; lower [stability] kicks or the stiffnesses",
 }
 
@@ -63,12 +64,40 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
     said = ", ".join(f"{n} {word}" for n, word in parts if n)
     if count.unresolved:
         said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
-        causes = ensemble.cause[kick][ensemble.cause[kick] > 0]
+        causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
         most = Cause(int(np.bincount(causes).argmax()))
         followed = ensemble.followed[kick].max()
         cure = f"{CAUSES[most]} (followed for {followed:.3g} s, at most {LONGEST} times the duration)"
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
+
+
+def kept_by_land(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return in how many runs friction on the land keeps the cage moving, and how hard it then presses."""
+    kept = ensemble.cause == Cause.LAND_FRICTION
+    return (
+        f"Friction on the land, {cage.land_friction:g}, and not in the pockets, keeps the cage moving in "
+        f"{int(kept.sum())} of {kept.size} runs: {_lively(ensemble, kept)}. Pocket friction does not decide "
+        f"that; check [cage] land_friction."
+    )
+
+
+def few_kept(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return the same for the few runs of a stable cage; empty if there is none."""
+    kept = ensemble.cause == Cause.LAND_FRICTION
+    if not kept.any():
+        return ""
+    kicks = ", ".join(f"{kick:g}" for kick in ensemble.kicks[kept.any(axis=1)])
+    return (
+        f" From {kicks} m/s, {int(kept.sum())} of the runs that settle are kept moving by friction on the "
+        f"land, {cage.land_friction:g}: {_lively(ensemble, kept)}; friction in the pockets slows that motion."
+    )
+
+
+def _lively(ensemble: Ensemble, kept: Mask) -> str:
+    energy, power = (_median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
+    force = float(ensemble.largest_land_force[kept].max())
+    return f"{1e3 * energy:.3g} mJ, fed {_watt(power)}, up to {force:.3g} N on the land"
 
 
 def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.random import Generator, Philox
 
 from separatrix.cage.ending import (
+    FED,
     FEWEST_LOOKS,
     MEMORY,
     SETTLES,
     UNKNOWN,
     UNRESOLVED,
     end_by_trend,
+    fed,
     high_end,
     mean_energy,
     plain_end,
@@ -93,7 +95,7 @@ if TYPE_CHECKING:
     from separatrix.units import Array
 
 DRIFTS = int(RunOutcome.DRIFTS)
-NONE, IMPACTS, NO_CONTACT, FALLING, NOT_FINITE = (int(cause) for cause in Cause)
+NONE, IMPACTS, NO_CONTACT, FALLING, NOT_FINITE, BY_LAND = (int(cause) for cause in Cause)
 NOTHING_LEFT = 2.0**-104
 """Share of the kick's energy below which speeds are rounding: growth rates count no further."""
 
@@ -116,7 +118,7 @@ def watch(  # type: ignore[no-untyped-def]
     Returns
     -------
     tuple
-        Outcome, the looks up to which it was judged, and the cause if it is unresolved.
+        Outcome, the looks up to which it was judged, and the cause.
     """
     memory, look = np.zeros(MEMORY), limits.beats * limits.beat
     outcome, judged, touches, touched = UNKNOWN, 0, 0, mode[0] > 0
@@ -156,7 +158,10 @@ def watch(  # type: ignore[no-untyped-def]
             break
     if not touched:
         return UNRESOLVED, judged, NO_CONTACT
-    return outcome, judged, FALLING if outcome == UNRESOLVED else NONE
+    if outcome == UNRESOLVED:
+        return outcome, judged, FALLING
+    lively = outcome == SETTLES and mean_energy(tally, max(0, judged - FED), judged, look) > limits.drive
+    return outcome, judged, BY_LAND if lively and fed(tally, max(0, judged - FED), judged)[2] else NONE
 
 
 @kernel

@@ -12,7 +12,7 @@ from separatrix.cage import reason
 from separatrix.cage.drive import drift_rate_law, drifts, drive_energy
 from separatrix.cage.interval import mean_half_width, wilson_interval
 from separatrix.cage.orbit import CageMotion, cage_motion, largest_room, left_pockets
-from separatrix.cage.planar import PlanarCage, RunOutcome, Verdict
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton, Ratio, Second, Watt
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ class KickCount:
         Speed [m/s].
     settles, whirls, drifts, unresolved : int
         Runs of each outcome.
+    kept_by_land : int
+        Runs of those that settle in which friction on the land, not in the pockets, keeps up more motion than
+        frame and loads can give.
     probability_stable, probability_low, probability_high : float
         Share of the runs that settle, and its 95 % Wilson interval [-].
     """
@@ -43,6 +46,7 @@ class KickCount:
     whirls: int
     drifts: int
     unresolved: int
+    kept_by_land: int
     probability_stable: Ratio
     probability_low: Ratio
     probability_high: Ratio
@@ -158,7 +162,8 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
     """Where the runs from each kick end."""
     runs, found = ensemble.outcome.shape[1], []
     counted = np.stack([ensemble.count(outcome) for outcome in RunOutcome], axis=1)
-    for kick, counts in zip(ensemble.kicks.tolist(), counted.tolist(), strict=True):
+    kept = np.count_nonzero(ensemble.cause == Cause.LAND_FRICTION, axis=1)
+    for kick, counts, land in zip(ensemble.kicks.tolist(), counted.tolist(), kept.tolist(), strict=True):
         settles, whirls, drifting, unresolved = counts
         low, high = wilson_interval(settles, runs)
         found.append(
@@ -168,6 +173,7 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
                 whirls=whirls,
                 drifts=drifting,
                 unresolved=unresolved,
+                kept_by_land=land,
                 probability_stable=settles / runs,
                 probability_low=low,
                 probability_high=high,
@@ -187,7 +193,8 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
 
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
     settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
-    ends outside its pockets nor left its room. UNDECIDED otherwise. The rule is ours; it asks more of a
+    ends outside its pockets nor left its room, nor do most runs from a kick end in a motion that friction on
+    the land keeps up. UNDECIDED otherwise. The rule is ours; it asks more of a
     stable cage than of an unstable one.
     """
     counts = kick_counts(ensemble)
@@ -287,9 +294,11 @@ def decide(
     left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
     if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
+    if any(_mostly(count.kept_by_land, count.runs) for count in counts):
+        return Verdict.UNDECIDED, reason.kept_by_land(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
         return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)
-    return Verdict.STABLE, reason.settles(cage, ensemble, at)
+    return Verdict.STABLE, f"{reason.settles(cage, ensemble, at)}{reason.few_kept(cage, ensemble)}"
 
 
 def _mostly(count: int, runs: int) -> bool:

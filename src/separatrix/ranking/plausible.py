@@ -20,7 +20,7 @@ def transmitted_force(study: Study, state: CageState) -> Newton:
 
 
 def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]) -> Iterator[str]:
-    """Sentences on the rows of the bearing's own environment: pocket forces, and offsets on the land."""
+    """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
     judged = [row for row in rows if row.largest_contact_force is not None]
     if not judged:
         return
@@ -43,3 +43,18 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
             f"than {100 * (BEYOND_LAND - 1):.0f} %. The land's stiffness decides such numbers, a real cage "
             "may break first: they are bounds."
         )
+    kept = {row.name: text for row in judged if (text := _kept_by_land(row))}
+    if kept:
+        yield (
+            f"Friction on the land, {state.cage.land_friction:g}, keeps the cage moving in runs that count "
+            f"as settled, for friction in the pockets slows that motion: {'; '.join(kept.values())}. The "
+            "power comes from the cage's rotation, whose speed the model prescribes: a real cage would lose "
+            "speed, or break. Measure the friction on the land."
+        )
+
+
+def _kept_by_land(row: RankedMaterial) -> str:
+    """In how many runs from which kick, for one candidate; empty if in none."""
+    counts = [count for count in row.by_kick or () if count.kept_by_land]
+    runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)
+    return f"{row.name} {', '.join(runs)}" if counts else ""

@@ -101,7 +101,8 @@ class GrowthCounter:
                 raise Stopped
             cage = self.cage_at(restitution_factor, friction)
             found = run_ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
-            open_ends = int(np.count_nonzero((found.cause != Cause.NONE) & (found.cause != Cause.FALLING)))
+            unresolved = found.outcome == RunOutcome.UNRESOLVED
+            open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
             if open_ends:  # a motion that still falls does not whirl
                 note = UNRESOLVED.format(open_ends, runs, kick, friction)
                 warnings.warn(note, ValidityWarning, stacklevel=2)
