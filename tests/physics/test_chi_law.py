@@ -16,7 +16,8 @@ from separatrix.cage import (
     run_hard_ensemble,
     whirl_probability,
 )
-from separatrix.cage.ending import LONGEST
+from separatrix.cage.coefficients import time_unit
+from separatrix.cage.ending import BEAT, LONGEST
 from separatrix.stability import cage_at
 from separatrix.study import StabilitySettings
 
@@ -63,17 +64,18 @@ def test_kick_and_clearance_count_by_their_ratio_only(chi):
 
 @pytest.mark.parametrize(("eta", "friction"), [(0.9, 0.14), (0.8, 0.19), (0.6, 0.26), (0.3, 0.33)])
 def test_weak_kicks_meet_hard_impacts(eta, friction):
-    """Springs and walls, the same starts, six crossings: run by run the energies differ in proportion to chi.
+    """Springs and walls, the same starts, 5.3 crossings: run by run the energies differ in proportion to chi.
 
     In nine of ten runs by less than 10 chi; the others graze a wall. At the chi of 2.5e-4 as many of 200 runs
     grow in the end: within 3 standard deviations of a difference of two shares near one half.
     """
     cage, off = cage_at(CAGE, eta, friction), []
     for chi in (1e-3, 2.5e-4):
-        few = replace(settings(chi, 200), duration=6 * crossing(chi))
-        hard = run_hard_ensemble(cage, few)
-        soft = run_ensemble(cage, replace(few, duration=few.duration / LONGEST))  # and goes on to the end
-        whole = soft.followed > 0.999 * few.duration
+        beat = BEAT * time_unit(cage)  # the end of a run lies on a beat, its last fifth on a look
+        few = replace(settings(chi, 200), duration=(0.15 / chi - 0.5) * beat)  # and goes on to 5.3 crossings
+        soft = run_ensemble(cage, few)
+        hard = run_hard_ensemble(cage, replace(few, duration=soft.followed.max()))
+        whole = soft.followed == soft.followed.max()
         assert whole.mean() > 0.8
         off.append(np.abs(soft.end_energy / hard.end_energy - 1.0)[whole])
         assert np.quantile(off[-1], 0.9) < 10 * chi

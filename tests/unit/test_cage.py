@@ -195,10 +195,13 @@ def test_what_the_drive_gives_is_no_early_end(change):
 
 
 def test_a_run_is_at_most_four_times_its_duration():
-    """A hundred looks in the duration, fewer where one would be shorter than some turns of a whirl."""
-    limits = run_limits(CAGE, 0.5, 0.3)
-    assert (limits.looks, limits.most, limits.least) == (100, 400, 0)
-    assert run_limits(CAGE, 0.5, 0.3, least=True).least == 100  # a history goes on to its duration
+    """One to two hundred looks in the duration, fewer where one would be shorter than a beat."""
+    limits = run_limits(CAGE, 0.5, 1.0)
+    assert 100 <= limits.looks <= 200
+    assert (limits.most, limits.least) == (4 * limits.looks, 0)
+    assert run_limits(CAGE, 0.5, 1.0, least=True).least == limits.looks  # a history goes on to its duration
+    length = limits.looks * limits.beats * limits.beat * time_unit(CAGE)
+    assert 1.0 <= length < 1.0 + 1.0 / (limits.looks - 1)
     short = run_limits(CAGE, 0.5, 1e-4)
     assert (short.looks, short.most) == (5, 20)
 

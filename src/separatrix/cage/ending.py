@@ -32,11 +32,8 @@ if TYPE_CHECKING:
 LOOKS, FEWEST_LOOKS = 100, 5
 """Looks in the duration of a run, up to twice as many, and the fewest of a very short one."""
 
-LONG_LOOK = 25.0
-"""Shortest look, in radians of the motion with one ball in touch: some turns of a whirl."""
-
-ROUND = 1.0, 2.0, 5.0, 10.0
-"""Leading digits of the time between two beats."""
+BEAT = 25.0
+"""Time from beat to beat, in radians of the motion with one ball in touch: some turns of a whirl."""
 
 LONGEST, LONGEST_ADRIFT = 4, 20
 """A run whose end is not plain after its duration goes on, to this multiple of it at most: of a cage that a
@@ -49,12 +46,9 @@ LOOKS_ABOVE, LOOKS_EVEN, EVEN, FAR_ABOVE = 3, 12, 0.03, 3.0
 """Looks in a row at high energy, or alike within this share at this multiple of the drive energy or more,
 that make the end plain. A motion near the drive energy is followed on: some die after a second."""
 
-LOOKS_FAR, STEADY = 50, 0.1
-"""Looks in a row far above the drive energy, and the share by which the means of their halves may differ,
-that make it plain that a motion lasts though its energy wanders."""
-
-ROUNDING = 1e-9
-"""Share by which a duration may miss a whole number of looks."""
+LOOKS_FAR = 50
+"""Looks in a row far above the drive energy, the later half no lower than the earlier, that make it plain
+that a motion lasts though its energy wanders. Where nothing drives the cage, nothing is far above."""
 
 FED = 6
 """Looks, the last, whose work says what feeds a motion that is high."""
@@ -153,13 +147,11 @@ def beat_of(unit: Second, duration: Second) -> tuple[Second, int, int]:
     A step ends at every beat, so that a motion is the same to the last bit however long it is followed, but
     for runs shorter than five beats. The last look ends with the duration, or less than a look after it.
     """
-    least = LONG_LOOK * unit
-    decade = 10.0 ** math.floor(math.log10(least))
-    beat = next(digit * decade for digit in ROUND if digit * decade >= least)
+    beat = BEAT * unit
     if duration < FEWEST_LOOKS * beat:
         return duration / FEWEST_LOOKS, 1, FEWEST_LOOKS
-    beats = max(1, math.floor(duration / (LOOKS * beat) * (1.0 + ROUNDING)))
-    return beat, beats, math.ceil(duration / (beats * beat) * (1.0 - ROUNDING))
+    beats = max(1, math.floor(duration / (LOOKS * beat)))
+    return beat, beats, math.ceil(duration / (beats * beat))
 
 
 def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
@@ -210,9 +202,10 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     if driven and tally[i, OFFSET] > limits.far * look:
         return SETTLES
     memory[QUIET] = memory[QUIET] + 1 if driven else 0
-    memory[HIGH] = memory[HIGH] + 1 if mean > FAR_ABOVE * limits.drive else 0
-    even = memory[HIGH] > 0 and memory[ALIKE] >= LOOKS_EVEN and mean >= memory[LEVEL]
-    if even or (memory[HIGH] >= LOOKS_FAR and steady(tally, i + 1, look)):
+    high = mean > FAR_ABOVE * limits.drive
+    memory[HIGH] = memory[HIGH] + 1 if high and limits.drive > 0.0 else 0
+    even = high and memory[ALIKE] >= LOOKS_EVEN and mean >= memory[LEVEL]
+    if even or (memory[HIGH] >= LOOKS_FAR and keeps_up(tally, i + 1, look)):
         _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
         if pockets_feed or land_feeds:
             return WHIRLS if pockets_feed else SETTLES
@@ -223,11 +216,11 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
 
 
 @kernel
-def steady(tally, end, look):  # type: ignore[no-untyped-def]
-    """Whether the mean energy of the last `LOOKS_FAR` looks is the same in both their halves."""
-    half = LOOKS_FAR // 2
-    early = mean_energy(tally, end - LOOKS_FAR, end - half, look)
-    return abs(mean_energy(tally, end - half, end, look) - early) <= STEADY * early
+def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
+    """Whether the last half of the last `LOOKS_FAR` looks has no less energy than the half before."""
+    middle = end - LOOKS_FAR // 2
+    before = mean_energy(tally, end - LOOKS_FAR, middle, look)
+    return mean_energy(tally, middle, end, look) >= (1.0 - EVEN) * before
 
 
 @kernel

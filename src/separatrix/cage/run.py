@@ -144,17 +144,17 @@ def watch(  # type: ignore[no-untyped-def]
         met = mode[0] > 0 or hit > touches
         touches = hit
         touched = touched or met or tally[i, LAND_HITS] > 0.0
-        if energy + held > limits.grown:
-            return (high_end(tally, i + 1), i + 1, NONE) if outcome == UNKNOWN else (outcome, judged, NONE)
         if outcome == UNKNOWN:
             judged = i + 1
-            if touched and energy + held < limits.still:
+            if energy + held > limits.grown:
+                outcome = high_end(tally, judged)
+            elif touched and energy + held < limits.still:
                 outcome = SETTLES
             elif touched and s[CLOCK] >= p.ramp_time:
                 outcome = plain_end(tally, i, look, met, limits, memory)
             if outcome == UNKNOWN and judged == limits.most:
                 outcome = end_by_trend(tally, judged, look, limits)
-        if outcome != UNKNOWN and i + 1 >= limits.least:
+        if outcome != UNKNOWN and (i + 1 >= limits.least or energy + held > limits.grown):
             break
     if not touched:
         return UNRESOLVED, judged, NO_CONTACT
