@@ -70,15 +70,12 @@ REST = 0.01
 RISES = 1.2
 """Ratio of the energy in the second half of a window to that in the first above which it rises."""
 
-PATIENCE = 3
-"""Windows that a motion between rest and drive energy must last unfed. Out of what leading balls, gravity or
-a dragging land keep up a whirl may still begin by chance, later than any run lasts."""
-
 FAR = 10.0
 """Mean offset, in half clearances of the pockets, at which a cage that nothing holds has left them."""
 
-PLACE = 0.02
-"""Share of its room by which the mean offset of a cage in its place may change in half a window."""
+PLACE, REACH = 0.05, 0.9
+"""Shares of the land's clearance: by the first the mean offset of a cage in its place may change in half a
+window; from the second on a cage that frame or loads move is at its land."""
 
 UNKNOWN = -1
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
@@ -130,7 +127,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         least=looks if least else 0,
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
-        reach=0.0 if drive == 0.0 or landless else (1.0 - PLACE) * cage.land_gap,
+        reach=0.0 if drive == 0.0 or landless else REACH * cage.land_gap,
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
@@ -211,7 +208,7 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
             return WHIRLS if pockets_feed else SETTLES
     quiet = memory[QUIET] >= limits.window
     if quiet and (memory[QUIET] >= limits.looks or arrived(tally, i + 1, look, limits)):
-        return at_rest(tally, i + 1, memory[QUIET], look, limits)
+        return at_rest(tally, i + 1, look, limits)
     return UNKNOWN
 
 
@@ -224,16 +221,14 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def at_rest(tally, end, quiet, look, limits):  # type: ignore[no-untyped-def]
+def at_rest(tally, end, look, limits):  # type: ignore[no-untyped-def]
     """`SETTLES` at rest, or in a lasting motion that pocket friction does not feed."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(tally, first, end, look)
     if mean <= REST * limits.drive:
         early, late = mean_energy(tally, first, first + half, look), mean_energy(tally, end - half, end, look)
         return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
-    if quiet < PATIENCE * limits.window:
-        return UNKNOWN
-    work, feeds, _ = fed(tally, end - PATIENCE * limits.window, end)
+    work, feeds, _ = fed(tally, first, end)
     return SETTLES if not feeds or work < mean else UNKNOWN
 
 

@@ -113,6 +113,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     keys = sorted(
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
+    question = replace(question, tracers=_tracers(question, study.stability, keys))
     found = _compute(question, keys, jobs=jobs, progress=progress)
     ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
     return Ranking(
@@ -166,18 +167,30 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
     }
     cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
     reference = states[reference_candidate(study, asked).name].cage.ball_cage_stiffness
-    factors, stop = threshold_factors(study.stability), Event()
     return _Question(
         settings=cages[reference].stability,
         cages=cages,
-        tracers={
-            k: Tracer(GrowthCounter(state.cage, study.stability, stop), factors, band=False)
-            for k, state in cages.items()
-        },
+        tracers={},
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
         reference=reference,
-        stop=stop,
+        stop=Event(),
     )
+
+
+def _tracers(
+    question: _Question, settings: StabilitySettings, keys: Sequence[Key]
+) -> dict[NewtonPerMetre, Tracer]:
+    """For each pocket stiffness: the reference's curve is shown, of the others the thresholds count."""
+    factors = threshold_factors(settings)
+    return {
+        k: Tracer(
+            GrowthCounter(state.cage, settings, question.stop),
+            factors,
+            band=False,
+            frictions=None if k == question.reference else [f for stiffness, f in keys if stiffness == k],
+        )
+        for k, state in question.cages.items()
+    }
 
 
 def _state(question: _Question, name: str) -> CageState:

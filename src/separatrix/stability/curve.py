@@ -146,10 +146,20 @@ class Tracer:
         its scatter.
     band : bool
         Whether the points have their band; if so, its ends are followed as well.
+    frictions : sequence of float, optional
+        Where the curve passes these it is followed as finely as it bends, elsewhere it is left coarse; by
+        default it is fine everywhere.
     """
 
-    def __init__(self, counter: GrowthCounter, given: Sequence[Ratio], *, band: bool) -> None:
-        self.counter, self.given, self.band = counter, tuple(given), band
+    def __init__(
+        self,
+        counter: GrowthCounter,
+        given: Sequence[Ratio],
+        *,
+        band: bool,
+        frictions: Sequence[Ratio] | None = None,
+    ) -> None:
+        self.counter, self.given, self.band, self.frictions = counter, tuple(given), band, frictions
 
     @property
     def first(self) -> list[Node]:
@@ -167,7 +177,15 @@ class Tracer:
         if self.given or node[0] == HERE:
             return []
         known = {at: point for (at, _), point in found.items() if at != HERE}
-        return [_between(known[low], known[high]) for low, high in finer(node[0], known, bends)]
+        spans = [(known[low], known[high]) for low, high in finer(node[0], known, bends)]
+        return [_between(*span) for span in spans if self._matters(*span)]
+
+    def _matters(self, *span: CriticalFriction) -> bool:
+        """Whether the curve may pass one of the frictions between two points."""
+        if self.frictions is None:
+            return True
+        ends = [end for point in span for end in _curve(point)]
+        return any(min(ends) - FLAT <= friction <= max(ends) + FLAT for friction in self.frictions)
 
     def complete(self, found: Mapping[Node, CriticalFriction]) -> bool:
         """Whether no point is wanted that is not known."""
