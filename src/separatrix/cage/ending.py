@@ -206,9 +206,10 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
         _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
         if pockets_feed or land_feeds:
             return WHIRLS if pockets_feed else SETTLES
-    quiet = memory[QUIET] >= limits.window
-    if quiet and (memory[QUIET] >= limits.looks or arrived(tally, i + 1, look, limits)):
-        return at_rest(tally, i + 1, look, limits)
+    if memory[QUIET] >= limits.looks:
+        return at_rest(tally, i + 1, limits.looks, look, limits)
+    if memory[QUIET] >= limits.window and arrived(tally, i + 1, look, limits):
+        return at_rest(tally, i + 1, limits.window, look, limits)
     return UNKNOWN
 
 
@@ -221,14 +222,14 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def at_rest(tally, end, look, limits):  # type: ignore[no-untyped-def]
-    """`SETTLES` at rest, or in a lasting motion that pocket friction does not feed."""
+def at_rest(tally, end, quiet, look, limits):  # type: ignore[no-untyped-def]
+    """`SETTLES` at rest, or in a motion that pocket friction did not feed in the quiet looks."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(tally, first, end, look)
     if mean <= REST * limits.drive:
         early, late = mean_energy(tally, first, first + half, look), mean_energy(tally, end - half, end, look)
         return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
-    work, feeds, _ = fed(tally, first, end)
+    work, feeds, _ = fed(tally, end - quiet, end)
     return SETTLES if not feeds or work < mean else UNKNOWN
 
 
