@@ -50,8 +50,8 @@ LOOKS_FAR = 50
 """Looks in a row far above the drive energy, the later half no lower than the earlier, that make it plain
 that a motion lasts though its energy wanders. Where nothing drives the cage, nothing is far above."""
 
-FED = 6
-"""Looks, the last, whose work says what feeds a motion that is high."""
+FED, HALF = 6, 0.5
+"""Looks, the last, whose work says what feeds a motion that is high; and the share that is most of it."""
 
 GROWN, GROWS_ON, GROWS_AT_ONCE = 100.0, 10.0, 30.0
 """Multiples of the energy scale (the kick's, and what frame and loads give) beyond which a growing motion
@@ -69,6 +69,10 @@ REST = 0.01
 
 RISES = 1.2
 """Ratio of the energy in the second half of a window to that in the first above which it rises."""
+
+UNFED, PATIENCE = 0.25, 3
+"""Share of what is put in that pocket friction may give over one window to a motion that is at rest, and the
+windows over which it is weighed again where it gives more, up to half."""
 
 FAR = 10.0
 """Mean offset, in half clearances of the pockets, at which a cage that nothing holds has left them."""
@@ -168,20 +172,22 @@ def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
 
 @kernel
 def fed(tally, first, last):  # type: ignore[no-untyped-def]
-    """Work of pocket friction; whether it, and whether that of the land, is most of what is put in."""
+    """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
     pocket = land = loads = 0.0
     for i in range(first, last):
         pocket += tally[i, POCKET_WORK]
         land += tally[i, LAND_WORK]
         loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
-    half = 0.5 * (max(0.0, pocket) + max(0.0, land) + loads)
-    return pocket, pocket > half, land > half
+    given = max(0.0, pocket) + max(0.0, land) + loads
+    if given == 0.0:
+        return pocket, 0.0, 0.0
+    return pocket, pocket / given, land / given
 
 
 @kernel
 def high_end(tally, end):  # type: ignore[no-untyped-def]
     """`WHIRLS` if the friction of the pockets feeds a motion that is high: else something else does."""
-    return WHIRLS if fed(tally, max(0, end - FED), end)[1] else SETTLES
+    return WHIRLS if fed(tally, max(0, end - FED), end)[1] > HALF else SETTLES
 
 
 @kernel
@@ -203,14 +209,17 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
     memory[HIGH] = memory[HIGH] + 1 if high and limits.drive > 0.0 else 0
     even = high and memory[ALIKE] >= LOOKS_EVEN and mean >= memory[LEVEL]
     if even or (memory[HIGH] >= LOOKS_FAR and keeps_up(tally, i + 1, look)):
-        _, pockets_feed, land_feeds = fed(tally, i + 1 - FED, i + 1)
-        if pockets_feed or land_feeds:
-            return WHIRLS if pockets_feed else SETTLES
+        _, pockets, land = fed(tally, i + 1 - FED, i + 1)
+        if max(pockets, land) > HALF:
+            return WHIRLS if pockets > HALF else SETTLES
     if memory[QUIET] >= limits.looks:
-        return at_rest(tally, i + 1, limits.looks, look, limits)
-    if memory[QUIET] >= limits.window and arrived(tally, i + 1, look, limits):
-        return at_rest(tally, i + 1, limits.window, look, limits)
-    return UNKNOWN
+        return at_rest(tally, i + 1, limits.looks, HALF, look, limits)
+    if memory[QUIET] < limits.window or not arrived(tally, i + 1, look, limits):
+        return UNKNOWN
+    outcome = at_rest(tally, i + 1, limits.window, UNFED, look, limits)
+    if outcome == UNKNOWN and memory[QUIET] >= PATIENCE * limits.window:
+        outcome = at_rest(tally, i + 1, PATIENCE * limits.window, HALF, look, limits)
+    return outcome
 
 
 @kernel
@@ -222,15 +231,15 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def at_rest(tally, end, quiet, look, limits):  # type: ignore[no-untyped-def]
-    """`SETTLES` at rest, or in a motion that pocket friction did not feed in the quiet looks."""
+def at_rest(tally, end, quiet, share, look, limits):  # type: ignore[no-untyped-def]
+    """`SETTLES` at rest, or where pocket friction gave at most this share in so many quiet looks."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(tally, first, end, look)
     if mean <= REST * limits.drive:
         early, late = mean_energy(tally, first, first + half, look), mean_energy(tally, end - half, end, look)
         return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
-    work, feeds, _ = fed(tally, end - quiet, end)
-    return SETTLES if not feeds or work < mean else UNKNOWN
+    work, pockets, _ = fed(tally, end - quiet, end)
+    return SETTLES if pockets <= share or work < mean else UNKNOWN
 
 
 @kernel
@@ -248,9 +257,9 @@ def end_by_trend(tally, end, look, limits):  # type: ignore[no-untyped-def]
     n, middle = end // FEWEST_LOOKS, end // 2
     last = mean_energy(tally, end - n, end, look)
     before = mean_energy(tally, middle - n // 2, middle - n // 2 + n, look)
-    work, pockets_feed, land_feeds = fed(tally, end - n, end)
+    work, pockets, land = fed(tally, end - n, end)
     if last <= limits.drive:
-        return WHIRLS if pockets_feed and work > last > REST * limits.drive else SETTLES
+        return WHIRLS if pockets > HALF and work > last > REST * limits.drive else SETTLES
     if last >= FALLS * before:
-        return WHIRLS if pockets_feed else SETTLES
-    return SETTLES if limits.drive == 0.0 or land_feeds else UNRESOLVED
+        return WHIRLS if pockets > HALF else SETTLES
+    return SETTLES if limits.drive == 0.0 or land > HALF else UNRESOLVED

@@ -12,6 +12,7 @@ from numpy.random import Generator, Philox
 from separatrix.cage.ending import (
     FED,
     FEWEST_LOOKS,
+    HALF,
     MEMORY,
     SETTLES,
     UNKNOWN,
@@ -161,7 +162,7 @@ def watch(  # type: ignore[no-untyped-def]
     if outcome == UNRESOLVED:
         return outcome, judged, FALLING
     lively = outcome == SETTLES and mean_energy(tally, max(0, judged - FED), judged, look) > limits.drive
-    return outcome, judged, BY_LAND if lively and fed(tally, max(0, judged - FED), judged)[2] else NONE
+    return outcome, judged, BY_LAND if lively and fed(tally, max(0, judged - FED), judged)[2] > HALF else NONE
 
 
 @kernel
