@@ -71,8 +71,8 @@ RISES = 1.2
 """Ratio of the energy in the second half of a window to that in the first above which it rises."""
 
 UNFED, PATIENCE = 0.25, 3
-"""Share of what is put in that pocket friction may give over one window to a motion that is at rest, and the
-windows over which it is weighed again where it gives more, up to half."""
+"""Share of what is put in that pocket friction may give, over a window, to a motion at rest; and the quiet
+windows after which it may give half."""
 
 FAR = 10.0
 """Mean offset, in half clearances of the pockets, at which a cage that nothing holds has left them."""
@@ -173,12 +173,9 @@ def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
 @kernel
 def fed(tally, first, last):  # type: ignore[no-untyped-def]
     """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
-    pocket = land = loads = 0.0
-    for i in range(first, last):
-        pocket += tally[i, POCKET_WORK]
-        land += tally[i, LAND_WORK]
-        loads += max(0.0, tally[i, BALL_WORK]) + max(0.0, tally[i, GRAVITY_WORK])
-    given = max(0.0, pocket) + max(0.0, land) + loads
+    pocket, land = np.sum(tally[first:last, POCKET_WORK]), np.sum(tally[first:last, LAND_WORK])
+    balls, gravity = np.sum(tally[first:last, BALL_WORK]), np.sum(tally[first:last, GRAVITY_WORK])
+    given = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity)
     if given == 0.0:
         return pocket, 0.0, 0.0
     return pocket, pocket / given, land / given
@@ -216,10 +213,8 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
         return at_rest(tally, i + 1, limits.looks, HALF, look, limits)
     if memory[QUIET] < limits.window or not arrived(tally, i + 1, look, limits):
         return UNKNOWN
-    outcome = at_rest(tally, i + 1, limits.window, UNFED, look, limits)
-    if outcome == UNKNOWN and memory[QUIET] >= PATIENCE * limits.window:
-        outcome = at_rest(tally, i + 1, PATIENCE * limits.window, HALF, look, limits)
-    return outcome
+    share = HALF if memory[QUIET] >= PATIENCE * limits.window else UNFED
+    return at_rest(tally, i + 1, limits.window, share, look, limits)
 
 
 @kernel
