@@ -46,10 +46,9 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
     kept = {row.name: text for row in judged if (text := _kept_by_land(row))}
     if kept:
         yield (
-            f"Friction on the land, {state.cage.land_friction:g}, keeps the cage moving in runs that count "
-            f"as settled, for friction in the pockets slows that motion: {'; '.join(kept.values())}. The "
-            "power comes from the cage's rotation, whose speed the model prescribes: a real cage would lose "
-            "speed, or break. Measure the friction on the land."
+            f"Friction on the land, {state.cage.land_friction:g}, keeps the cage whirling in some runs: "
+            f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
+            "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
         )
 
 

@@ -1,0 +1,69 @@
+"""What an answer of `rank` contradicts in itself: for a test, and for benchmarks/rank_sane_studies.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+Document = dict[str, Any]
+
+MOST_RUN = {False: 4.0, True: 20.0}
+"""Longest run over the duration asked for: of a cage that a land holds, and of one that drifts."""
+
+
+def contradictions(document: Document) -> Iterator[str]:
+    """Every verdict of an answer that its own evidence contradicts, with the numbers."""
+    for environment in document["environments"]:
+        for row in environment["materials"]:
+            if row["verdict"] is not None:
+                said = f"{environment['name']}, {row['name']}, {row['verdict']}"
+                yield from (f"{said}: {what}" for what in _of_row(row, document["cage"]))
+    for row in document["environments"][0]["materials"]:
+        if row["verdict"] is None:
+            yield f"{row['name']}: no verdict, {row['reason']}"
+
+
+def _of_row(row: Document, cage: Document) -> Iterator[str]:
+    for name in ("probability", "restitution_threshold"):
+        value = row["probability_stable" if name == "probability" else name]
+        low, high = row[f"{name}_low"], row[f"{name}_high"]
+        if not low <= value <= high:
+            yield f"{name} {value} outside {low} to {high}"
+    if abs(row["margin"] - (row["restitution_threshold"] - row["restitution_factor"])) > 1e-12:
+        yield f"margin {row['margin']} is not the threshold less eta"
+    counts = row["by_kick"]
+    if any(_ends(count) != row["runs"] for count in counts):
+        yield f"runs do not add up to {row['runs']}: {counts}"
+    if row["energy_imbalance"] > 1e-6:
+        yield f"the ledger leaves {row['energy_imbalance']} open"
+    drifts = cage["land_clearance"] is None
+    if row["longest_run"] > MOST_RUN[drifts] * row["duration"] * 1.02:  # a look of the longest run
+        yield f"a run of {row['longest_run']} s, {row['duration']} s asked for"
+    yield from _of_verdict(row, cage)
+
+
+def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
+    counts, most = row["by_kick"], {"WHIRLING": "whirls", "DRIFTING": "drifts"}
+    worst = next(count for count in counts if count["kick"] == row["worst_kick"])
+    if row["cage_motion"] in most and 4 * worst[most[row["cage_motion"]]] < row["runs"]:
+        yield f"{row['cage_motion']} in few runs: {worst}"
+    if row["verdict"] == "UNSTABLE" and 2 * worst["whirls"] <= row["runs"]:
+        yield f"few whirl: {worst}"
+    if row["verdict"] != "STABLE":
+        return
+    room = max(cage["pocket_clearance"], cage["land_clearance"] or 0.0) / 2.0
+    if row["largest_offset"] > 2.0 * room:
+        yield f"offset {row['largest_offset']} m beyond twice the room {room} m"
+    if row["mean_offset"] > 1.2 * room:
+        yield f"ends {row['mean_offset']} m off in a room of {room} m"
+    for count in counts:
+        if count["settles"] < 0.9 * row["runs"] or 2 * count["kept_by_land"] > row["runs"]:
+            yield f"STABLE with {count}"
+    if row["cage_motion"] not in ("CENTRED", "ON THE LAND"):
+        yield f"STABLE and {row['cage_motion']}"
+    if row["cage_motion"] == "ON THE LAND" and row["rubbing_force"] <= 0.0:
+        yield "on the land without a force there"
+
+
+def _ends(count: Document) -> int:
+    return int(sum(count[end] for end in ("settles", "whirls", "drifts", "unresolved")))
