@@ -90,7 +90,7 @@ def rewritten(path, folder):
     return read_study(there)
 
 
-@pytest.mark.filterwarnings("ignore:Material data of the library")  # at 90 K there are none
+@pytest.mark.filterwarnings("ignore:Data of the library")  # at 90 K there are none
 @pytest.mark.parametrize("name", ["template", *shipped_studies()])
 def test_a_study_written_as_a_workbook_reads_back_the_same(name, tmp_path):
     """Every number to the last bit, every material and every candidate."""

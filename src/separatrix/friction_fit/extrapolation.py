@@ -55,7 +55,7 @@ def held(
         if value is None or (limits is None and name == PRODUCT):
             continue
         if limits is None:
-            sentences.append(f"{WORDS[name]} of the tests is not stated (asked for {_text(value, name)})")
+            sentences.append(f"{WORDS[name]} of the tests is not stated")
             continue
         values[name] = min(max(value, limits[0]), limits[1])
         if _counts_as_tested(value, limits, name):

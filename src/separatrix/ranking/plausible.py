@@ -29,19 +29,18 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
         yield (
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
             f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
-            "the ball slips, and the linear race damping is outside its range. The model then returns too "
-            "much speed to the cage, more so in lightly loaded bearings; what that does to a verdict is not "
-            "known."
+            "the ball slips, and the linear race damping is outside its range. It then returns too much "
+            "speed to the cage; what that does to a verdict is not known."
         )
     gap = state.cage.land_gap
     far = [row for row in judged if (row.largest_offset or 0.0) > BEYOND_LAND * gap]
     if far:
         worst = max(row.largest_offset or 0.0 for row in far)
+        names = "All" if len(far) == len(judged) else ", ".join(row.name for row in far)
         yield (
-            f"{', '.join(row.name for row in far)}: the cage centre reaches "
-            f"{format_quantity(worst, 'm', 3)}, beyond the land at {format_quantity(gap, 'm', 3)} by more "
-            f"than {100 * (BEYOND_LAND - 1):.0f} %. The land's stiffness decides such numbers, a real cage "
-            "may break first: they are bounds."
+            f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
+            f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "
+            "stiffness decides such numbers, a real cage may break first: they are bounds."
         )
     kept = {row.name: text for row in judged if (text := _kept_by_land(row))}
     if kept:

@@ -59,7 +59,8 @@ def report(verb: str, document: Mapping[str, Any], *, full: bool = False, quiet:
     parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
     blocks = [heading(document["title"]), *parts(document)]
     notes = [*_means(verb, document), *document["warnings"]]
-    blocks += [paragraph(note, first="Note: ", indent="      ") for note in notes]
+    if notes:
+        blocks.append("\n".join(paragraph(note, first="Note: ", indent="      ") for note in notes))
     return "\n\n".join(blocks) + "\n"
 
 

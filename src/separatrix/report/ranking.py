@@ -197,7 +197,7 @@ def lowest(rows: Sequence[Document]) -> list[str]:
     if not measured:
         return []
     told = ", ".join(likely) or f"none, for only {measured[0]['name']} was measured here"
-    return ["", paragraph(f"Probability of the lowest mean friction: {told}.")]
+    return [paragraph(f"Probability of the lowest mean friction: {told}.")]
 
 
 MARK = "*"

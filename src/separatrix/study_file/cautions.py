@@ -45,7 +45,7 @@ def _materials(study: Study) -> Iterator[str]:
             alike.setdefault(material.cautions, {})[material.name] = None
     if alike:
         each = (f"{', '.join(names)} ({_short(cautions)})" for cautions, names in alike.items())
-        yield f"Material data of the library: {'; '.join(each)}. Consider giving your own values."
+        yield f"Data of the library: {'; '.join(each)}. Consider your own."
 
 
 def _short(cautions: Sequence[str]) -> str:
