@@ -71,8 +71,9 @@ def test_the_force_of_a_hard_blow_is_that_of_an_undamped_spring():
     cage = replace(CAGE, race_damping=math.inf, ball_cage_friction=0.0)
     weak = StabilitySettings(kicks=(5e-4,), runs=24, duration=1.2)
     soft = run_ensemble(cage, replace(weak, duration=0.3))
-    assert soft.followed == pytest.approx(1.2)  # nothing takes energy: four times its duration
-    forces = [soft.largest_contact_force, run_hard_ensemble(cage, weak).largest_contact_force]
+    assert soft.followed.min() >= 1.2  # nothing takes energy: four times its duration
+    whole = replace(weak, duration=soft.followed.max())
+    forces = [soft.largest_contact_force, run_hard_ensemble(cage, whole).largest_contact_force]
     assert forces[1].min() > 0.0
     # one blow in some is met by another pocket before it is over
     assert np.quantile(np.abs(forces[0] / forces[1] - 1.0), 0.75) < 1e-3

@@ -87,8 +87,8 @@ def test_a_friction_alone_has_no_probability_of_being_the_lowest():
     """The line says why; with another it has the numbers, and without any measurement there is none."""
     alone = [row("A", 1, probability_lowest_friction=None), row("B", None, None)]
     told = "  Probability of the lowest mean friction:"
-    assert ranking.lowest(alone) == ["", f"{told} none, for only A was measured here."]
-    assert ranking.lowest([row("A", 1), row("C", 1)]) == ["", f"{told} C 0.50, A 0.50."]
+    assert ranking.lowest(alone) == [f"{told} none, for only A was measured here."]
+    assert ranking.lowest([row("A", 1), row("C", 1)]) == [f"{told} C 0.50, A 0.50."]
     assert ranking.lowest([row("B", None, None)]) == []
 
 

@@ -294,7 +294,7 @@ def decide(
     left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
     if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
-    if any(_mostly(count.kept_by_land, count.runs) for count in counts):
+    if any(2 * count.kept_by_land > count.runs for count in counts):
         return Verdict.UNDECIDED, reason.kept_by_land(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
         return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)

@@ -80,7 +80,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 def significant(value: float | None, digits: int = 4) -> str:
     """Return a pure number with so many significant digits, or a dash if it is absent."""
-    return ABSENT if value is None else f"{value:.{digits}g}"
+    return ABSENT if value is None else f"{float(f'{value:.{digits}g}'):g}"
 
 
 def quantity(value: float | None, unit: str) -> str:
