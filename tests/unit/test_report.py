@@ -78,7 +78,7 @@ def test_frictions_that_were_not_tested_are_marked_and_explained_once():
     rows = [row("A", 1, extrapolation=["too fast", "too hot"]), row("B", 2, extrapolation=["too fast"])]
     text = ranking._table([*rows, row("C", 3)])
     assert [line.split()[2][-1] for line in text.splitlines()[-3:]] == ["*", "*", "0"]
-    (_, note) = ranking.footnotes(rows)
+    (note,) = ranking.footnotes(rows)
     assert note == "  * extrapolated beyond the tests: too fast. too hot (A)."
     assert ranking.footnotes([row("C", 3)]) == []
 

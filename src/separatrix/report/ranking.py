@@ -84,8 +84,8 @@ def every_environment(document: Document) -> list[str]:
 def _overall(document: Document, overall: Sequence[Document]) -> str:
     """Return the table of mean frictions, which belongs to no environment."""
     title = "Overall: mean friction over the measured environments"
-    parts = (*footnotes(overall), *_gaps(document), "", _evidence(overall), "", *_reasons(overall))
-    return section(title, _table(overall), *parts)
+    notes = [*([""] * any(row["extrapolation"] for row in overall)), *footnotes(overall), *_gaps(document)]
+    return section(title, _table(overall), *notes, "", _evidence(overall), "", *_reasons(overall))
 
 
 def _notes(rows: Sequence[Document]) -> list[str]:
@@ -142,7 +142,7 @@ def _environment(document: Document, one: Document) -> str:
     """Return verdicts, evidence and reasons of one environment."""
     rows = one["materials"]
     evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
-    notes = (*footnotes(rows), *lowest(rows), "")
+    notes = ("", *footnotes(rows), *lowest(rows), "")
     return section(_title(one["name"]), _table(rows), *notes, *evidence, *_reasons(rows))
 
 
@@ -156,9 +156,8 @@ def _first(rows: Sequence[Document]) -> list[str]:
 
 
 LEGEND = (
-    "rank: by margin; = marks a tie within the scatter. threshold: largest restitution factor eta at "
-    "which the cage is stable. margin: threshold less the eta of this bearing and film. P(stable): share of "
-    "the runs that settle, from the worst kick."
+    "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta. "
+    "margin: threshold less the bearing's eta. P(stable): share of runs that settle, worst kick."
 )
 EVIDENCE_LEGEND = (
     "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over those runs. "
@@ -216,7 +215,7 @@ def footnotes(rows: Sequence[Document]) -> list[str]:
         for sentence, names in who.items()
     ]
     text = f"extrapolated beyond the tests: {'. '.join(said)}."
-    return ["", paragraph(text, first=f"  {MARK} ", indent="    ")] if said else []
+    return [paragraph(text, first=f"  {MARK} ", indent="    ")] if said else []
 
 
 def _with_interval(row: Document, key: str, ends: str) -> str:
