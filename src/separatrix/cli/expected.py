@@ -29,6 +29,9 @@ and about it, for runs far above end soon."""
 MAP_POINTS_NOT_TIMED = 30
 """A map of so few points needs no estimate."""
 
+PICTURES = 5.0
+"""Time of a ranking's figures and files [s]."""
+
 CURVE_POINTS = 9.0
 """Points of a curve whose restitution factors are chosen where it bends, as studies have them on average."""
 
@@ -65,7 +68,7 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
     from separatrix.ranking import ranking_question
 
     asked, traction = ranking_question(study), traction_state(study)
-    total = 0.0
+    total = PICTURES
     frictions: dict[float, set[Ratio]] = {}
     cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
     for candidate in asked.candidates:
