@@ -4,7 +4,8 @@
 
 Random bearings of three classes (tests/properties/sane_studies.py); of each, random frictions from 0.02 to
 0.5, kicks from 0.25 to 20 times the pocket speed and run numbers. Each run is made with the default duration,
-which it exceeds up to four times, and with ten times that duration. Some minutes on two cores.
+which it exceeds up to four times (twenty without a land), and with ten times that duration. Some minutes on
+two cores.
 """
 
 from __future__ import annotations

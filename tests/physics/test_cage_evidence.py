@@ -111,16 +111,11 @@ def told(cage, ours):
         ("largest_contact_force", np.abs(ours.contact_force[whole]).max(), largest),
         ("largest_land_force", ours.land_force[whole].max(), largest),
         ("rubbing_force", mean(ours, ours.land_force, last), near),
-        *((name, power(ours, work, last), cut) for name, work in WORKS.items() if booked(ours)),
+        *((name, power(ours, work, last), cut) for name, work in WORKS.items()),
     ]
 
 
 WORKS = {"pocket_power": "pocket_friction", "land_power": "land_friction"}
-
-
-def booked(ours):
-    """Whether the work of the last part is known: in what settles, and in what is followed to the end."""
-    return ours.pocket_power != 0.0
 
 
 def power(ours, work, rows):

@@ -67,7 +67,7 @@ def test_kick_and_run_are_those_asked_for(folder, capsys):
     assert other["velocity"][0] != usual["velocity"][0]
     harder = simulated(folder, capsys, "--kick", "200 cm/s")
     assert harder["kick"] == 2.0
-    assert harder["kinetic_energy"][0] == pytest.approx(
+    assert harder["kinetic_energy"][0] == pytest.approx(  # to rounding
         (2.0 / 0.502) ** 2 * usual["kinetic_energy"][0], rel=1e-12
     )  # the same direction: energy goes as the square of the kick
 

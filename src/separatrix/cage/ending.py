@@ -122,7 +122,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
     scale = energy_scale(cage, kick) * per_mass + drive
     turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (beat * beats)) if cage.cage_speed else 0
     blow = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
-    given = 0.5 * (kick * unit) ** 2
+    kicked = 0.5 * (kick * unit) ** 2
     return Limits(
         beat=beat / unit,
         beats=beats,
@@ -135,7 +135,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
-        still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(given, blow or given),
+        still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(kicked, blow or kicked),
         grown=GROWN * scale,
         grows_on=GROWS_ON * scale,
         grows_at_once=GROWS_AT_ONCE * scale,
@@ -175,15 +175,15 @@ def fed(tally, first, last):  # type: ignore[no-untyped-def]
     """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
     pocket, land = np.sum(tally[first:last, POCKET_WORK]), np.sum(tally[first:last, LAND_WORK])
     balls, gravity = np.sum(tally[first:last, BALL_WORK]), np.sum(tally[first:last, GRAVITY_WORK])
-    given = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity)
-    if given == 0.0:
+    put_in = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity)
+    if put_in == 0.0:
         return pocket, 0.0, 0.0
-    return pocket, pocket / given, land / given
+    return pocket, pocket / put_in, land / put_in
 
 
 @kernel
 def high_end(tally, end):  # type: ignore[no-untyped-def]
-    """`WHIRLS` if the friction of the pockets feeds a motion that is high: else something else does."""
+    """`WHIRLS` if pocket friction feeds a motion high above the drive energy, else `SETTLES`."""
     return WHIRLS if fed(tally, max(0, end - FED), end)[1] > HALF else SETTLES
 
 
@@ -227,7 +227,7 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
 
 @kernel
 def at_rest(tally, end, quiet, share, look, limits):  # type: ignore[no-untyped-def]
-    """`SETTLES` at rest, or where pocket friction gave at most this share in so many quiet looks."""
+    """`SETTLES` at rest, or where pocket friction put in at most this share over so many quiet looks."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(tally, first, end, look)
     if mean <= REST * limits.drive:

@@ -195,8 +195,8 @@ def lowest(rows: Sequence[Document]) -> list[str]:
     likely = [f"{name} {share:.2f}" for share, name in sorted(known, reverse=True) if share >= 0.005]
     if not measured:
         return []
-    told = ", ".join(likely) or f"none, for only {measured[0]['name']} was measured here"
-    return [paragraph(f"Probability of the lowest mean friction: {told}.")]
+    names = ", ".join(likely) or f"none, for only {measured[0]['name']} was measured here"
+    return [paragraph(f"Probability of the lowest mean friction: {names}.")]
 
 
 MARK = "*"
