@@ -163,6 +163,25 @@ def test_an_end_of_the_ladder_that_is_not_clear_is_looked_at_again():
     assert isinstance(Response(first, 64).crossing(0.5, 96, 0.1), Crossing)
 
 
+def test_a_crossing_far_from_every_count_is_counted_at():
+    """P is 0 up to 0.33 and 0.9 from 0.7 on, and the guess lies far below: runs are spent between the two."""
+    spent = []
+
+    def look(friction, number, runs):
+        spent.append(runs)
+        return Count(0 if friction < 0.34 else 7 * runs // 8, runs)
+
+    found = Response(look, 64).crossing(0.5, 96, 0.06)
+    assert found.low <= 0.34 <= found.high
+    assert sum(spent) < 300  # both ends of the ladder, the bracket, and the 96 that were asked for
+
+
+def test_a_crossing_next_to_no_friction_at_all_is_found_where_it_is():
+    """P rises at 0.005, above the least friction of the ladder, and the guess lies far above both."""
+    found = response(lambda f: float(f > 0.005)).crossing(0.5, 96, 0.04)
+    assert 0.004 < found.low <= 0.005 <= found.high < 0.006
+
+
 def test_no_interval_ends_beyond_the_friction_that_is_searched():
     """A crossing near friction 1 has its upper end there: nothing was counted beyond."""
     found = response(logistic(0.95, 5.0)).crossing(0.5, 16, 0.5)

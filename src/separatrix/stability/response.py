@@ -32,6 +32,9 @@ STEP = math.log(10.0) / _STEPS_A_DECADE
 BATCH = 8
 """Runs counted at a time, or a twelfth of all if that is more."""
 
+TURNS = 40
+"""Counts for one crossing at most, where a dozen do: a centre may move away from what was counted before."""
+
 NEAR = 4.0
 """Steps of the ladder on either side in which P is taken as logistic: a factor of 1.5."""
 
@@ -123,7 +126,7 @@ class Response:
         return self._refined(target, runs, 0.5 * (math.log(LADDER[low]) + math.log(LADDER[high])))
 
     def _bracket(self, target: Ratio, start: int) -> tuple[int, int]:
-        """Places ever further from the start, P below the target at the first and not at the second."""
+        """Places not far apart, P below the target at the first and not at the second."""
         low = high = start
         step = 2
         if self.first(start).share >= target:
@@ -132,11 +135,14 @@ class Response:
         else:
             while high < LAST and self.first(high).share < target:
                 low, high, step = high, min(LAST, high + step), 2 * step
+        while high - low > (NEAR if low > 0 else 1):  # what is further off tells nothing of the middle
+            middle = (low + high) // 2
+            low, high = (low, middle) if self.first(middle).share >= target else (middle, high)
         return low, high
 
     def _refined(self, target: Ratio, runs: int, centre: float) -> Crossing:
         """Count where the target may lie, in turn on either side of it, until the runs are spent."""
-        for turn in range(10 * max(1, runs)):
+        for turn in range(TURNS):
             near = self._near(centre)
             place = centre + PLACES
             weight = posterior(near, place, target)
