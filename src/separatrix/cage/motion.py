@@ -28,6 +28,7 @@ from separatrix.cage.series import (
     grip_at,
     knots,
     motion_at,
+    slope,
     stretch,
     value,
 )
@@ -231,7 +232,7 @@ def finish_step(p, pockets, touch, w, s, count, h, end, after):  # type: ignore[
 
 
 @inner_kernel
-def change_pocket(p, pockets, touch, s, mode, hits, kind, ball):  # type: ignore[no-untyped-def]
+def change_pocket(p, pockets, touch, w, s, mode, hits, kind, ball, h, end):  # type: ignore[no-untyped-def]
     """Put a ball on the list of those in touch (beyond the balls: on the negative side), or take it off."""
     if kind == TOUCH:
         j = ball % pockets.shape[1]
@@ -248,6 +249,13 @@ def change_pocket(p, pockets, touch, s, mode, hits, kind, ball):  # type: ignore
     pockets[LEAD, ball] = (
         place_of(p, pockets, s, ball) - touch[SIDE, ball] * pockets[PLAY, ball] - pockets[PENETRATION, ball]
     )
+    follows = s[VY] * pockets[COSINE, ball] - s[VX] * pockets[SINE, ball] + s[W]
+    for k in range(2 * p.harmonics):
+        follows -= pockets[DRIVE + k, ball] * slope(w, GONE + k, end) / h
+    if p.hertz != 0.0 and touch[SIDE, ball] * follows > 0.0:
+        # It follows more slowly than the force at the onset drives the ball: without a way between the two it
+        # would meet it at once, and again without end.
+        pockets[LEAD, ball] += 0.5 * touch[SIDE, ball] * p.onset
     touch[SIDE, ball] = 0
     kept = 0
     for i in range(mode[0]):
@@ -334,7 +342,7 @@ def advance(  # type: ignore[no-untyped-def]
         finish_step(p, pockets, touch, w, s, count, h, end, after)
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind in (PART, TOUCH):
-            change_pocket(p, pockets, touch, s, mode, hits, kind, ball)
+            change_pocket(p, pockets, touch, w, s, mode, hits, kind, ball, h, end)
         elif kind != NOTHING:
             load_state(p, pockets, touch, s, w, count)
             mode[1] = land_after(p, pockets, touch, w, count, now, kind, sums)
