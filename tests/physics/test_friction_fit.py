@@ -154,7 +154,7 @@ def test_slopes_are_not_carried_beyond_the_tests():
     assert beyond.standard_deviation**2 == pytest.approx(
         at.standard_deviation**2 + beyond.widening**2, rel=1e-9
     )
-    assert beyond.extrapolation == ("slip speed 21 m/s is beyond the tested 1 to 5 m/s (held at 5 m/s)",)
+    assert beyond.extrapolation == ("slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used",)
 
 
 def test_speed_and_pressure_that_rise_together_give_one_slope_on_their_product():
@@ -209,8 +209,8 @@ WARM_AND_COLD = [measured(f, temperature=(k, k)) for f, k in ((0.05, 77.0), (0.0
         (77.0, 0.05, ()),
         (295.0, 0.2, ()),
         (None, 0.05 ** (2 / 3) * 0.2 ** (1 / 3), ()),
-        (150.0, 0.05, ("temperature 150 K is beyond the tested 77 to 90 K (held at 90 K)",)),
-        (250.0, 0.2, ("temperature 250 K is below the tested 295 K (held at 295 K)",)),
+        (150.0, 0.05, ("temperature in the pocket 150 K, tests cover 77 to 90 K: value at 90 K used",)),
+        (250.0, 0.2, ("temperature in the pocket 250 K, tests cover 295 K: value at 295 K used",)),
     ],
 )
 def test_tests_at_the_nearest_temperature_serve(temperature, friction, words):

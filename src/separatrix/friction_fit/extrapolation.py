@@ -55,7 +55,7 @@ def held(
         if value is None or (limits is None and name == PRODUCT):
             continue
         if limits is None:
-            sentences.append(f"{WORDS[name]} of the tests is not stated")
+            sentences.append(f"test {WORDS[name]} unknown (pocket: {_text(value, name)})")
             continue
         values[name] = min(max(value, limits[0]), limits[1])
         if _counts_as_tested(value, limits, name):
@@ -88,14 +88,14 @@ def _counts_as_tested(value: float, limits: Range, name: str) -> bool:
 
 
 def _sentence(value: float, limits: Range, name: str) -> str:
-    side = "beyond" if value > limits[1] else "below"
     if name == PRODUCT:
         product, tested = _text(value, name), in_words(limits, "Pa")
+        side = "beyond" if value > limits[1] else "below"
         return f"slip speed and pressure were not tested together: pV {product} is {side} {tested} m/s"
     nearest = limits[1] if value > limits[1] else limits[0]
     return (
-        f"{WORDS[name]} {_text(value, name)} is {side} the tested {in_words(limits, CONDITIONS[name])} "
-        f"(held at {_text(nearest, name)})"
+        f"{WORDS[name]} in the pocket {_text(value, name)}, tests cover {in_words(limits, CONDITIONS[name])}: "
+        f"value at {_text(nearest, name)} used"
     )
 
 
