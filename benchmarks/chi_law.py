@@ -135,7 +135,7 @@ def step_around(friction: float) -> tuple[float, float]:
 def sharpened(
     found: Crossing, low: float, high: float, interval: Callable[[float], tuple[float, float]]
 ) -> Crossing:
-    """Bracket of a jump: one half is outside the 95 % interval of P(grow) at its ends; else the fit."""
+    """Bracket of a jump: one half is outside the 95 % interval of P(whirl) at its ends; else the fit."""
     step = high / low
     while high / low > SHARP:
         middle = math.sqrt(low * high)
@@ -156,7 +156,7 @@ def hard_impacts(eta: float, settings: StabilitySettings) -> Crossing:
 
     found = Response(look, settings.runs).crossing(0.5, round(1.5 * settings.runs), 0.15)
     if not isinstance(found, Crossing):
-        raise SystemExit(f"eta {eta:g}: hard impacts have no critical friction, P(grow) lies {found.value}")
+        raise SystemExit(f"eta {eta:g}: hard impacts have no critical friction, P(whirl) lies {found.value}")
     return found
 
 
@@ -260,7 +260,7 @@ def finish(axes: Axes) -> None:
     """Axes and their labels; the kick of the cage at hand along the top."""
     axes.set(
         xlabel=r"kick over clearance $\chi = v_0\,\sqrt{M/k}\,/\,c_p$ [-]",
-        ylabel=r"friction at which half the runs grow, $f_{BC}$ [-]",
+        ylabel=r"friction at which half the runs whirl, $f_{BC}$ [-]",
     )
     axes.set_yticks([0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5])
     axes.yaxis.set_major_formatter("{x:g}")

@@ -40,7 +40,7 @@ LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""
 
 MOST_KICK: MetrePerSecond = 1e4
-NO_KICK = "A kick of zero starts nothing that could grow or die."
+NO_KICK = "A kick of zero starts no motion."
 _START_HINT = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
 

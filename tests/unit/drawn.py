@@ -77,12 +77,12 @@ def candidates(friction):
 
 
 def plane(share, *, x=None, y=None, **changes):
-    """A stability map with these shares of growing runs, shape (y, x); NaN is a refusal."""
+    """A stability map with these shares of whirling runs, shape (y, x); NaN is a refusal."""
     share = np.array(share, dtype=float)
     rows, columns = share.shape
     decision = np.where(np.isnan(share), "", np.where(share > 0.8, "UNSTABLE", "STABLE"))
     variables = {
-        "probability_grow": (("y", "x"), share),
+        "probability_whirl": (("y", "x"), share),
         "decision": (("y", "x"), np.where((share > 0.2) & (share < 0.8), "UNDECIDED", decision)),
         "reason": (("y", "x"), np.where(np.isnan(share), "The cage cannot fit.", "As they do.")),
         "x_parameter": "restitution_factor",

@@ -223,7 +223,7 @@ def test_every_dimensional_variable_has_a_unit(folder):
     counts = {
         "most_loaded",
         "iterations",
-        "grown",
+        "whirling",
         "ball",
         "run",
         "runs",

@@ -37,7 +37,7 @@ KEYS = (
     "seed study"
 )
 OF_A_POINT = (
-    "x y decision probability_grow probability_low probability_high runs grown growth_rate "
+    "x y decision probability_whirl probability_low probability_high runs whirling growth_rate "
     "largest_offset drift_rate largest_contact_force "
     "restitution_factor margin inferred_decision reason"
 )
@@ -202,11 +202,11 @@ def test_the_dataset_stands_on_x_and_y(capsys):
     clearance = "cage.pocket_clearance=0.2..1mm:3"
     found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
     data = results.load("m/map.nc")
-    assert data["probability_grow"].dims == ("y", "x")
+    assert data["probability_whirl"].dims == ("y", "x")
     assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
     for point in found["points"]:
         there = data.sel(x=point["x"], y=point["y"])
-        assert float(there["probability_grow"]) == point["probability_grow"]
+        assert float(there["probability_whirl"]) == point["probability_whirl"]
         assert str(there["decision"].values) == point["decision"]
 
 

@@ -49,7 +49,7 @@ def response(probability, runs=64):
 
 
 def logistic(middle, slope):
-    """P(grow) logistic in ln f."""
+    """P(whirl) logistic in ln f."""
     return lambda f: 1.0 / (1.0 + (middle / f) ** slope) if f > 0.0 else 0.0
 
 
@@ -145,7 +145,7 @@ def test_one_kick_that_grows_without_friction_leaves_the_band_without_a_lower_en
 
 
 def test_one_kick_that_never_grows_leaves_the_band_without_an_upper_end():
-    """There is no friction above which nine in ten runs grow from every kick, whatever the others do."""
+    """There is no friction above which nine in ten runs whirl from every kick, whatever the others do."""
     usual = logistic(0.12, 8.0)
     point = at_three_kicks(lambda f: min(0.7, usual(f)), usual, usual)
     assert point.critical_friction is not None
@@ -510,8 +510,8 @@ def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
 
     def count(rubbing, settings, *, first_run, runs, **_):
         taken.append((settings.seed, rubbing.ball_cage_friction, range(first_run, first_run + runs)))
-        grown = runs if rubbing.ball_cage_friction > 0.1 else first_run % 2
-        return SimpleNamespace(count=lambda _: [grown])
+        whirling = runs if rubbing.ball_cage_friction > 0.1 else first_run % 2
+        return SimpleNamespace(count=lambda _: [whirling])
 
     monkeypatch.setattr(limits, "run_hard_ensemble", count)
     cage = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage

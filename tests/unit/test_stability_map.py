@@ -59,7 +59,7 @@ def question(study, **changed):
 
 
 def test_a_point_is_the_ensemble_of_its_cage(study):
-    """Runs, growing runs and decision of every point are those of the same cage by itself."""
+    """Runs, whirling runs and decision of every point are those of the same cage by itself."""
     cage = cage_state(study, friction=0.1).cage
     found = stability_map(question(study))
     assert [(p.x, p.y) for p in found.points] == list(
@@ -68,7 +68,7 @@ def test_a_point_is_the_ensemble_of_its_cage(study):
     for point in found.points:
         there = cage_at(cage, point.x, point.y)
         alone = run_ensemble(there, study.stability, kicks=(0.5,), runs=point.runs)
-        assert point.grown == int(alone.count(RunOutcome.WHIRLS)[0])
+        assert point.whirling == int(alone.count(RunOutcome.WHIRLS)[0])
         assert (point.decision, point.reason) == (judge(there, alone).verdict, judge(there, alone).reason)
         evidence = judge(there, alone)
         for name in ("largest_offset", "drift_rate", "largest_contact_force"):
@@ -96,7 +96,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
     assert drifts(cage_state(loose, friction=0.0).cage)
     found = stability_map(question(loose))
     assert found.counts["STABLE"] == 0
-    calm = [point for point in found.points if point.grown == 0]
+    calm = [point for point in found.points if point.whirling == 0]
     assert calm
     assert all("drift" in p.reason for p in calm if "Too short" not in p.reason)
     assert {p.decision for p in calm} == {Verdict.UNDECIDED}

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage.drive import drift_rate_law, room
-from separatrix.cage.ending import GROWS_ON, LONGEST
+from separatrix.cage.ending import GROWS_ON
 from separatrix.cage.orbit import LEFT, largest_room
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
 from separatrix.units import Array
@@ -67,7 +67,7 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
         causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
         most = Cause(int(np.bincount(causes).argmax()))
         followed = ensemble.followed[kick].max()
-        cure = f"{CAUSES[most]} (followed for {followed:.3g} s, at most {LONGEST} times the duration)"
+        cure = f"{CAUSES[most]} (followed for {followed:.3g} s)"
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
 

@@ -166,9 +166,12 @@ def watch(  # type: ignore[no-untyped-def]
 
 
 @kernel
-def drift_rate(tally, end):  # type: ignore[no-untyped-def]
-    """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset."""
-    n = end // FEWEST_LOOKS
+def drift_rate(tally, end, window):  # type: ignore[no-untyped-def]
+    """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset.
+
+    Between the halves of the window by which a short run was judged: before it the kick still had its effect.
+    """
+    n = max(end // FEWEST_LOOKS, min(end, window) // 2)
     if n == 0:
         return 0.0
     last = np.hypot(np.sum(tally[end - n : end, MEAN_X]), np.sum(tally[end - n : end, MEAN_Y]))
@@ -235,7 +238,7 @@ def run_one(p, pockets, direction, kick, w, limits, tally, rows, out, hits):  # 
         return
     out[FOLLOWED] = end * look * p.unit
     out[GROWTH_RATE] = growth(tally, end, look, start) / p.unit
-    out[DRIFT_RATE] = drift_rate(tally, end) / (look * p.unit)
+    out[DRIFT_RATE] = drift_rate(tally, end, limits.window) / (look * p.unit)
     force = 1.0 / p.unit**2
     out[FORCE] = np.max(tally[:end, FORCE_MAX]) * force
     out[LAND_FORCE] = np.max(tally[:end, LAND_MAX]) * force

@@ -145,7 +145,7 @@ def not_run(data: xr.Dataset) -> Any:
 
 def refused(data: xr.Dataset) -> Any:
     """Return where there is no answer although it was asked for."""
-    return np.isnan(table(data, "probability_grow").astype(float)) & ~not_run(data)
+    return np.isnan(table(data, "probability_whirl").astype(float)) & ~not_run(data)
 
 
 def agreed(data: xr.Dataset) -> Any:
@@ -155,7 +155,7 @@ def agreed(data: xr.Dataset) -> Any:
 
 def filled(data: xr.Dataset) -> Array:
     """Return the probability of growth; where the points around agree, that of the nearest point."""
-    share = table(data, "probability_grow").astype(float)
+    share = table(data, "probability_whirl").astype(float)
     rows, columns = np.nonzero(np.isfinite(share))
     for row, column in np.argwhere(agreed(data)) if rows.size else ():
         near = np.argmin(np.maximum(np.abs(rows - row), np.abs(columns - column)))
@@ -193,7 +193,7 @@ def _hatched(axes: Axes, edges: list[Array], where: Any, **look: Any) -> None:
 
 
 def _half(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the contour on which half the runs grow, if it runs through the map."""
+    """Draw the contour on which half the runs whirl, if it runs through the map."""
     share = np.ma.masked_invalid(filled(data))
     if min(share.shape) < 2 or not share.count() or not share.min() < 0.5 < share.max():
         return

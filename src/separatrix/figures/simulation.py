@@ -46,7 +46,7 @@ def milliseconds(data: xr.Dataset) -> Array:
 
 
 def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: a motion that dies does so early."""
+    """Whether time is drawn logarithmic: a motion that settles does so early."""
     return any(str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 for run in runs)
 
 

@@ -92,7 +92,7 @@ def has_band(data: xr.Dataset) -> bool:
 def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
     """Return both ends of the band at each restitution factor, as far as anything is known there.
 
-    An end without a number is at 0 (runs grow without friction) or beyond `top` (they die up to the most).
+    An end without a number is at 0 (runs whirl without friction) or beyond `top` (they settle up to the most).
     """
     low, high = (data[f"critical_friction_{end}"].values.astype(float) for end in ("low", "high"))
     unknown = np.isnan(low) & np.isnan(high) & np.isnan(data["critical_friction"].values.astype(float))
@@ -101,7 +101,7 @@ def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
 
 
 BAND = {"band_few": 0.1, "band_most": 0.9}
-"""Shares of growing runs at the ends of the band, in a dataset that does not say them."""
+"""Shares of whirling runs at the ends of the band, in a dataset that does not say them."""
 
 
 def _band(axes: Axes, eta: Array, data: xr.Dataset, top: float) -> None:
@@ -150,7 +150,7 @@ def _limits(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _other_kicks(axes: Axes, data: xr.Dataset) -> None:
-    """Draw where half the runs grow from the smallest and from the largest kick, if the dataset has it."""
+    """Draw where half the runs whirl from the smallest and from the largest kick, if the dataset has it."""
     if "kick_critical_friction" not in data or data.sizes["kick"] < 2:
         return
     kicks, found = (
@@ -268,7 +268,7 @@ def _errors(data: xr.Dataset) -> Array:
 
 
 def _own_bands(axes: Axes, data: xr.Dataset) -> None:
-    """Shade the band at each candidate's restitution factor, with a line where half the runs grow."""
+    """Shade the band at each candidate's restitution factor, with a line where half the runs whirl."""
     eta, top = data["restitution_factor"].values, axes.get_ylim()[1]
     if not has_band(data):
         _shared_band(axes, data, top)

@@ -103,7 +103,7 @@ def _band(document: Document, x: float) -> list[list[str]]:
         [
             start,
             *(quantity(change[end], unit) for end in ("y_low", "y_high")),
-            "above" if change["grows_above"] else "below",
+            "above" if change["whirls_above"] else "below",
             _margin(change, here, unit),
         ]
         for change in found
@@ -117,8 +117,8 @@ def _margin(change: Document, here: float | None, unit: str) -> str:
     below, above = low - here, here - high
     distance = max(below, above, 0.0)
     distance *= distance > ROUNDING * abs(here)
-    grows = (here > high) == change["grows_above"] and distance > 0.0
-    return quantity(-distance if grows else distance, unit)
+    whirls = (here > high) == change["whirls_above"] and distance > 0.0
+    return quantity(-distance if whirls else distance, unit)
 
 
 def _of_one_kind(points: Sequence[Document], x: float) -> str:
@@ -126,12 +126,12 @@ def _of_one_kind(points: Sequence[Document], x: float) -> str:
     run = [p for p in points if p["x"] == x and p["runs"]]
     if not run:
         return "not run"
-    grows = any(p["probability_low"] > 0.5 for p in run)
-    dies = any(p["probability_high"] < 0.5 for p in run)
+    whirls = any(p["probability_low"] > 0.5 for p in run)
+    settles = any(p["probability_high"] < 0.5 for p in run)
     unclear = any(p["probability_low"] <= 0.5 <= p["probability_high"] for p in run)
     if unclear:
         return "no boundary found"
-    return "everywhere" if grows and not dies else "nowhere"
+    return "everywhere" if whirls and not settles else "nowhere"
 
 
 def _holds_for(document: Document) -> list[tuple[str, str]]:

@@ -37,8 +37,8 @@ LEGEND = paragraph(
     "tie: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean, and "
     "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
     "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
-    "samples lie. P(stable): at most one run in ten grows, from every kick; P(unstable): more than half "
-    "grow, from every kick; the rest is undecided. P(best): largest threshold of its environment; none where "
+    "samples lie. P(stable): at most one run in ten whirls, from every kick; P(unstable): more than half "
+    "whirl, from every kick; the rest is undecided. P(best): largest threshold of its environment; none where "
     "no other was measured."
 )
 
@@ -57,7 +57,7 @@ EVIDENCE_HEADERS = (
 EVIDENCE_LEGEND = paragraph(
     "Single runs, every input at its mean (as rank): verdict; motion: what the cage centre does at the end, "
     "from the worst kick; offset of the cage centre, force at a pocket and at the land: largest in any run; "
-    "drift: median growth of the mean offset in the runs that do not grow; runs: from each kick."
+    "drift: median growth of the mean offset in the runs that do not whirl; runs: from each kick."
 )
 
 

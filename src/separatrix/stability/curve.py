@@ -41,7 +41,7 @@ class StabilityCurve:
     hard_limit_closed : float or None
         Where dead hard impacts begin to whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even [-].
     band_few, band_most : float
-        Shares of growing runs at the ends of the band [-].
+        Shares of whirling runs at the ends of the band [-].
     band : bool
         Whether the points of `curve` have their band; `here` always has.
     kicks, middle_kick, runs, duration, ball_scatter
@@ -49,7 +49,7 @@ class StabilityCurve:
     searched_friction : float
         The friction up to which was looked [-].
     drifts : bool
-        Whether nothing holds the cage centre: below the curve a kick dies, but no verdict there is STABLE.
+        Whether nothing holds the cage centre: below the curve a kick settles, but no verdict there is STABLE.
     drift_rate_law : float
         Rate of that drift by the linear law, at any friction, with the cage's own race damping; 0 with a land
         or a ball set at rest [1/s].

@@ -1,4 +1,4 @@
-"""How often a cage's motion grows, counted run by run."""
+"""How often a cage whirls, counted run by run."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ ALIKE = 24
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """So many of the runs grew."""
+    """So many of the runs whirl."""
 
-    grown: int
+    whirling: int
     runs: int
 
     @property
     def share(self) -> Ratio:
-        """Estimate of P(grow)."""
-        return self.grown / self.runs
+        """Estimate of P(whirl)."""
+        return self.whirling / self.runs
 
     def interval(self) -> tuple[Ratio, Ratio]:
-        """Wilson's 95 % interval of P(grow)."""
-        return wilson_interval(self.grown, self.runs)
+        """Wilson's 95 % interval of P(whirl)."""
+        return wilson_interval(self.whirling, self.runs)
 
     @property
     def unanimous(self) -> bool:
         """True if all of many runs agree."""
-        return self.runs >= ALIKE and self.grown in (0, self.runs)
+        return self.runs >= ALIKE and self.whirling in (0, self.runs)
 
     def __add__(self, other: Count) -> Count:
-        return Count(self.grown + other.grown, self.runs + other.runs)
+        return Count(self.whirling + other.whirling, self.runs + other.runs)
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
@@ -63,7 +63,7 @@ def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecond
 
 
 class GrowthCounter:
-    """Counts growing runs at points (eta, f, kick) and remembers them.
+    """Counts whirling runs at points (eta, f, kick) and remembers them.
 
     Run number r begins alike at every point, whatever eta, f and kick are (common random numbers). `stop`,
     once set, lets the runs under way end and starts no others.
@@ -88,7 +88,7 @@ class GrowthCounter:
         first_run: int,
         runs: int,
     ) -> Count:
-        """Count the growing runs among those numbered from `first_run`.
+        """Count the whirling runs among those numbered from `first_run`.
 
         Raises
         ------

@@ -26,7 +26,7 @@ class LinearLimit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HardLimit:
-    """Friction at which half the runs grow in hard impacts; None if less than half grow anywhere.
+    """Friction at which half the runs whirl in hard impacts; None if less than half whirl anywhere.
 
     Pockets are walls at even places, the ball set is at rest, the cage has no land and does not turn, so
     that every blow returns just the restitution factor. What it is the limit of: kicks so weak that the

@@ -217,17 +217,17 @@ def _tally(ensemble: Ensemble) -> Tally:
 
 def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
     decision, reason = decide(cage, ensemble)
-    grown, runs = int(ensemble.count(RunOutcome.WHIRLS)[0]), ensemble.outcome.shape[1]
-    low, high = wilson_interval(grown, runs)
+    whirling, runs = int(ensemble.count(RunOutcome.WHIRLS)[0]), ensemble.outcome.shape[1]
+    low, high = wilson_interval(whirling, runs)
     return MapPoint(
         x=x,
         y=y,
         decision=decision,
-        probability_grow=grown / runs,
+        probability_whirl=whirling / runs,
         probability_low=low,
         probability_high=high,
         runs=runs,
-        grown=grown,
+        whirling=whirling,
         growth_rate=growth_rate(ensemble),
         largest_offset=float(ensemble.largest_offset.max()),
         drift_rate=drift_rate(ensemble),
@@ -259,7 +259,7 @@ def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
         along = zip(column, margins(heights, sides), strict=True)
         points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
         bands += [
-            MapChange(x=x, y_low=heights[a], y_high=heights[b], grows_above=sides[b] > 0)
+            MapChange(x=x, y_low=heights[a], y_high=heights[b], whirls_above=sides[b] > 0)
             for a, b in changes(sides)
         ]
     settings = question.study.stability

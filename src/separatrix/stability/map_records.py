@@ -34,10 +34,10 @@ class MapPoint:
         Values of the two parameters [SI].
     decision : Verdict or None
         By the rule of `cage.judge`, from the runs that were made.
-    probability_grow, probability_low, probability_high : float or None
-        Share of the runs that grow, and its 95 % Wilson interval [-].
-    runs, grown : int
-        Runs that were made, and those among them that grow.
+    probability_whirl, probability_low, probability_high : float or None
+        Share of the runs that whirl, and its 95 % Wilson interval [-].
+    runs, whirling : int
+        Runs that were made, and those among them that whirl.
     growth_rate : float or None
         Median over the runs [1/s].
     largest_offset, largest_contact_force : float or None
@@ -47,8 +47,8 @@ class MapPoint:
     restitution_factor : float or None
         Eta of the chain at this point, or that of the axis [-].
     margin : float or None
-        Distance along y to the nearest band in which the column changes from motion that dies to motion
-        that grows, in the unit of y: positive where it dies, negative where it grows, 0 in the band; None in
+        Distance along y to the nearest band in which the column changes from motion that settles to a
+        whirl, in the unit of y: positive where it settles, negative where it whirls, 0 in the band; None in
         a column that does not change.
     inferred_decision : Verdict or None
         Decision of the points around it, where an adaptive map did not run it.
@@ -59,11 +59,11 @@ class MapPoint:
     x: float
     y: float
     decision: Verdict | None = None
-    probability_grow: Ratio | None = None
+    probability_whirl: Ratio | None = None
     probability_low: Ratio | None = None
     probability_high: Ratio | None = None
     runs: int = 0
-    grown: int = 0
+    whirling: int = 0
     growth_rate: float | None = None
     largest_offset: Metre | None = None
     drift_rate: float | None = None
@@ -75,18 +75,18 @@ class MapPoint:
 
     @property
     def side(self) -> int:
-        """Whether more than half of the runs grow (1), die (-1), or neither is sure (0)."""
+        """Whether more than half of the runs whirl (1), settle (-1), or neither is sure (0)."""
         return side(self.probability_low, self.probability_high)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapChange:
-    """Between these two neighbouring decided points of a column the motion changes from dying to growing."""
+    """Between these two neighbouring decided points of a column the motion changes from settling to whirling."""
 
     x: float
     y_low: float
     y_high: float
-    grows_above: bool
+    whirls_above: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,7 +20,7 @@ LOOK_AFTER = 2
 MOST_WRONG: Ratio = 1e-3
 """Largest probability that all the runs of such a point would have the other majority."""
 
-DIES, GROWS, EITHER = -1, 1, 0
+SETTLES, WHIRLS, EITHER = -1, 1, 0
 
 
 def first_look(runs: int) -> int:
@@ -105,10 +105,10 @@ def further(made: int, most: int) -> int:
 
 
 def side(low: Ratio | None, high: Ratio | None) -> int:
-    """Return the side of one half on which the interval of P(grow) lies: DIES, GROWS, or EITHER."""
+    """Return the side of one half on which the interval of P(whirl) lies: SETTLES, WHIRLS, or EITHER."""
     if low is None or high is None:
         return EITHER
-    return GROWS if low > 0.5 else DIES if high < 0.5 else EITHER
+    return WHIRLS if low > 0.5 else SETTLES if high < 0.5 else EITHER
 
 
 def changes(sides: Sequence[int]) -> list[tuple[int, int]]:
@@ -120,7 +120,7 @@ def changes(sides: Sequence[int]) -> list[tuple[int, int]]:
 def margins(values: Sequence[float], sides: Sequence[int]) -> list[float | None]:
     """Distance of each point to the nearest band in which its row changes sides.
 
-    Positive where the motion dies, negative where it grows, 0 inside the band; None in a row that does not
+    Positive where the motion settles, negative where it whirls, 0 inside the band; None in a row that does not
     change, and where nothing was decided outside a band.
     """
     bands = [(values[a], values[b]) for a, b in changes(sides)]

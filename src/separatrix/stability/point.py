@@ -16,7 +16,7 @@ from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
 
 BAND_FEW, BAND_MOST = 0.1, 0.9
-"""Shares of growing runs at which a kick is said to die, and to grow."""
+"""Shares of whirling runs at which a kick is said to settle, and to whirl."""
 
 MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
 """Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
@@ -37,19 +37,19 @@ class CriticalFriction:
     restitution_factor : float
         eta [-].
     critical_friction : float or None
-        Friction at which half the runs grow from the reference kick [-].
+        Friction at which half the runs whirl from the reference kick [-].
     critical_friction_low, critical_friction_high : float or None
-        The sub-critical band: below the first nine in ten runs die from every kick, above the second nine
-        in ten grow from every kick [-].
+        The sub-critical band: below the first nine in ten runs settle from every kick, above the second nine
+        in ten whirl from every kick [-].
     scatter_low, scatter_high : float or None
         95 % interval of `critical_friction` from the number of runs [-].
     low_scatter_low, low_scatter_high, high_scatter_low, high_scatter_high : float or None
         The same of the ends of the band [-].
     kick_low, kick_critical_friction, kick_high : tuple
-        Frictions at which a tenth, half, nine tenths of the runs grow, for each kick by itself; None where
+        Frictions at which a tenth, half, nine tenths of the runs whirl, for each kick by itself; None where
         there is none, or the band was not asked for [-].
     side : Side or None
-        Where `critical_friction` is None: whether P(grow) lies above one half throughout, or below.
+        Where `critical_friction` is None: whether P(whirl) lies above one half throughout, or below.
     reason : str or None
         Why one of the first three is None.
     """
@@ -80,7 +80,7 @@ def critical_friction(
     band: bool = True,
     guess: Ratio | None = None,
 ) -> CriticalFriction:
-    """Friction at which half the runs grow from the reference kick, and the band over all kicks.
+    """Friction at which half the runs whirl from the reference kick, and the band over all kicks.
 
     Parameters
     ----------

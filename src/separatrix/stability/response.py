@@ -46,7 +46,7 @@ EITHER_SIDE = (0.1, 0.9)
 ENDS_95 = (0.025, 0.975)
 
 Look = Callable[[Ratio, int, int], Count]
-"""Growing runs at a friction: number of the first run, and how many."""
+"""Whirling runs at a friction: number of the first run, and how many."""
 
 
 class Side(Enum):
@@ -94,7 +94,7 @@ class Response:
     def reaches(self, cell: int, target: Ratio) -> bool:
         """True if P reaches the target at an end of the ladder; a first look that agrees is enough."""
         count = self.first(cell)
-        while 0 < count.grown < count.runs < self._runs:
+        while 0 < count.whirling < count.runs < self._runs:
             low, high = count.interval()
             if not low <= target <= high:
                 break
@@ -169,7 +169,7 @@ class Response:
         """Return the whole cell if P jumps inside it from none to all: nothing more is known of it."""
         high = next((i for i in range(1, LAST) if math.log(LADDER[i]) > centre), LAST)
         below, above = (self.counts.get(i, Count(0, 0)) for i in (high - 1, high))
-        if high == 1 or not (below.unanimous and above.unanimous and below.grown < above.grown):
+        if high == 1 or not (below.unanimous and above.unanimous and below.whirling < above.whirling):
             return None
         low, top = LADDER[high - 1], LADDER[high]
         return Crossing(math.sqrt(low * top), low, top)
@@ -186,10 +186,10 @@ def posterior(counts: Mapping[float, Count], place: Array, target: Ratio) -> Arr
     if not counts:
         return np.full(place.size, 1.0 / place.size)
     x = np.array(list(counts))
-    grown = np.array([count.grown for count in counts.values()], dtype=np.float64)
+    whirling = np.array([count.whirling for count in counts.values()], dtype=np.float64)
     runs = np.array([count.runs for count in counts.values()], dtype=np.float64)
     logit = math.log(target / (1.0 - target)) + SLOPES[:, None] * (x - place[:, None])[:, None, :]
-    likelihood = grown * logit - runs * np.logaddexp(0.0, logit)
+    likelihood = whirling * logit - runs * np.logaddexp(0.0, logit)
     total = likelihood.sum(axis=-1)
     weight = np.exp(total - total.max()).sum(axis=-1)
     return np.asarray(weight / weight.sum())

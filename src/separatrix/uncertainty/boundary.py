@@ -90,7 +90,7 @@ class Boundary:
     def critical_friction(
         self, restitution_factor: Array, parameters: Array, draw: int | None = None
     ) -> Array:
-        """Friction at which half of the runs grow from the reference kick, shape (sample,) [-]."""
+        """Friction at which half of the runs whirl from the reference kick, shape (sample,) [-]."""
         own = None if self._moves else draw
         line = self._lines_at(1, restitution_factor, own)[self.traced.middle]
         if self.surrogate is None or not self._moves:

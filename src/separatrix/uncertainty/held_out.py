@@ -24,7 +24,7 @@ LARGEST_ERROR = 0.2
 
 
 def foretold(surrogate: Surrogate, points: Points) -> tuple[Array, Array]:
-    """P(grow) of each run, and how its logit falls with the shift of the boundary, shape (run,)."""
+    """P(whirl) of each run, and how its logit falls with the shift of the boundary, shape (run,)."""
     share, steepness = np.zeros(points.kick.size), np.zeros(points.kick.size)
     for kick, mode in enumerate(surrogate.mode):
         own = points.kick == kick
@@ -80,7 +80,7 @@ def deviance(share: Array, grew: Array) -> float:
 
 
 def calibration(share: Array, grew: Array) -> tuple[Array, Array, Array]:
-    """Mean foretold probability, growing runs and runs in bins of equal numbers, shape (bin,) each."""
+    """Mean foretold probability, whirling runs and runs in bins of equal numbers, shape (bin,) each."""
     order = np.array_split(np.argsort(share, kind="stable"), BINS)
     return (
         np.array([share[part].mean() for part in order]),
@@ -102,7 +102,7 @@ def surrogate_error(
     """Record of the error of `final`, as `tried`, fitted without the held-out runs, shows it."""
     share, _ = foretold(tried, held_out)
     common = np.full(share.size, held_out.grew.mean())
-    predicted, grown, counted = calibration(share, held_out.grew)
+    predicted, whirling, counted = calibration(share, held_out.grew)
     error = error_of(final, eta, parameters)
     return SurrogateError(
         runs=runs,
@@ -111,7 +111,7 @@ def surrogate_error(
         deviance=deviance(share, held_out.grew),
         deviance_constant=deviance(common, held_out.grew),
         predicted=predicted,
-        grown=grown,
+        whirling=whirling,
         counted=counted,
         misfit=final.misfit,
         error=error,

@@ -150,7 +150,7 @@ class BoundaryLine:
     restitution_factor : ndarray
         Shape (node,) [-].
     critical_friction, critical_friction_low, critical_friction_high : ndarray
-        At which half of the runs grow from the reference kick, and its 95 % interval [-].
+        At which half of the runs whirl from the reference kick, and its 95 % interval [-].
     stable_up_to, unstable_above : ndarray
         Between them a sample is UNDECIDED [-].
     """
@@ -173,7 +173,7 @@ class SurrogateError:
         Single runs that were spent, of them not used for the fit that was tried, and different cages.
     deviance, deviance_constant : float
         Mean of minus twice the log-likelihood of a held-out run; and of a law that knows only how many grow.
-    predicted, grown, counted : ndarray
+    predicted, whirling, counted : ndarray
         Calibration: mean foretold probability in each bin, and of how many runs how many grew, shape (bin,).
     misfit : float
         Standard deviation of ln f beyond the runs' own scatter, found in parts of the held-out runs; it is
@@ -190,7 +190,7 @@ class SurrogateError:
     deviance: float
     deviance_constant: float
     predicted: Array
-    grown: Array
+    whirling: Array
     counted: Array
     misfit: Ratio
     error: Ratio

@@ -86,7 +86,7 @@ class Surrogate:
     misfit : float
         Standard deviation of ln f that held-out runs show beyond their own scatter [-].
     clear : float
-        Share of growing runs that is clearly more than half [-].
+        Share of whirling runs that is clearly more than half [-].
     seed : int
         Of the draws.
     """
@@ -146,7 +146,7 @@ class Surrogate:
     ) -> tuple[Array, Array, Array]:
         """Frictions that part the outcomes of a kick, shape (kick, sample) each.
 
-        Few of the runs grow from the first, below which the land drives the cage, to the second; clearly more
+        Few of the runs whirl from the first, below which the land drives the cage, to the second; clearly more
         than half of them above the last. `half` holds those of the traced curve at which half of them grow.
         """
         found = self.coefficients(draw)
@@ -211,7 +211,7 @@ def runs_of(points: Points, scale: Scale, knots: Array) -> Runs:
 
 
 class Foretold(NamedTuple):
-    """What a law says of runs: P(grow), what part of it is the pockets', logits of both, and the width."""
+    """What a law says of runs: P(whirl), what part of it is the pockets', logits of both, and the width."""
 
     share: Array
     by_pockets: Array
@@ -221,7 +221,7 @@ class Foretold(NamedTuple):
 
 
 def foretold_of(found: Array, runs: Runs) -> Foretold:
-    """P(grow) of runs by coefficients of their kick, shape (run,) each."""
+    """P(whirl) of runs by coefficients of their kick, shape (run,) each."""
     count = runs.shift.shape[1]
     shift, below, above, land = np.split(found, [count, count + SIDE, count + 2 * SIDE])
     distance = runs.offset - runs.shift @ shift

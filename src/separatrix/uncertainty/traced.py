@@ -18,7 +18,7 @@ from separatrix.study import StabilitySettings
 from separatrix.units import Array, MetrePerSecond, Ratio
 
 FEW: Ratio = 0.1
-"""Share of growing runs up to which a kick is said to die: nine in ten die (`cage.verdict`)."""
+"""Share of whirling runs up to which a kick is said to die: nine in ten die (`cage.verdict`)."""
 
 HALF: Ratio = 0.5
 RUNS = 64
@@ -35,7 +35,7 @@ def clear_share(runs: int) -> Ratio:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TracedBoundary:
-    """Frictions at which few, half and clearly more than half of the runs grow, at each kick.
+    """Frictions at which few, half and clearly more than half of the runs whirl, at each kick.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class TracedBoundary:
     middle : int
         Which of them defines the threshold.
     targets : tuple of float
-        Shares of growing runs: `FEW`, `HALF`, and `clear_share` [-].
+        Shares of whirling runs: `FEW`, `HALF`, and `clear_share` [-].
     friction : ndarray
         At which the share is reached, shape (kick, target, node) [-]: 0 where it is reached without
         friction, `SEARCHED_FRICTION` where it is reached nowhere.

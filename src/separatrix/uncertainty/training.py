@@ -44,7 +44,7 @@ LEAST_FRICTION: Ratio = 1e-6
 """Friction below which nothing is run."""
 
 FIRST_REACH, REACH = 0.6, 3.0
-"""How far from the boundary runs are placed: in ln f at first, then in logits of P(grow)."""
+"""How far from the boundary runs are placed: in ln f at first, then in logits of P(whirl)."""
 
 LEAST_WIDTH = 0.08
 """Width of logit P in ln f below which runs are not drawn together: the tails must be seen too."""
