@@ -90,6 +90,7 @@ class Material:
     elastic_modulus: Pascal
     poisson_ratio: Ratio
     density: KilogramPerMetre3 | None = None
+    compressive_strength: Pascal | None = None
     source: str = "given in the study"
     confidence: str = "given in the study"
     record: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
@@ -106,6 +107,7 @@ class Material:
             ),
             _check.between(self, "poisson_ratio", 0.0, 0.5, open_high=True),
             _check.positive(self, "density", 1.0, 1e5),
+            _check.positive(self, "compressive_strength", 1e4, 1e11),
         )
 
 

@@ -154,7 +154,8 @@ def test_slopes_are_not_carried_beyond_the_tests():
     assert beyond.standard_deviation**2 == pytest.approx(
         at.standard_deviation**2 + beyond.widening**2, rel=1e-9
     )
-    assert beyond.extrapolation == ("slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used",)
+    said = "slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used"
+    assert beyond.extrapolation == (said,)
 
 
 def test_speed_and_pressure_that_rise_together_give_one_slope_on_their_product():

@@ -80,7 +80,8 @@ def rank_beside(logs):
     found = candidate.friction["liquid nitrogen, 440C"]
     assert found.mean == pytest.approx(np.sqrt(0.08 * 0.09), abs=1e-3)  # as above
     seen = found.law.at(slip_speed=25.0, pressure=None, temperature=77.0, medium="liquid nitrogen")
-    assert seen.extrapolation == ("slip speed in the pocket 25 m/s, tests cover 2 to 4 m/s: value at 4 m/s used",)
+    said = "slip speed in the pocket 25 m/s, tests cover 2 to 4 m/s: value at 4 m/s used"
+    assert seen.extrapolation == (said,)
 
 
 @pytest.mark.parametrize(

@@ -120,7 +120,7 @@ def at_three_kicks(*probabilities):
 
 
 def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
-    """Kicks a factor of two apart, logistic alike: intervals of both ends alike; 20 %, for runs on a ladder.
+    """Kicks a factor of two apart, logistic alike: intervals of both ends alike; 30 %, for runs on a ladder.
 
     A third of the runs, of the first look, would make an interval 70 % wider.
     """
@@ -131,7 +131,7 @@ def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
         point.low_scatter_high / point.low_scatter_low,
         point.high_scatter_high / point.high_scatter_low,
     )
-    assert math.log(upper) == pytest.approx(math.log(lower), rel=0.2)
+    assert math.log(upper) == pytest.approx(math.log(lower), rel=0.3)
     assert point.kick_critical_friction[1] == point.critical_friction
 
 

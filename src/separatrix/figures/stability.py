@@ -92,7 +92,7 @@ def has_band(data: xr.Dataset) -> bool:
 def band_ends(data: xr.Dataset, top: float) -> tuple[Array, Array]:
     """Return both ends of the band at each restitution factor, as far as anything is known there.
 
-    An end without a number is at 0 (runs whirl without friction) or beyond `top` (they settle up to the most).
+    An end without a number is at 0 (runs whirl without friction) or beyond `top` (they settle up to it).
     """
     low, high = (data[f"critical_friction_{end}"].values.astype(float) for end in ("low", "high"))
     unknown = np.isnan(low) & np.isnan(high) & np.isnan(data["critical_friction"].values.astype(float))

@@ -94,8 +94,8 @@ def _sentence(value: float, limits: Range, name: str) -> str:
         return f"slip speed and pressure were not tested together: pV {product} is {side} {tested} m/s"
     nearest = limits[1] if value > limits[1] else limits[0]
     return (
-        f"{WORDS[name]} in the pocket {_text(value, name)}, tests cover {in_words(limits, CONDITIONS[name])}: "
-        f"value at {_text(nearest, name)} used"
+        f"{WORDS[name]} in the pocket {_text(value, name)}, "
+        f"tests cover {in_words(limits, CONDITIONS[name])}: value at {_text(nearest, name)} used"
     )
 
 

@@ -33,6 +33,7 @@ PROPERTIES = {
     "elastic_modulus": Property(unit="Pa", words="modulus", low=1e5, high=5e12),
     "poisson_ratio": Property(unit="-", words="Poisson's ratio", low=0.001, high=0.499),
     "density": Property(unit="kg/m3", words="density", low=1e-6, high=1e5),
+    "compressive_strength": Property(unit="Pa", words="compressive strength", low=1e4, high=1e11),
     "viscosity": Property(unit="Pa s", words="viscosity", low=1e-8, high=1e3),
     "heat_capacity": Property(unit="J/kg/K", words="heat capacity", low=1.0, high=1e6),
     "triple_temperature": Property(unit="K", words="triple point", low=0.1, high=5000.0),
@@ -43,10 +44,12 @@ PROPERTIES = {
 """Every number that a record may hold."""
 
 ELASTIC = ("elastic_modulus", "poisson_ratio")
-SOLID = {key: PROPERTIES[key] for key in ELASTIC} | {"density": replace(PROPERTIES["density"], low=1.0)}
+SOLID = {key: PROPERTIES[key] for key in (*ELASTIC, "compressive_strength")} | {
+    "density": replace(PROPERTIES["density"], low=1.0)
+}
 """Numbers of a solid; its density is no gas's."""
 
-FLUID = {key: known for key, known in PROPERTIES.items() if key not in ELASTIC}
+FLUID = {key: known for key, known in PROPERTIES.items() if key not in (*ELASTIC, "compressive_strength")}
 """Numbers of a fluid."""
 
 

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from separatrix.chain import CageState
+from separatrix.pocket_contact import contact_radius
 from separatrix.ranking.records import RankedMaterial
-from separatrix.study import Study
-from separatrix.units import Newton, Ratio, format_quantity
+from separatrix.restitution import hertz_coefficient
+from separatrix.study import BallBearing, Material, Study
+from separatrix.units import Newton, Pascal, Ratio, format_quantity
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
+
+
+YIELDS: Ratio = 1.6
+"""Largest pressure of a ball on a flat over the strength in simple compression, at which the flat begins to
+yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
 
 
 def transmitted_force(study: Study, state: CageState) -> Newton:
@@ -32,6 +40,7 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
             "the ball slips, and the linear race damping is outside its range. It then returns too much "
             "speed to the cage; what that does to a verdict is not known."
         )
+    yield from _beyond_strength(study, judged)
     gap = state.cage.land_gap
     far = [row for row in judged if (row.largest_offset or 0.0) > BEYOND_LAND * gap]
     if far:
@@ -48,6 +57,32 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
             f"Friction on the land, {state.cage.land_friction:g}, keeps the cage whirling in some runs: "
             f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
             "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
+        )
+
+
+def pocket_pressure(bearing: BallBearing, wall: Material, force: Newton) -> Pascal:
+    """Largest pressure of a ball that is pressed on a flat pocket wall (Hertz); a bore shares it out [Pa]."""
+    K = hertz_coefficient(bearing.ball_diameter, bearing.ball_material, wall)
+    return 1.5 * force / (math.pi * contact_radius(force, K, bearing.ball_diameter) ** 2)
+
+
+def _beyond_strength(study: Study, rows: Sequence[RankedMaterial]) -> Iterator[str]:
+    """A sentence on the pockets that yield, of candidates whose strength is known."""
+    walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
+    said = []
+    for row in rows:
+        wall, force = walls.get(row.name), row.largest_contact_force or 0.0
+        if wall is None or wall.compressive_strength is None or force == 0.0:
+            continue
+        pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength
+        if pressure > limit:
+            both = (format_quantity(each, "Pa", 2) for each in (pressure, limit))
+            said.append(f"{row.name} {' against '.join(both)}")
+    if said:
+        yield (
+            f"The largest pocket force presses a ball into a flat pocket wall beyond {YIELDS:g} times its "
+            f"compressive strength, where it begins to yield: {', '.join(said)}. The pocket dents and wears; "
+            "its elastic stiffness is outside its range."
         )
 
 

@@ -38,8 +38,8 @@ LEGEND = paragraph(
     "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
     "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
     "samples lie. P(stable): at most one run in ten whirls, from every kick; P(unstable): more than half "
-    "whirl, from every kick; the rest is undecided. P(best): largest threshold of its environment; none where "
-    "no other was measured."
+    "whirl, from every kick; the rest is undecided. P(best): largest threshold of its environment; none "
+    "where no other was measured."
 )
 
 

@@ -81,7 +81,7 @@ class MapPoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapChange:
-    """Between these two neighbouring decided points of a column the motion changes from settling to whirling."""
+    """Between these two neighbouring decided points of a column the motion changes from rest to a whirl."""
 
     x: float
     y_low: float

@@ -120,8 +120,8 @@ def changes(sides: Sequence[int]) -> list[tuple[int, int]]:
 def margins(values: Sequence[float], sides: Sequence[int]) -> list[float | None]:
     """Distance of each point to the nearest band in which its row changes sides.
 
-    Positive where the motion settles, negative where it whirls, 0 inside the band; None in a row that does not
-    change, and where nothing was decided outside a band.
+    Positive where the motion settles, negative where it whirls, 0 inside the band; None in a row that does
+    not change, and where nothing was decided outside a band.
     """
     bands = [(values[a], values[b]) for a, b in changes(sides)]
     return [_margin(value, at, bands) for value, at in zip(values, sides, strict=True)]

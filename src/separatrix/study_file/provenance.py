@@ -145,6 +145,7 @@ def _material(material: Material) -> dict[str, Any]:
         "elastic_modulus": {"value": material.elastic_modulus, "unit": "Pa"},
         "poisson_ratio": {"value": material.poisson_ratio, "unit": "-"},
         "density": {"value": material.density, "unit": "kg/m3"},
+        "compressive_strength": {"value": material.compressive_strength, "unit": "Pa"},
         "source": material.source,
         "confidence": material.confidence,
         "cautions": list(material.cautions),

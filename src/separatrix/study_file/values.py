@@ -155,11 +155,12 @@ def known_name(name: str, kind: str, where: str, more: str = "") -> str:
 
 
 def material_in_place(value: Any, where: str, name: str = NAMELESS) -> Material | Uncertain:
-    """Material from a table with elastic_modulus, poisson_ratio and perhaps density, name and source."""
+    """Material from a table with elastic_modulus, poisson_ratio and perhaps more."""
     readers: dict[str, Reader] = {
         "elastic_modulus": number(quantity("Pa"), "Pa"),
         "poisson_ratio": number(ratio, "-"),
         "density": number(quantity("kg/m3"), "kg/m3"),
+        "compressive_strength": quantity("Pa"),
         "name": text,
         "source": text,
         "confidence": text,

@@ -146,8 +146,9 @@ class Surrogate:
     ) -> tuple[Array, Array, Array]:
         """Frictions that part the outcomes of a kick, shape (kick, sample) each.
 
-        Few of the runs whirl from the first, below which the land drives the cage, to the second; clearly more
-        than half of them above the last. `half` holds those of the traced curve at which half of them grow.
+        Few of the runs whirl from the first, below which the land drives the cage, to the second; clearly
+        more than half of them above the last. `half` holds those of the traced curve at which half of them
+        whirl.
         """
         found = self.coefficients(draw)
         middle = half * np.exp(found.shift @ self.terms(eta, parameters).T + found.misfit[:, None])
