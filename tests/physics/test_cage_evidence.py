@@ -85,7 +85,9 @@ def told(cage, ours):
     end = round(ours.judged_until / look)
     n, half = end // 5, end // 2 - end // 5 // 2
     last = between(ours, ours.judged_from, ours.judged_until)
-    halfway, before, fifth = (between(ours, look * a, look * (a + n)) for a in (half, end - 2 * n, end - n))
+    drift = max(n, min(end, limits.window) // 2)
+    halfway, fifth = (between(ours, look * a, look * (a + n)) for a in (half, end - n))
+    before, after = (between(ours, look * (end - a * drift), look * (end - (a - 1) * drift)) for a in (2, 1))
     (x, y), (vx, vy) = ours.position.T, ours.velocity.T
     energy, r, speed = ours.kinetic_energy, np.hypot(x, y), np.hypot(vx, vy)
     heading = np.unwrap(np.arctan2(vy, vx))
@@ -96,7 +98,7 @@ def told(cage, ours):
     weight = 2 * math.pi * mean(ours, speed**2, last) * np.ptp(ours.time[last])
     whirl, either_way = np.sum(turning) / weight, np.sum(np.abs(turning)) / weight
     sense = 1 if cage.cage_speed >= 0.0 else -1
-    ends = [math.hypot(mean(ours, x, rows), mean(ours, y, rows)) for rows in (before, fifth)]
+    ends = [math.hypot(mean(ours, x, rows), mean(ours, y, rows)) for rows in (before, after)]
     whole = between(ours, 0.0, ours.judged_until)
     return [
         ("end_energy", mean(ours, energy, last), near),
@@ -105,7 +107,7 @@ def told(cage, ours):
         ("mean_offset", offset, near),
         ("offset_spread", math.sqrt(square - offset**2), near),
         ("orbit_speed", sense * swept / square + abs(cage.cage_speed), {"rel": 1e-3, "abs": 1e-3 * 670.0}),
-        ("drift_rate", math.log(ends[1] / ends[0]) / (n * look), {"abs": 1e-3 / (n * look)}),
+        ("drift_rate", math.log(ends[1] / ends[0]) / (drift * look), {"abs": 1e-3 / (drift * look)}),
         ("whirl_frequency", abs(whirl), {"abs": 0.025 * either_way}),
         ("whirl_direction", sense * np.sign(whirl), {}),
         ("largest_contact_force", np.abs(ours.contact_force[whole]).max(), largest),

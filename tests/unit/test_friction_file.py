@@ -187,7 +187,7 @@ def test_the_cage_asks_for_what_its_pocket_rubs():
     assert seen.standard_deviation == seen.standard_error  # stated without its tests: no number is added
     assert seen.extrapolation == (
         "slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used",
-        "pressure of the tests is not stated",
+        "test pressure unknown (pocket: 150 MPa)",
         "tested in gaseous nitrogen, not in liquid nitrogen",
     )
 

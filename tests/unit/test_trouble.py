@@ -92,7 +92,7 @@ REFUSED = {
 SETTINGS = {
     "kick of zero": (
         'kicks = ["0 m/s"]',
-        "> 1e-09 and < 10000 [m/s]; got 0.0. A kick of zero starts nothing",
+        "> 1e-09 and < 10000 [m/s]; got 0.0. A kick of zero starts no motion",
     ),
     "kick lost in rounding": ('kicks = ["1e-300 m/s"]', "> 1e-09 and < 10000 [m/s]; got 1e-300. A kick"),
     "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
