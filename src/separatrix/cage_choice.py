@@ -24,6 +24,16 @@ def reference_candidate(study: Study, question: RankingQuestion) -> Candidate:
     return cage_candidate(study) or question.candidates[0]
 
 
+def other_than_candidates(study: Study, question: RankingQuestion) -> str:
+    """A sentence on a cage whose material is no candidate: the curve shown is another's; else empty."""
+    given = study.cage.material if study.cage else None
+    if given is None or cage_candidate(study) is not None:
+        return ""
+    name = "[cage] material" if given.name == NAMELESS else f"[cage] material {given.name}"
+    shown_for = question.candidates[0].name
+    return f"{name} is none of the candidates: the curve, and the eta beside it, are those of {shown_for}."
+
+
 def environment_of(question: RankingQuestion) -> str | None:
     """Return the stated environment, else the only one; None if the study does not say."""
     alone = question.environments[0] if len(question.environments) == 1 else None

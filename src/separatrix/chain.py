@@ -12,7 +12,7 @@ from typing import Any
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
-from separatrix.cage_choice import cage_candidate
+from separatrix.cage_choice import NAMELESS, cage_candidate
 from separatrix.cage_choice import known_friction as known_friction
 from separatrix.cage_choice import pocket_friction as pocket_friction
 from separatrix.contact_limits import beyond_contacts
@@ -277,7 +277,8 @@ def pocket_stiffness(
         cage_mass=design.mass,
         impact_speed=speed,
     )
-    return stiffness, f"Hertz, ball on a flat wall of {wall.name} at {speed:.3g} m/s"
+    name = "[cage] material" if wall.name == NAMELESS else wall.name
+    return stiffness, f"Hertz, ball on a flat wall of {name} at {speed:.3g} m/s"
 
 
 def cage_state(

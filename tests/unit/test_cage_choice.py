@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.cage_choice import pocket_friction, required_environment
+from separatrix.cage_choice import other_than_candidates, pocket_friction, required_environment
 from separatrix.chain import restitution_state
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study
@@ -39,6 +39,17 @@ def extended(tmp_path, text):
     path = tmp_path / "case.toml"
     path.write_text('extends = "cryogenic-turbopump"\n' + text)
     return read_study(path)
+
+
+def test_a_cage_of_another_material_says_whose_curve_is_shown(tmp_path):
+    """The first candidate's; nothing is said where the cage is one of them."""
+    other = "material = { elastic_modulus = '9 GPa', poisson_ratio = 0.3, name = 'Bronze' }"
+    for cage, said in ((other, "[cage] material Bronze is none of the candidates: the curve"), (None, "")):
+        study = case(tmp_path, **({} if cage is None else {"cage": cage}))
+        words = other_than_candidates(study, study.ranking)
+        assert words.startswith(said)
+        assert bool(words) is bool(said)
+        assert not words or words.endswith("are those of My compound.")
 
 
 @pytest.mark.parametrize("name", ["Armalon", "armalon", "Meldin HTC 100", "meldin htc-100"])

@@ -504,6 +504,14 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
     assert "so it is" in text
 
 
+@pytest.mark.parametrize("kick", [1e-5, 0.02, 90.0])
+def test_the_hard_limit_does_not_depend_on_the_kick(kick):
+    """Walls know no speed: to the last digit, also for a kick that takes 1 min to cross a pocket."""
+    cage = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage
+    one = limits.hard_limit(cage, 0.3, StabilitySettings(reference_kick=kick, runs=8))
+    assert one == limits.hard_limit(cage, 0.3, StabilitySettings(reference_kick=0.5, runs=8))
+
+
 def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
     """Further runs have further numbers; another seed would repeat the runs of a study with that seed."""
     taken = []

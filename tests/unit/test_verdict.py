@@ -165,6 +165,16 @@ def test_unresolved_runs_decide_nothing_and_say_why(cause, words):
     assert result.reason.endswith("(followed for 0.3 s).")
 
 
+def test_a_run_that_leaves_the_range_of_numbers_keeps_a_cage_from_stable():
+    """One of 48 would be outvoted, but nothing is known of how far it went: its offset is none."""
+    cause = np.zeros((3, 16), dtype=int)
+    cause[1, 3] = Cause.NOT_FINITE
+    rows = [[UNRESOLVED if c else SETTLES for c in each] for each in cause]
+    result = judge(CAGE, ensemble(rows, cause=cause))
+    assert result.verdict is Verdict.UNDECIDED
+    assert result.reason.startswith("In 1 of 48 runs the motion leaves the range of numbers; lower")
+
+
 def test_a_few_unresolved_runs_do_not_hide_the_others():
     """One of 16 leaves nine in ten that settle, three do not."""
     assert judge(CAGE, ensemble([[SETTLES] * 15 + [UNRESOLVED]] * 3)).verdict is Verdict.STABLE

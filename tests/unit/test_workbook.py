@@ -305,7 +305,7 @@ def test_what_was_not_tested_stands_beside_the_friction(answer, tmp_path):
     results_workbook(answer | {"overall": [row | known for row in answer["overall"]]}, tmp_path / "a.xlsx")
     headings, first, *_ = openpyxl.load_workbook(tmp_path / "a.xlsx")["overall"].values
     row = dict(zip(headings, first, strict=True))
-    assert row["friction not tested as the pocket rubs"] == "; ".join(said)
+    assert row["friction extrapolated beyond the tests"] == "; ".join(said)
     assert row["scatter of the friction assumed"] == "yes"
     assert row["probability of the lowest friction (-)"] == 0.7
 

@@ -57,6 +57,12 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     return f"{first}; friction feeds the cage {_watt(float(np.median(power)))}."
 
 
+def not_finite(ensemble: Ensemble) -> str:
+    """Return in how many runs nothing is known of the motion."""
+    runs = ensemble.cause == Cause.NOT_FINITE
+    return f"In {int(runs.sum())} of {runs.size} runs {CAUSES[Cause.NOT_FINITE]}."
+
+
 def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
     """Return what the runs from the worst kick do, what the other kicks do, and what would decide."""
     count = counts[kick]

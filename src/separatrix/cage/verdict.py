@@ -289,6 +289,8 @@ def decide(
         return Verdict.UNDECIDED, reason.too_few(count.runs)
     if not _clear(count.settles + count.drifts, count.runs):
         return Verdict.UNDECIDED, reason.mixed(ensemble, counts, at)
+    if (ensemble.cause == Cause.NOT_FINITE).any():
+        return Verdict.UNDECIDED, reason.not_finite(ensemble)
     if drifts(cage) or not _clear(count.settles, count.runs):
         return Verdict.UNDECIDED, reason.drift(cage, ensemble)
     left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)

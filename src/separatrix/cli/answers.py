@@ -296,7 +296,25 @@ def simulate(
         ball_scatter=settings.ball_scatter,
         samples=int(min(max(samples, 1000), MOST_SAMPLES)),
     )
+    _say_beyond_model(study, state, history)
     return SimulationAnswer(cage=state, history=history, kick=speed, run=run)
+
+
+def _say_beyond_model(study: Study, state: CageState, history: History) -> None:
+    """Warn where the run leaves the range of the model or of hardware."""
+    from separatrix.cage_choice import cage_candidate
+    from separatrix.ranking.plausible import beyond_motion
+    from separatrix.ranking.records import RankedMaterial
+
+    made_of = cage_candidate(study)
+    run = RankedMaterial(
+        name=made_of.name if made_of else "The cage",
+        reason="",
+        largest_contact_force=float(abs(history.contact_force).max()),
+        largest_offset=float((history.position**2).sum(axis=1).max() ** 0.5),
+    )
+    for note in beyond_motion(study, state, [run]):
+        warnings.warn(note, ValidityWarning, stacklevel=3)
 
 
 def rank(study: Study, work: Work) -> RankingAnswer:

@@ -219,7 +219,7 @@ def _compare(
     second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress bar; there is none.")] = False,  # noqa: ARG001
+    quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
 ) -> int:
     return compare(first, second, folder(out), as_json=json)
 
@@ -337,7 +337,7 @@ def _start(
         raise typer.Exit
     if context.invoked_subcommand is None:
         verbs = ", ".join(["new", *VERB, "tribometer", "compare", "materials"])
-        raise InputError("The command line", f"lacks a verb: {verbs}", cure='Try "separatrix --help".')
+        raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:

@@ -30,7 +30,7 @@ def balls(data: xr.Dataset) -> Figure:
             axes.plot(azimuth[:-1], around, marker=marker, color=colour, ls="none")
             axes.plot(360.0, closed[-1], marker=marker, color=colour, mfc="white", ls="none")
             ends.append((364.0, float(np.nan_to_num(closed[-1])), race, colour))
-        axes.set(xlabel="azimuth of the ball [deg] (hollow: ball 0 again)", xlim=(-8, 425))
+        axes.set(xlabel="azimuth of the ball [deg] (hollow: ball 1 again)", xlim=(-8, 425))
         axes.set_xticks(range(0, 361, 60))
         _limits_from_zero(axes)
         label_lines(axes, ends)

@@ -196,7 +196,7 @@ class _Path:
         axes.text(
             0.5,
             0.0,
-            f"path of the centre,\n{format_number(size, 2)} times too large",
+            f"path of the centre,\nenlarged {format_number(size, 2)} times",
             **NOTE,
             transform=axes.transAxes,
         )

@@ -127,8 +127,8 @@ def cage_seen(study: Study, *, marked: bool = False) -> Study:
 def _say_what_was_not_tested(candidate: str, environment: str, friction: Friction | None) -> None:
     if friction is not None and friction.extrapolation:
         warnings.warn(
-            f"Pocket friction {friction.mean:.3g} of {candidate} in {environment}, not tested as the pocket "
-            f"rubs: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction gives another.",
+            f"Pocket friction {friction.mean:.3g} of {candidate} in {environment}, extrapolated beyond the "
+            f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction gives another.",
             ValidityWarning,
             stacklevel=3,
         )

@@ -45,7 +45,7 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]
     far = [row for row in judged if (row.largest_offset or 0.0) > BEYOND_LAND * gap]
     if far:
         worst = max(row.largest_offset or 0.0 for row in far)
-        names = "All" if len(far) == len(judged) else ", ".join(row.name for row in far)
+        names = "All" if len(far) == len(judged) > 1 else ", ".join(row.name for row in far)
         yield (
             f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
             f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from separatrix.cage import Judgement, judge
-from separatrix.cage_choice import reference_candidate, required_environment
+from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
@@ -135,9 +135,17 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         kicks=question.settings.kicks,
         runs=question.settings.runs,
         duration=question.settings.duration,
-        notes=tuple(beyond_motion(study, question.cages[question.reference], ranked[environment])),
+        notes=_notes(study, asked, question, ranked[environment]),
         complete=found.complete,
     )
+
+
+def _notes(
+    study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[RankedMaterial]
+) -> tuple[str, ...]:
+    """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
+    other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
+    return (*([other] if other else []), *beyond_motion(study, question.cages[question.reference], rows))
 
 
 def ranking_question(study: Study) -> RankingQuestion:

@@ -41,8 +41,8 @@ CONTACT_ROWS = (
     ("Load", "load", "N"),
     ("Semi-major axis a, across the groove", "semi_major", "m"),
     ("Semi-minor axis b, along rolling", "semi_minor", "m"),
-    ("Largest pressure", "max_pressure", "Pa"),
-    ("Approach", "approach", "m"),
+    ("Maximum Hertz pressure", "max_pressure", "Pa"),
+    ("Mutual approach", "approach", "m"),
     ("Rolling speed", "rolling_speed", "m/s"),
 )
 
@@ -64,7 +64,7 @@ def _balls(balls: Sequence[Document]) -> list[list[str]]:
     """Return a row for each ball, numbered from 1, or a single one if all are alike."""
     rows = [[str(ball["ball"] + 1), number(degrees(ball["azimuth"]), 1), *_ball(ball)] for ball in balls]
     alike = all(row[2:] == rows[0][2:] for row in rows)
-    return [[f"all {len(rows)}", "any", *rows[0][2:]]] if alike else rows
+    return [[f"all {len(rows)} balls", "-", *rows[0][2:]]] if alike else rows
 
 
 def _ball(ball: Document) -> list[str]:

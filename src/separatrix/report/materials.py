@@ -37,16 +37,15 @@ def listed(document: Entry) -> str:
 
 
 def _solids(records: Sequence[Entry]) -> str:
-    headers = ("", "E", "nu", "density", "at", "sure of E", "library")
+    headers = ("", "E", "nu", "density", "at", "confidence in E", "library")
     return table(headers, [_solid(record) for record in records])
 
 
 def _solid(record: Entry) -> list[str]:
     first = {key: record["data"][key][0] for key in NUMBERS if key in record["data"]}
     modulus = first["elastic_modulus"]
-    several = (
-        f" (of {len(record['data']['elastic_modulus'])})" if record["data"]["elastic_modulus"][1:] else ""
-    )
+    data = record["data"]["elastic_modulus"]
+    several = f" (first of {len(data)})" if data[1:] else ""
     density = first.get("density")
     return [
         record["name"],

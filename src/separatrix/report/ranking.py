@@ -95,12 +95,12 @@ def _notes(rows: Sequence[Document]) -> list[str]:
 
 SHORT_EVIDENCE = (
     *("material", "motion", "stable runs by kick", "largest\noffset", "drift\n1/s"),
-    *("force at\na pocket", "force on\nthe land"),
+    *("force at\na pocket", "force on\nthe land", "rubs\nwith"),
 )
 
 
 def _short_evidence(rows: Sequence[Document]) -> str:
-    """Return motion, largest offset, drift and forces of every candidate that has a verdict."""
+    """Return motion, largest offset, drift, forces and rubbing of every candidate that has a verdict."""
     known = [row for row in rows if row["verdict"] is not None]
     if not known:
         return "  none: no verdict was finished"
@@ -112,6 +112,7 @@ def _short_evidence(rows: Sequence[Document]) -> str:
             quantity(float(f"{row['largest_offset']:.3g}"), "m"),
             significant(row["drift_rate"], 2),
             *(quantity(float(f"{row[f'largest_{at}_force']:.3g}"), "N") for at in ("contact", "land")),
+            quantity(float(f"{row['rubbing_power']:.2g}"), "W"),
         ]
         for row in known
     ]

@@ -134,7 +134,7 @@ def _marks(document: Document) -> Iterator[str]:
     words = dict.fromkeys(text for row in rows for text in row["extrapolation"])
     if words:
         yield paragraph(
-            f"{MARK} not tested as the pocket rubs: {'. '.join(words)}. Where the tests themselves are not "
+            f"{MARK} extrapolated beyond the tests: {'. '.join(words)}. Where the tests themselves are not "
             "known, no scatter is added for that."
         )
 
@@ -217,7 +217,10 @@ def _doubt(document: Document) -> Iterator[str]:
     yield section("Which test to run next", *map(paragraph, _next_test(document["next_test"])))
     allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"]) or [NO_FRICTION]
     error = max(one["surrogate"]["error"] for one in document["boundaries"])
-    known = f"The boundary is known to {100.0 * error:.1f} %: that is in the first number, not in the last."
+    known = (
+        f"The boundary has an uncertainty of {100.0 * error:.1f} %, included in the first number and not in "
+        "the last."
+    )
     yield section("Which friction a new material may have", *map(paragraph, [*allowed, known]))
     yield section("Which film keeps the cage stable", *_films(document))
 

@@ -11,9 +11,9 @@ from separatrix.stability.response import LADDER, Crossing, Response
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.units import Ratio
 
-CROSSINGS = 3000
+CROSSINGS, ANY_KICK = 3000, 1.0
 """Length of a run of hard impacts, in times that the kick takes to cross a pocket's play: no other time is in
-them."""
+them, so that any kick [m/s] gives the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,13 +57,13 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
     if restitution_factor >= 1.0:
         return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
     settings = settings_for(settings, cage)
-    lasting = CROSSINGS * cage.pocket_clearance / settings.middle_kick
+    lasting = CROSSINGS * cage.pocket_clearance / ANY_KICK
     still, even = hard_cage(cage), replace(settings, ball_scatter=0.0, duration=lasting)
 
     def look(friction: Ratio, first_run: int, runs: int) -> Count:
         rubbing = cage_at(still, restitution_factor, friction)
         found = run_hard_ensemble(
-            rubbing, even, kicks=(settings.middle_kick,), runs=runs, first_run=first_run, may_turn=False,
+            rubbing, even, kicks=(ANY_KICK,), runs=runs, first_run=first_run, may_turn=False,
             restitution=restitution_factor,
         )  # fmt: skip
         return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)

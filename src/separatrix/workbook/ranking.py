@@ -55,7 +55,7 @@ COLUMNS = (
     Column(key="probability_low", heading="probability, low end of 95 % (-)", width=13),
     Column(key="probability_high", heading="probability, high end of 95 % (-)", width=13),
     Column(key="restitution_factor", heading="restitution factor of the bearing (-)", width=13),
-    Column(key="extrapolation", heading="friction not tested as the pocket rubs", width=50, wrap=True),
+    Column(key="extrapolation", heading="friction extrapolated beyond the tests", width=50, wrap=True),
     Column(key="reason", heading="reason", width=90, wrap=True),
     Column(key="environment", heading="environment", width=28),
 )
