@@ -161,7 +161,7 @@ def test_a_missing_study_names_the_shipped_ones(capsys):
 
 
 USAGE = {
-    "no verb": ([], "verb"),
+    "no verb": ([], "is missing; choose one of new, check"),
     "unknown verb": (["rnak", "le7"], "rnak"),
     "no study": (["bearing"], "STUDY"),
     "two studies": (["bearing", "le7", "le7"], "le7"),

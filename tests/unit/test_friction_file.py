@@ -153,7 +153,7 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
     text = SMALL.replace("0.08", '0.08\nslip_speed = "1 m/s"') + 2 * f"[[test]]{second}"
     asked = read_study(study(tmp_path, text))
     assert known_friction(asked) == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
-    with pytest.warns(ValidityWarning, match=r"0\.12 of Armalon in liquid nitrogen, 440C, not tested"):
+    with pytest.warns(ValidityWarning, match=r"0\.12 of Armalon in liquid nitrogen, 440C, extrapolated"):
         seen = cage_seen(asked)
     assert known_friction(seen) == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
     given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
