@@ -37,14 +37,14 @@ BEAT = 25.0
 
 LONGEST, LONGEST_ADRIFT = 4, 20
 """A run whose end is not plain after its duration goes on, to this multiple of it at most: of a cage that a
-land holds, and of one that drifts, whose weak whirl dies only when its centre has crept out of place."""
+land holds, and of one that drifts, whose weak whirl ends only when its centre has crept out of place."""
 
 WINDOW = 10
 """Looks, and at least a turn of the ball set, over which the work of friction is weighed."""
 
 LOOKS_ABOVE, LOOKS_EVEN, EVEN, FAR_ABOVE = 3, 12, 0.03, 3.0
 """Looks in a row at high energy, or alike within this share at this multiple of the drive energy or more,
-that make the end plain. A motion near the drive energy is followed on: some die after a second."""
+that make the end plain. A motion near the drive energy is followed on: some come to rest after a second."""
 
 LOOKS_FAR = 50
 """Looks in a row far above the drive energy, the later half no lower than the earlier, that make it plain
@@ -183,8 +183,8 @@ def fed(tally, first, last):  # type: ignore[no-untyped-def]
 
 @kernel
 def high_end(tally, end):  # type: ignore[no-untyped-def]
-    """`WHIRLS` if pocket friction feeds a motion high above the drive energy, else `SETTLES`."""
-    return WHIRLS if fed(tally, max(0, end - FED), end)[1] > HALF else SETTLES
+    """`SETTLES` if friction on the land feeds a motion that grows without limit, else `WHIRLS`."""
+    return SETTLES if fed(tally, max(0, end - FED), end)[2] > HALF else WHIRLS
 
 
 @kernel

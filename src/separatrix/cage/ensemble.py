@@ -60,7 +60,7 @@ class Ensemble:
     outcome : ndarray
         `RunOutcome` of each run, integer.
     cause : ndarray
-        `Cause` of each run that is unresolved, integer; 0 for the others.
+        `Cause` of each run that is unresolved, or that friction on the land keeps moving, integer; else 0.
     end_energy : ndarray
         Mean kinetic energy in the last part of the run: the last fifth, or the last window by which its end
         was plain [J].
@@ -84,8 +84,7 @@ class Ensemble:
     pocket_impacts, land_impacts : ndarray
         How often each pocket met its ball, shape (kick, run, ball), and the cage its land.
     energy_imbalance : ndarray
-        What the ledger of sources and sinks leaves unexplained, over the work done [-]; 0 where none was
-        kept.
+        What the ledger of sources and sinks leaves unexplained, over the work done [-].
     pocket_power, land_power : ndarray
         Mean power that the friction of pockets and of the land feeds into the cage in the last part; 0 where
         the run ended before it was known [W].

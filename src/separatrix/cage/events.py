@@ -6,9 +6,12 @@ import numpy as np
 
 from separatrix.cage.land import land_geometry
 from separatrix.cage.series import (
+    AT_END,
     EARLY,
+    EARLY_BOUND,
     FALLS,
     LATE,
+    LATE_BOUND,
     ORDER,
     ROUNDING,
     STAYS,
@@ -126,6 +129,35 @@ def fourths(w, a, b, c, most):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
+def learn_ways(w, first, waves, knot):  # type: ignore[no-untyped-def]
+    """Knots of the ways that balls go by the forms of their free speeds, and bounds of what bends them."""
+    knots(w, first, first + waves, knot)
+    for k in range(first, first + waves):
+        early = late = 0.0
+        for n in range(4, ORDER + 1):
+            early, late = early + EARLY[n] * abs(w[n, k]), late + LATE[n] * abs(w[n, k])
+        knot[EARLY_BOUND, k], knot[LATE_BOUND, k] = early, late
+
+
+@inlined_kernel
+def gone(pockets, knot, row, first, waves, j):  # type: ignore[no-untyped-def]
+    """How far ball j has gone at a knot by its free speed, or how fast it goes."""
+    total = 0.0
+    for k in range(waves):
+        total += pockets[DRIVE + k, j] * knot[row, first + k]
+    return total
+
+
+@inlined_kernel
+def bends(pockets, knot, row, first, waves, j):  # type: ignore[no-untyped-def]
+    """Bound of the fourth derivative of that way in one half of the step."""
+    total = 0.0
+    for k in range(waves):
+        total += abs(pockets[DRIVE + k, j]) * knot[row, first + k]
+    return total
+
+
+@inlined_kernel
 def enqueue(queue, filled, change, ball, at, off, late_off, noise):  # type: ignore[no-untyped-def]
     """Queue what may fall to zero, by its knots; return how many are queued."""
     start, rise, middle, turn, last, fall = at
@@ -148,9 +180,10 @@ def enqueue(queue, filled, change, ball, at, off, late_off, noise):  # type: ign
 @inlined_kernel
 def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignore[no-untyped-def]
     """Queue the pockets that may leave their balls; return how many, and the most depth."""
-    filled, deepest = 0, 0.0
+    filled, deepest, waves = 0, 0.0, 2 * p.harmonics
     off = late_off = most = 0.0
     if alike:
+        learn_ways(w, FELT, waves, knot)
         knots(w, EX, KEPT + 1, knot)
         for i in range(count):
             most = larger(most, abs(pockets[PENETRATION, touch[LIST, i]]))
@@ -167,11 +200,19 @@ def leave_balls(p, pockets, touch, w, count, alike, knot, queue):  # type: ignor
             continue
         rise, middle = sign * held(knot, 0, q, cos, sin), sign * held(knot, 1, q, cos, sin) + grip
         turn, last = sign * held(knot, 2, q, cos, sin), sign * held(knot, 3, q, cos, sin) + grip
-        fall = sign * held(knot, 4, q, cos, sin)
-        deepest = larger(deepest, top(start, rise, middle, turn, off))
-        deepest = larger(deepest, top(middle, turn, last, fall, late_off))
+        fall, early, late = sign * held(knot, 4, q, cos, sin), off, late_off
+        if waves > 0:
+            rise -= sign * gone(pockets, knot, 0, FELT, waves, j)
+            middle -= sign * gone(pockets, knot, 1, FELT, waves, j)
+            turn -= sign * gone(pockets, knot, 2, FELT, waves, j)
+            last -= sign * gone(pockets, knot, 3, FELT, waves, j)
+            fall -= sign * gone(pockets, knot, 4, FELT, waves, j)
+            early += bends(pockets, knot, EARLY_BOUND, FELT, waves, j)
+            late += bends(pockets, knot, LATE_BOUND, FELT, waves, j)
+        deepest = larger(deepest, top(start, rise, middle, turn, early))
+        deepest = larger(deepest, top(middle, turn, last, fall, late))
         at = (start, rise, middle, turn, last, fall)
-        filled = enqueue(queue, filled, 0, j, at, off, late_off, noise)
+        filled = enqueue(queue, filled, 0, j, at, early, late, noise)
     return filled, deepest if alike else np.inf
 
 
@@ -196,50 +237,59 @@ def place_at(cos, sin, moved):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def places_of(cos, sin, lead, at):  # type: ignore[no-untyped-def]
+def places_of(pockets, j, at, knot, waves):  # type: ignore[no-untyped-def]
     """Place of a pocket against its ball at the knots."""
-    return (
-        place_at(cos, sin, at[0]) - lead,
-        place_at(cos, sin, at[1]),
-        place_at(cos, sin, at[2]) - lead,
-        place_at(cos, sin, at[3]),
-        place_at(cos, sin, at[4]) - lead,
-        place_at(cos, sin, at[5]),
-    )
+    cos, sin, lead = pockets[COSINE, j], pockets[SINE, j], pockets[LEAD, j]
+    start, rise = place_at(cos, sin, at[0]) - lead, place_at(cos, sin, at[1])
+    middle, turn = place_at(cos, sin, at[2]) - lead, place_at(cos, sin, at[3])
+    last, fall = place_at(cos, sin, at[4]) - lead, place_at(cos, sin, at[5])
+    if waves > 0:
+        rise -= gone(pockets, knot, 0, GONE, waves, j)
+        middle -= gone(pockets, knot, 1, GONE, waves, j)
+        turn -= gone(pockets, knot, 2, GONE, waves, j)
+        last -= gone(pockets, knot, 3, GONE, waves, j)
+        fall -= gone(pockets, knot, 4, GONE, waves, j)
+    return start, rise, middle, turn, last, fall
 
 
 @inlined_kernel
-def reach_balls(pockets, at, off, beyond):  # type: ignore[no-untyped-def]
-    """By how much every pocket may pass its play at most, by its cubics and what lies `off` them."""
+def reach_balls(pockets, at, knot, waves, off, late_off, beyond):  # type: ignore[no-untyped-def]
+    """By how much every pocket may pass its play at most, by its cubics and what lies off them."""
     for j in range(pockets.shape[1]):
-        start, rise, middle, turn, last, fall = places_of(
-            pockets[COSINE, j], pockets[SINE, j], pockets[LEAD, j], at
-        )
+        start, rise, middle, turn, last, fall = places_of(pockets, j, at, knot, waves)
+        early, late = off, late_off
+        if waves > 0:
+            early += bends(pockets, knot, EARLY_BOUND, GONE, waves, j)
+            late += bends(pockets, knot, LATE_BOUND, GONE, waves, j)
         one, two = start + THIRD * rise, middle - THIRD * turn
         three, four = middle + THIRD * turn, last - THIRD * fall
         high = larger(larger(larger(start, one), larger(two, three)), larger(four, last))
         low = smaller(smaller(smaller(start, one), smaller(two, three)), smaller(four, last))
-        beyond[j] = larger(high, -low) + off - pockets[PLAY, j]
+        beyond[j] = larger(high, -low) + larger(early, late) / 384.0 - pockets[PLAY, j]
 
 
 @inlined_kernel
 def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled):  # type: ignore[no-untyped-def]
     """Queue the pockets that may meet their balls; return how many are queued."""
-    at = knots_of(w, gx, gy, knot)
-    reach_balls(pockets, at, larger(off, late_off) / 384.0 if alike else np.inf, beyond)
+    at, waves = knots_of(w, gx, gy, knot), 2 * p.harmonics
+    if not alike:
+        off = late_off = np.inf
+    learn_ways(w, GONE, waves, knot)
+    reach_balls(pockets, at, knot, waves, off, late_off, beyond)
     size = abs(w[0, S]) + abs(w[0, gx]) + abs(w[0, gy])
     for j in range(pockets.shape[1]):
         if touch[SIDE, j] != 0 or beyond[j] < p.onset:
             continue
         lead, play = pockets[LEAD, j], pockets[PLAY, j] + p.onset
         noise = size + abs(lead)
-        a, b, c, d, e, f = places_of(pockets[COSINE, j], pockets[SINE, j], lead, at)
+        a, b, c, d, e, f = places_of(pockets, j, at, knot, waves)
+        early, late = off, late_off
+        if waves > 0:
+            early += bends(pockets, knot, EARLY_BOUND, GONE, waves, j)
+            late += bends(pockets, knot, LATE_BOUND, GONE, waves, j)
         for sign in (1.0, -1.0):
             gap = (play - sign * a, -sign * b, play - sign * c, -sign * d, play - sign * e, -sign * f)
-            if alike:
-                filled = enqueue(queue, filled, sign, j, gap, off, late_off, noise)
-            else:
-                filled = enqueue(queue, filled, sign, j, gap, np.inf, np.inf, noise)
+            filled = enqueue(queue, filled, sign, j, gap, early, late, noise)
     return filled
 
 
@@ -254,9 +304,9 @@ def way(p, pockets, w, gx, gy, j, c):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def first_change(p, pockets, touch, w, gx, gy, queue, filled, c):  # type: ignore[no-untyped-def]
+def first_change(p, pockets, touch, w, gx, gy, queue, filled, c, knot):  # type: ignore[no-untyped-def]
     """Earliest of what is queued: its time, what happens, and to which ball."""
-    end, kind, ball = 1.0, NOTHING, -1
+    end, kind, ball, waves = 1.0, NOTHING, -1, 2 * p.harmonics
     first, known = 0, False
     x = y = s = ex = ey = es = kept = 0.0
     for i in range(1, filled):
@@ -274,12 +324,19 @@ def first_change(p, pockets, touch, w, gx, gy, queue, filled, c):  # type: ignor
                 known = True
                 x, y, s = value(w, gx, end), value(w, gy, end), value(w, S, end)
                 ex, ey, es, kept = grip_at(w, end)
+                for k in range(waves):
+                    knot[AT_END, FELT + k], knot[AT_END, GONE + k] = (
+                        value(w, FELT + k, end),
+                        value(w, GONE + k, end),
+                    )
             cos, sin = pockets[COSINE, j], pockets[SINE, j]
             if side == 0.0:
                 q = pockets[PENETRATION, j]
                 left = row[START] + sign * (q * (kept - 1.0) + cos * ey - sin * ex + es)
+                left -= sign * gone(pockets, knot, AT_END, FELT, waves, j)
             else:
                 left = pockets[PLAY, j] + p.onset + sign * (cos * y - sin * x + s - pockets[LEAD, j])
+                left -= sign * gone(pockets, knot, AT_END, GONE, waves, j)
             if left > 2.0 * ROUNDING * noise:
                 continue
         if side == 0.0:
@@ -300,7 +357,7 @@ def pocket_change(p, pockets, touch, w, count, knot, off, late_off, beyond, queu
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
         return 1.0, NOTHING, -1, np.inf
-    alike = p.hertz == 0.0 and p.harmonics == 0
+    alike = p.hertz == 0.0
     gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
     filled, deepest = 0, 0.0
     if count > 0:
@@ -309,7 +366,7 @@ def pocket_change(p, pockets, touch, w, count, knot, off, late_off, beyond, queu
         filled = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled)
     if filled == 0:
         return 1.0, NOTHING, -1, deepest
-    end, kind, ball = first_change(p, pockets, touch, w, gx, gy, queue, filled, c)
+    end, kind, ball = first_change(p, pockets, touch, w, gx, gy, queue, filled, c, knot)
     return end, kind, ball, deepest
 
 

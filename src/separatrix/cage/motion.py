@@ -35,7 +35,6 @@ from separatrix.cage.series import (
 from separatrix.cage.slots import (
     BACKWARD,
     BALLS,
-    BODY,
     CLEAR,
     CLOCK,
     COS,
@@ -272,7 +271,7 @@ def make_room(balls):  # type: ignore[no-untyped-def]
         np.zeros(8 + 6 * HARMONICS),
         np.zeros(ORDER + 1),
         np.zeros(WORKS),
-        np.zeros((KNOT_ROWS, BODY)),
+        np.zeros((KNOT_ROWS, BALLS)),
         np.zeros(balls),
         np.zeros((2 * balls, QUEUE)),
     )

@@ -28,15 +28,15 @@ BEYOND = 2.0
 class CageMotion(Enum):
     """What the cage does at the end of the runs."""
 
-    CENTRED = "The cage rests among its balls, clear of its land."
-    ON_THE_LAND = "The cage rests on its land, or moves on it as loads and the land's friction make it."
-    WHIRLING = "Friction in the pockets sustains the motion of the cage, or makes it grow."
-    DRIFTING = "The cage has no land, and its centre leaves the clearance of its pockets."
+    CENTRED = "CENTRED"
+    ON_THE_LAND = "ON THE LAND"
+    WHIRLING = "WHIRLING"
+    DRIFTING = "DRIFTING"
 
     @property
     def label(self) -> str:
         """The class in words: CENTRED, ON THE LAND, WHIRLING or DRIFTING."""
-        return self.name.replace("_", " ")
+        return self.value
 
 
 def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:

@@ -42,7 +42,7 @@ class RunOutcome(IntEnum):
 OUTCOME_SENTENCES = {
     RunOutcome.SETTLES: "The cage comes to rest relative to the ball set, but for what its loads maintain.",
     RunOutcome.WHIRLS: "Friction in the pockets sustains the motion, or makes it grow.",
-    RunOutcome.DRIFTS: "The cage has no land, and its centre left the clearance of its pockets.",
+    RunOutcome.DRIFTS: "The cage has no land, and nothing holds its centre.",
     RunOutcome.UNRESOLVED: "The run does not show where the motion ends.",
 }
 

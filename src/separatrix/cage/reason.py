@@ -41,7 +41,7 @@ def settles(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
     if force <= 0.0:
         return f"{first}."
     speed = float(np.median(ensemble.rubbing_speed[kick][settled]))
-    power = cage.land_friction * force * speed
+    power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
     return f"{first}; the cage then rubs on its land with {force:.3g} N at {speed:.3g} m/s ({_watt(power)})."
 
 
@@ -64,7 +64,7 @@ def not_finite(ensemble: Ensemble) -> str:
 
 
 def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
-    """Return what the runs from the worst kick do, what the other kicks do, and what would decide."""
+    """Return what the runs from the worst kick do; of unresolved ones also why."""
     count = counts[kick]
     parts = [(count.settles, "settle"), (count.whirls, "whirl"), (count.drifts, "drift")]
     said = ", ".join(f"{n} {word}" for n, word in parts if n)
@@ -126,7 +126,7 @@ def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
     )
 
 
-def drift(cage: PlanarCage, ensemble: Ensemble) -> str:
+def drift(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
     """Return how many runs left their pockets, and the rate of drift as measured and by the linear law."""
     limit = 2.0 * cage.half_play
     passed = int(np.count_nonzero(ensemble.largest_offset > limit))
@@ -134,7 +134,7 @@ def drift(cage: PlanarCage, ensemble: Ensemble) -> str:
     seen += f"{ensemble.outcome.size} runs"
     rate = drift_rate_law(cage)
     if rate > 0.0:
-        measured = _median(ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS])
+        measured = _median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
         seen += f", and by the linear law it grows e-fold every {1.0 / rate:.3g} s"
         seen += f" ({rate:.3g} 1/s; measured {measured:.3g} 1/s)"
     return f"The cage has no land and drifts: {seen}."

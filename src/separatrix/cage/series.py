@@ -35,7 +35,9 @@ _POWER = np.arange(ORDER + 1.0)
 _FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
 HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER
 EARLY, LATE = _FOURTH * 0.5**_POWER, _FOURTH * 0.5**4
-KNOT_ROWS = 5
+KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 8, 5, 6, 7
+"""Rows of what is known of columns: five of their knots (`knots`), bounds of the fourth derivative in each
+half of the step, and the value at an event."""
 
 
 @inner_kernel

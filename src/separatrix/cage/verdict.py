@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from separatrix.cage import reason
 from separatrix.cage.drive import drift_rate_law, drifts, drive_energy
@@ -18,7 +17,6 @@ from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton,
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
 
-Mask = NDArray[np.bool_]
 
 CLEAR = 0.9
 FEW = 0.5
@@ -68,7 +66,7 @@ class Judgement:
     probability_stable, probability_low, probability_high : float
         Share of the runs from the worst kick that settle, and its 95 % Wilson interval [-].
     worst_kick : float
-        The kick from which fewest runs settle [m/s].
+        Of the kicks from which most runs whirl, if any, the one from which fewest settle [m/s].
     by_kick : tuple of KickCount
         Where the runs from every kick end.
     reason : str
@@ -107,10 +105,10 @@ class Judgement:
         Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
         takes from it [W].
     rubbing_force, rubbing_speed, rubbing_power : float
-        Medians over the runs that settle, any kick: mean force on the land [N], sliding speed there [m/s],
+        Medians over the runs from the worst kick that settle: mean force on the land [N], sliding speed there [m/s],
         and the power that rubbing turns to heat [W]; 0 if none rubs.
     energy_imbalance : float
-        The worst over the runs whose ledger was kept [-].
+        The worst of all runs [-].
     duration, longest_run : float
         Asked for, and of the longest run [s].
     runs : int
@@ -193,14 +191,15 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
 
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
     settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
-    ends outside its pockets nor left its room, nor do most runs from a kick end in a motion that friction on
-    the land keeps up. UNDECIDED otherwise. The rule is ours; it asks more of a
-    stable cage than of an unstable one.
+    ends outside its pockets nor left its room nor, in any run, the range of numbers, nor do most runs from a
+    kick end in a motion that friction on the land keeps up. UNDECIDED otherwise. The rule is ours; it asks more
+    of a stable cage than of an unstable one.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
     at = worst(counts)
-    outcome, settled = ensemble.outcome[at], ensemble.outcome == RunOutcome.SETTLES
+    outcome = ensemble.outcome[at]
+    settled = outcome == RunOutcome.SETTLES
     whirling = outcome == RunOutcome.WHIRLS
     shown = whirling if whirling.any() else np.ones_like(whirling)
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
@@ -209,8 +208,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     def median(name: str) -> float:
         return float(np.median(getattr(ensemble, name)[at][shown]))
 
-    rubbing = {name: _median(getattr(ensemble, name)[settled]) for name in ("rubbing_force", "rubbing_speed")}
-    power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[settled])
+    force, speed = ensemble.rubbing_force[at][settled], ensemble.rubbing_speed[at][settled]
     return Judgement(
         verdict=verdict,
         probability_stable=counts[at].probability_stable,
@@ -239,9 +237,9 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         end_energy=median("end_energy"),
         pocket_power=median("pocket_power"),
         land_power=median("land_power"),
-        rubbing_force=rubbing["rubbing_force"],
-        rubbing_speed=rubbing["rubbing_speed"],
-        rubbing_power=power,
+        rubbing_force=_median(force),
+        rubbing_speed=_median(speed),
+        rubbing_power=cage.land_friction * _median(force * speed),
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
         longest_run=float(ensemble.followed.max()),
@@ -292,7 +290,7 @@ def decide(
     if (ensemble.cause == Cause.NOT_FINITE).any():
         return Verdict.UNDECIDED, reason.not_finite(ensemble)
     if drifts(cage) or not _clear(count.settles, count.runs):
-        return Verdict.UNDECIDED, reason.drift(cage, ensemble)
+        return Verdict.UNDECIDED, reason.drift(cage, ensemble, at)
     left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
     if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)

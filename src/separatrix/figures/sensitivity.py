@@ -77,7 +77,7 @@ def _line(axes: Axes, data: xr.Dataset, *, first: bool) -> None:
     """Draw the critical friction with its interval, and the stretch in which nothing is decided."""
     eta = data["restitution_factor"].values
     low, high = data["line_stable_up_to"].values, data["line_unstable_above"].values
-    label = "undecided: neither nine in ten runs settle nor most whirl from every kick"
+    label = "undecided: neither do nine in ten settle from every kick nor most whirl from one"
     axes.fill_between(eta, low, high, color=GREY, alpha=0.15, lw=0, label=label if first else None)
     ends = data["line_critical_friction_low"].values, data["line_critical_friction_high"].values
     axes.fill_between(eta, *ends, color=BLACK, alpha=0.3, lw=0, label="its 95 % interval" if first else None)

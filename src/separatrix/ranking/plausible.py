@@ -67,11 +67,12 @@ def pocket_pressure(bearing: BallBearing, wall: Material, force: Newton) -> Pasc
 
 
 def _beyond_strength(study: Study, rows: Sequence[RankedMaterial]) -> Iterator[str]:
-    """A sentence on the pockets that yield, of candidates whose strength is known."""
+    """A sentence on the pockets that yield, of candidates, or a cage beside them, whose strength is known."""
     walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
+    own = study.cage.material if study.cage else None
     said = []
     for row in rows:
-        wall, force = walls.get(row.name), row.largest_contact_force or 0.0
+        wall, force = walls.get(row.name, own), row.largest_contact_force or 0.0
         if wall is None or wall.compressive_strength is None or force == 0.0:
             continue
         pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength

@@ -215,9 +215,9 @@ def judgement_facts(found: Document) -> list[tuple[str, str]]:
 
 MOTIONS = {
     "CENTRED": "the cage rests among its balls, clear of its land",
-    "ON THE LAND": "the cage rests on its land, or rides on it as its loads make it",
-    "WHIRLING": "friction sustains the motion, or makes it grow",
-    "DRIFTING": "the cage has no land, and its centre leaves the clearance of its pockets",
+    "ON THE LAND": "the cage rests on its land, or moves on it as loads and the land's friction make it",
+    "WHIRLING": "friction in the pockets sustains the motion, or makes it grow",
+    "DRIFTING": "the cage has no land, and nothing holds its centre",
 }
 
 

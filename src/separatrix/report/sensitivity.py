@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from separatrix.report.cage import chain_facts, study_facts
+from separatrix.report.cage import chain_facts, motion_words, study_facts
 from separatrix.report.tables import (
     ABSENT,
     WIDTH,
@@ -38,7 +38,7 @@ LEGEND = paragraph(
     "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
     "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
     "samples lie. P(stable): at most one run in ten whirls, from every kick; P(unstable): more than half "
-    "whirl, from every kick; the rest is undecided. P(best): largest threshold of its environment; none "
+    "whirl, from some kick; the rest is undecided. P(best): largest threshold of its environment; none "
     "where no other was measured."
 )
 
@@ -90,7 +90,7 @@ def _evidence(row: Document) -> list[str]:
     return [
         row["name"],
         row["verdict"],
-        row["cage_motion"],
+        motion_words(row["cage_motion"]),
         number(1e3 * row["largest_offset"]),
         significant(row["drift_rate"], 2),
         *(number(row[f"largest_{name}_force"], 0) for name in ("contact", "land")),

@@ -42,6 +42,8 @@ def sensitivity(record: Any, cage: Document) -> Document:
         for row in one["materials"]:
             judged = found.get((one["name"], row["name"]))
             row |= {key: plain(getattr(judged, key, None), key) for key in EVIDENCE}
+            motion = getattr(judged, "cage_motion", None)
+            row["cage_motion"] = None if motion is None else motion.label
     return answer | _doubt(record.doubt) | cage | {"complete": record.doubt is not None}
 
 

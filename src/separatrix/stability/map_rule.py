@@ -63,12 +63,12 @@ def _all_of_the_others(runs: int, kind: int, agreeing: int) -> Ratio:
     return comb(runs - kind, agreeing) / comb(runs, agreeing) if agreeing < runs else 0.0
 
 
-def _is_calm(dead: int, runs: int) -> bool:
-    return dead / runs >= CLEAR and wilson_interval(dead, runs)[0] > FEW
+def _is_calm(settles: int, runs: int) -> bool:
+    return settles / runs >= CLEAR and wilson_interval(settles, runs)[0] > FEW
 
 
-def _is_wild(gained: int, runs: int) -> bool:
-    return wilson_interval(gained, runs)[0] > FEW
+def _is_wild(whirls: int, runs: int) -> bool:
+    return wilson_interval(whirls, runs)[0] > FEW
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from separatrix.cage.ending import LONGEST
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.study import Guidance, Material, Study
 from separatrix.study_file.plausible import beyond_bearings
 from separatrix.units import format_quantity
 
-JUDGED_FROM = 0.8
-"""Share of a run after which its growth is judged."""
+JUDGED_FROM = 0.8 * LONGEST
+"""Durations after which the longest run is judged: the last fifth of four."""
 
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
@@ -32,8 +33,8 @@ def _ramp(study: Study) -> Iterator[str]:
     if study.cage is not None and ramp > JUDGED_FROM * duration:
         given, run = format_quantity(ramp, "s"), format_quantity(duration, "s")
         yield (
-            f"[operation] ramp_time {given}: runs of {run} are judged over their last fifth, before full "
-            "speed is reached. Give [stability] a longer duration."
+            f"[operation] ramp_time {given}: runs of {run}, or up to {LONGEST} times that, are judged before "
+            "full speed is reached. Give [stability] a longer duration."
         )
 
 

@@ -28,7 +28,6 @@ _WITHOUT = {
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
     "cage.impact_speed": f"default: {_SCALED}",
     "cage.ball_cage_friction": "default: that of its material in [ranking] environment",
-    "cage.material_name": "default: the material's",
     "cage.pocket_axial_clearance": "not given: that of the shape",
     "cage.pocket_angles": "default: evenly spaced",
     "cage.land_clearance": "not given: no land",
@@ -83,7 +82,9 @@ def _part(study: Study, section: str) -> dict[str, Any] | None:
     record = getattr(study, section)
     if record is None:
         return None
-    values: dict[str, Any] = {f.name: _value(study, record, section, f.name) for f in fields(record)}
+    values: dict[str, Any] = {
+        f.name: _value(study, record, section, f.name) for f in fields(record) if f.name != "material_name"
+    }
     if isinstance(record, Film):
         values["is_bare"] = record.material is None
     if isinstance(record, CageDesign):

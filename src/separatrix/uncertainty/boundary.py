@@ -1,7 +1,7 @@
 """From restitution factor, friction and cage to threshold and verdict of many samples at once.
 
-The verdict is that of `cage.verdict` for an ensemble without end: STABLE where at most one run in ten grows
-from every kick, UNSTABLE where from every kick more than half grow, clearly for an ensemble of 64, UNDECIDED
+The verdict is that of `cage.verdict` for an ensemble without end: STABLE where at most one run in ten whirls
+from every kick, UNSTABLE where from some kick more than half whirl, clearly for an ensemble of 64, UNDECIDED
 elsewhere. What the finite number of runs leaves open is drawn: a draw of the boundary is one that they allow.
 """
 
@@ -84,7 +84,7 @@ class Boundary:
             half = self._lines_at(1, restitution_factor, None)  # their scatter is inside the surrogate's
             least, few, clear = self.surrogate.around(half, restitution_factor, parameters, draw)
         return Limits(
-            stable_from=least.max(axis=0), stable_up_to=few.min(axis=0), unstable_above=clear.max(axis=0)
+            stable_from=least.max(axis=0), stable_up_to=few.min(axis=0), unstable_above=clear.min(axis=0)
         )
 
     def critical_friction(
