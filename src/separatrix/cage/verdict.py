@@ -105,8 +105,8 @@ class Judgement:
         Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
         takes from it [W].
     rubbing_force, rubbing_speed, rubbing_power : float
-        Medians over the runs from the worst kick that settle: mean force on the land [N], sliding speed there [m/s],
-        and the power that rubbing turns to heat [W]; 0 if none rubs.
+        Medians over the runs from the worst kick that settle: mean force on the land [N], sliding speed
+        there [m/s], and the power that rubbing turns to heat [W]; 0 if none rubs.
     energy_imbalance : float
         The worst of all runs [-].
     duration, longest_run : float
@@ -192,8 +192,8 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
     settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
     ends outside its pockets nor left its room nor, in any run, the range of numbers, nor do most runs from a
-    kick end in a motion that friction on the land keeps up. UNDECIDED otherwise. The rule is ours; it asks more
-    of a stable cage than of an unstable one.
+    kick end in a motion that friction on the land keeps up. UNDECIDED otherwise. The rule is ours; it asks
+    more of a stable cage than of an unstable one.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
