@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from separatrix.cage.ending import LONGEST
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.study import Guidance, Material, Study
 from separatrix.study_file.plausible import beyond_bearings
 from separatrix.units import format_quantity
 
-JUDGED_FROM = 0.8 * LONGEST
-"""Durations after which the longest run is judged: the last fifth of four."""
+LONGEST, JUDGED_FROM = 4, 3.2
+"""Durations that a run may go on for (`cage.ending`), and after which such a run is judged: its last fifth."""
 
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
