@@ -11,7 +11,7 @@ from separatrix.study_file.plausible import beyond_bearings
 from separatrix.units import format_quantity
 
 LONGEST, JUDGED_FROM = 4, 3.2
-"""Durations that a run may go on for (`cage.ending`), and after which such a run is judged: its last fifth."""
+"""Durations that a run may go on for (`cage.ending`), and after which such a run is judged: a fifth less."""
 
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
