@@ -15,12 +15,12 @@ from separatrix.cage.events import (
     SLIDE_START,
     TOUCH,
     fourths,
-    land_change,
     pocket_change,
 )
 from separatrix.cage.evidence import enter_step, enter_work, record
 from separatrix.cage.expand import expand
 from separatrix.cage.land import land_geometry, slide_speed
+from separatrix.cage.land_events import land_change
 from separatrix.cage.series import (
     KNOT_ROWS,
     ORDER,
