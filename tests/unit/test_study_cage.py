@@ -10,7 +10,8 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.report.study import room, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
-from separatrix.study_file import cautions, read_study, resolved
+from separatrix.study_file import read_study, resolved
+from separatrix.study_file.cautions import LONGEST
 
 BASE = """\
 extends = "cryogenic-turbopump"
@@ -325,7 +326,7 @@ def test_a_variant_drops_what_its_pocket_does_not_have(tmp_path):
 
 def test_a_ramp_longer_than_the_runs_draws_a_note(read):
     """The longest run takes four times 0.3 s, and is judged over its last fifth, before full speed."""
-    assert cautions.LONGEST == ending.LONGEST
+    assert LONGEST == ending.LONGEST
     with pytest.warns(ValidityWarning, match=r"ramp_time 970 ms: runs of 300 ms, or up to 4 times that"):
         study = read(operation='ramp_time = "970 ms"')
     assert study.operation.ramp_time == 0.97
