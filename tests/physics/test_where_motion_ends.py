@@ -18,10 +18,11 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
+from separatrix.cage.drive import drift_rate_law
 from separatrix.cage.orbit import largest_room
 from separatrix.cage.verdict import kick_counts
 from separatrix.chain import cage_state
-from separatrix.study import StabilitySettings
+from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
@@ -202,3 +203,14 @@ def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
     assert np.all(finite[settled] & (found.end_energy[settled] < 0.5 * cage.mass * 1000.0**2))
     assert judge(cage, found).verdict is not Verdict.STABLE
     assert sum(count.runs for count in kick_counts(found)) == 8
+
+
+def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
+    """It drifts at the rate of the linear law, to 0.1 %; the friction that its drift rubs up is no whirl."""
+    cage = shipped("cryogenic-turbopump")
+    cage = replace(cage, guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0)
+    cage = replace(cage, ball_cage_friction=0.02)
+    found = judge(cage, run_ensemble(cage, StabilitySettings(duration=0.3), kicks=(0.1,), runs=8))
+    assert (found.by_kick[0].drifts, found.verdict) == (8, Verdict.UNDECIDED)
+    assert found.drift_rate == pytest.approx(drift_rate_law(cage), rel=1e-3)
+    assert "without play nothing holds its centre" in found.reason

@@ -17,6 +17,7 @@ from separatrix.cage.drive import drifts, drive_energy, room
 from separatrix.cage.planar import RunOutcome
 from separatrix.cage.slots import (
     BALL_WORK,
+    FRAME_WORK,
     GRAVITY_WORK,
     KINETIC,
     LAND_WORK,
@@ -175,7 +176,8 @@ def fed(tally, first, last):  # type: ignore[no-untyped-def]
     """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
     pocket, land = np.sum(tally[first:last, POCKET_WORK]), np.sum(tally[first:last, LAND_WORK])
     balls, gravity = np.sum(tally[first:last, BALL_WORK]), np.sum(tally[first:last, GRAVITY_WORK])
-    put_in = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity)
+    frame = np.sum(tally[first:last, FRAME_WORK])
+    put_in = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity) + max(0.0, frame)
     if put_in == 0.0:
         return pocket, 0.0, 0.0
     return pocket, pocket / put_in, land / put_in
@@ -183,8 +185,8 @@ def fed(tally, first, last):  # type: ignore[no-untyped-def]
 
 @kernel
 def high_end(tally, end):  # type: ignore[no-untyped-def]
-    """`SETTLES` if friction on the land feeds a motion that grows without limit, else `WHIRLS`."""
-    return SETTLES if fed(tally, max(0, end - FED), end)[2] > HALF else WHIRLS
+    """`WHIRLS` if pocket friction feeds a motion that grows without limit, else `SETTLES`."""
+    return WHIRLS if fed(tally, max(0, end - FED), end)[1] > HALF else SETTLES
 
 
 @kernel

@@ -41,6 +41,7 @@ from separatrix.cage.slots import (
     FOLLOWED,
     FORCE,
     FORCE_MAX,
+    FRAME_WORK,
     GRAVITY,
     GRAVITY_WORK,
     GROSS,
@@ -61,6 +62,7 @@ from separatrix.cage.slots import (
     MEAN_OFFSET,
     MEAN_X,
     MEAN_Y,
+    MOVING_FRAME,
     OFFSET,
     OFFSET_MAX,
     OFFSET_SPREAD,
@@ -126,7 +128,7 @@ def watch(  # type: ignore[no-untyped-def]
     for i in range(limits.most):
         tally[i] = 0.0
         pocket, land = ledger[POCKET_FRICTION], ledger[LAND_FRICTION]
-        ball, gravity = ledger[BALL_DRIVE], ledger[GRAVITY]
+        ball, gravity, frame = ledger[BALL_DRIVE], ledger[GRAVITY], ledger[MOVING_FRAME]
         going, beat = True, 0
         while going and beat < limits.beats and kinetic(p, s) < limits.grown:
             going = advance(
@@ -136,6 +138,8 @@ def watch(  # type: ignore[no-untyped-def]
         tally[i, POCKET_WORK] = ledger[POCKET_FRICTION] - pocket
         tally[i, LAND_WORK] = ledger[LAND_FRICTION] - land
         tally[i, BALL_WORK], tally[i, GRAVITY_WORK] = ledger[BALL_DRIVE] - ball, ledger[GRAVITY] - gravity
+        if limits.drifts and limits.drive == 0.0:
+            tally[i, FRAME_WORK] = ledger[MOVING_FRAME] - frame
         energy = kinetic(p, s)
         held = held_energy(p, pockets, touch, mode[0])
         if not (going and np.isfinite(energy + tally[i, KINETIC])):

@@ -53,11 +53,11 @@ CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
 # Tally of a look: integrals over time of the kinetic energy, the offset and its square, of r x v, of
 # |v|^2 times the turning of the velocity and of |v|^2, of x and y; largest squared offset and forces; steps
 # taken and touches of the land; integrals of the land's force and of that times the sliding on it; work of
-# both frictions, of balls that lead and lag, and of gravity.
+# both frictions, of balls that lead and lag, of gravity, and of the frame on a cage without play or land.
 KINETIC, OFFSET, OFFSET_SQUARED, SWEPT, TURNING, SPEED_SQUARED, MEAN_X, MEAN_Y = range(8)
 OFFSET_MAX, FORCE_MAX, LAND_MAX, STEPS, LAND_HITS, PRESSED, RUBBED = range(8, 15)
-POCKET_WORK, LAND_WORK, BALL_WORK, GRAVITY_WORK = range(15, 19)
-TALLY = 19
+POCKET_WORK, LAND_WORK, BALL_WORK, GRAVITY_WORK, FRAME_WORK = range(15, 20)
+TALLY = 20
 
 # Evidence of a run.
 OUTCOME, CAUSE, END_ENERGY, GROWTH_RATE, LARGEST_OFFSET, DRIFT_RATE, WHIRL, DIRECTION, FORCE = range(9)
