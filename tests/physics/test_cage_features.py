@@ -246,28 +246,26 @@ def test_as_many_runs_grow_with_everything_on():
 
 
 def test_a_hertz_pocket_that_follows_its_ball_slowly_meets_it_a_finite_number_of_times():
-    """Races so weak that a ball gives way to the least force faster than its pocket follows.
+    """Races so weak that a ball yields to the least force faster than its pocket follows.
 
-    Without a way between two touches some 700 000 come to a pocket in one beat, and the run is given up.
+    Without a distance between two touches some 700 000 come to a pocket in one beat, and the run is given up.
     """
-    cage = PlanarCage(
+    cage = replace(
+        LAND,
         mass=0.0028,
         moment_of_inertia=1.72e-5,
         ball_count=6,
         pitch_radius=0.0786,
         cage_speed=5.15,
         inner_speed=10.5,
-        outer_speed=0.0,
         pocket_clearance=2.5e-6,
         ball_cage_stiffness=2.6e6,
         hertz_coefficient=2.5e9,
         race_damping=1.08,
         ball_cage_friction=0.01,
-        guidance=Guidance.OUTER,
         land_clearance=2.44e-3,
         land_friction=0.0,
         land_stiffness=1.57e6,
-        land_restitution=1.0,
     )
     runs = run_ensemble(cage, StabilitySettings(duration=5e-3, ball_scatter=0.3), kicks=(5.0,), runs=4)
     assert np.all(runs.outcome == RunOutcome.SETTLES)

@@ -18,7 +18,7 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
-from separatrix.cage.drive import drift_rate_law
+from separatrix.cage.linear import linear_roots
 from separatrix.cage.orbit import largest_room
 from separatrix.cage.verdict import kick_counts
 from separatrix.chain import cage_state
@@ -198,6 +198,7 @@ def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
     found = run_ensemble(cage, StabilitySettings(kicks=(1000.0,), runs=8, duration=5e-3))
     finite = np.isfinite(found.end_energy) & np.isfinite(found.largest_offset)
     lost = found.cause == Cause.NOT_FINITE
+    assert lost.any()
     assert np.all(found.outcome[lost] == RunOutcome.UNRESOLVED)
     settled = found.outcome == RunOutcome.SETTLES
     assert np.all(finite[settled] & (found.end_energy[settled] < 0.5 * cage.mass * 1000.0**2))
@@ -206,11 +207,12 @@ def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
 
 
 def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
-    """It drifts at the rate of the linear law, to 0.1 %; the friction that its drift rubs up is no whirl."""
+    """It drifts at the slow root of the linear equations; the friction that its drift causes is not a whirl."""
     cage = shipped("cryogenic-turbopump")
     cage = replace(cage, guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0)
     cage = replace(cage, ball_cage_friction=0.02)
     found = judge(cage, run_ensemble(cage, StabilitySettings(duration=0.3), kicks=(0.1,), runs=8))
     assert (found.by_kick[0].drifts, found.verdict) == (8, Verdict.UNDECIDED)
-    assert found.drift_rate == pytest.approx(drift_rate_law(cage), rel=1e-3)
-    assert "without play nothing holds its centre" in found.reason
+    # the motion is linear, and the two fast roots have decayed by exp(-600): rounding
+    assert found.drift_rate == pytest.approx(linear_roots(cage)[0].real, rel=1e-9)
+    assert "without pocket clearance nothing holds its centre" in found.reason

@@ -60,7 +60,8 @@ def test_pressure_in_a_pocket_is_hertz_of_a_ball_on_a_flat(state):
     ball = bearing.ball_material
     each = [(1 - one.poisson_ratio**2) / one.elastic_modulus for one in (ball, SOFT)]
     cubed = 6 * force / sum(each) ** 2 / (math.pi**3 * (bearing.ball_diameter / 2) ** 2)
-    assert pocket_pressure(bearing, SOFT, force) == pytest.approx(cubed ** (1 / 3), rel=1e-9)  # rounding
+    # the same law in another form: rounding of two roots
+    assert pocket_pressure(bearing, SOFT, force) == pytest.approx(cubed ** (1 / 3), rel=1e-12)
 
 
 def test_a_pocket_that_yields_is_noted_if_its_strength_is_known(state):

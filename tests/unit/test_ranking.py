@@ -188,7 +188,7 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
     assert names <= {f.name for f in fields(RankedMaterial)}
     for name in names - {"reason"}:
         value = getattr(found, name)
-        value = value.label if isinstance(value, CageMotion) else value
+        value = value.value if isinstance(value, CageMotion) else value
         value = value.name if isinstance(value, Enum) else value
         assert np.array_equal(getattr(a, name), value), name
         assert getattr(b, name) is None

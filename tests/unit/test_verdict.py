@@ -273,7 +273,6 @@ def test_the_class_of_motion_is_that_of_most_runs_from_the_worst_kick():
     assert judge(GUIDED, mixed).cage_motion is CageMotion.WHIRLING  # 7 whirl, 4 rub, 5 are centred
     rest = ensemble([[SETTLES] * 9 + [WHIRLS] * 7], rubbing_force=[[5.0] * 9 + [0.0] * 7])
     assert judge(GUIDED, rest).cage_motion is CageMotion.ON_THE_LAND
-    assert CageMotion.ON_THE_LAND.label == "ON THE LAND"
 
 
 def test_a_settled_cage_that_rubs_states_force_speed_and_power():
@@ -344,6 +343,8 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
             end_energy=[[9.0] * 3, [1e-6, 4e-3, 2e-6]],
             pocket_power=[[9.0] * 3, [-1.0, -1.0, 4.0]],
             land_power=[[9.0] * 3, [-1.0, -1.0, 0.5]],
+            rubbing_force=[[9.0] * 3, [2.0, 4.0, 70.0]],
+            rubbing_speed=[[9.0] * 3, [1.0, 2.0, 50.0]],
             followed=[[0.1, 0.2, 1.2], [0.3] * 3],
         ),
     )
@@ -353,4 +354,7 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
     # of the run that whirls from the worst kick
     assert (result.mean_offset, result.end_energy) == (3e-4, 2e-6)
     assert (result.pocket_power, result.land_power) == (4.0, 0.5)
+    # of those that settle from the worst kick: 2 N at 1 m/s and 4 N at 2 m/s
+    assert (result.rubbing_force, result.rubbing_speed) == (3.0, 1.5)
+    assert result.rubbing_power == GUIDED.land_friction * 5.0
     assert result.orbit_evenness == pytest.approx(0.1, rel=1e-12)  # median of 0.5, 0.1, 0.1; rounding

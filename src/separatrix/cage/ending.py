@@ -122,7 +122,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
     drive = drive_energy(cage) * per_mass
     scale = energy_scale(cage, kick) * per_mass + drive
     turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (beat * beats)) if cage.cage_speed else 0
-    blow = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
+    pressed = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
     kicked = 0.5 * (kick * unit) ** 2
     return Limits(
         beat=beat / unit,
@@ -136,7 +136,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
-        still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(kicked, blow or kicked),
+        still=-1.0 if drive > 0.0 or not landless or drifts(cage) else STILL * min(kicked, pressed or kicked),
         grown=GROWN * scale,
         grows_on=GROWS_ON * scale,
         grows_at_once=GROWS_AT_ONCE * scale,
@@ -229,7 +229,7 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
 
 @kernel
 def at_rest(tally, end, quiet, share, look, limits):  # type: ignore[no-untyped-def]
-    """`SETTLES` at rest, or where pocket friction put in at most this share over so many quiet looks."""
+    """`SETTLES` at rest, or where pocket friction put in at most this share over this many quiet looks."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(tally, first, end, look)
     if mean <= REST * limits.drive:

@@ -248,13 +248,14 @@ def change_pocket(p, pockets, touch, w, s, mode, hits, kind, ball, h, end):  # t
     pockets[LEAD, ball] = (
         place_of(p, pockets, s, ball) - touch[SIDE, ball] * pockets[PLAY, ball] - pockets[PENETRATION, ball]
     )
-    follows = s[VY] * pockets[COSINE, ball] - s[VX] * pockets[SINE, ball] + s[W]
-    for k in range(2 * p.harmonics):
-        follows -= pockets[DRIVE + k, ball] * slope(w, GONE + k, end) / h
-    if p.hertz != 0.0 and touch[SIDE, ball] * follows > 0.0:
-        # It follows more slowly than the force at the onset drives the ball: without a way between the two it
-        # would meet it at once, and again without end.
-        pockets[LEAD, ball] += 0.5 * touch[SIDE, ball] * p.onset
+    if p.hertz != 0.0:
+        follows = s[VY] * pockets[COSINE, ball] - s[VX] * pockets[SINE, ball] + s[W]
+        for k in range(2 * p.harmonics):
+            follows -= pockets[DRIVE + k, ball] * slope(w, GONE + k, end) / h
+        if touch[SIDE, ball] * follows > 0.0:
+            # The pocket follows more slowly than the force at the onset drives the ball: without a distance
+            # between the two it would meet the ball at once, and again without end.
+            pockets[LEAD, ball] += 0.5 * touch[SIDE, ball] * p.onset
     touch[SIDE, ball] = 0
     kept = 0
     for i in range(mode[0]):

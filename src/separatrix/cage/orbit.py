@@ -33,11 +33,6 @@ class CageMotion(Enum):
     WHIRLING = "WHIRLING"
     DRIFTING = "DRIFTING"
 
-    @property
-    def label(self) -> str:
-        """The class in words: CENTRED, ON THE LAND, WHIRLING or DRIFTING."""
-        return self.value
-
 
 def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
     """Class of the motion that most runs from one kick end in; None if most are unresolved.

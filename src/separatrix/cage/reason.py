@@ -133,7 +133,7 @@ def drift(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
     seen = f"its offset passed {1e3 * limit:.3g} mm, the pocket clearance, in {passed} of "
     seen += f"{ensemble.outcome.size} runs"
     if limit == 0.0:
-        seen = "without play nothing holds its centre"
+        seen = "without pocket clearance nothing holds its centre"
     rate = drift_rate_law(cage)
     if rate > 0.0:
         measured = _median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])

@@ -24,7 +24,7 @@ SPACE = 1.5
 HALF = 0.5 - 1e-6
 """Level of the contour: no share equals it, which would make the contour cross itself."""
 
-COLOURS = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, 256)), "growth")
+COLOURS = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, 256)), "whirling")
 """Even for the eye, for the colour-blind and in grey: dark blue where the cage is stable, bright yellow, as a
 warning, where it is not."""
 
@@ -154,7 +154,7 @@ def agreed(data: xr.Dataset) -> Any:
 
 
 def filled(data: xr.Dataset) -> Array:
-    """Return the probability of growth; where the points around agree, that of the nearest point."""
+    """Return the share of whirling runs; where the points around agree, that of the nearest point."""
     share = table(data, "probability_whirl").astype(float)
     rows, columns = np.nonzero(np.isfinite(share))
     for row, column in np.argwhere(agreed(data)) if rows.size else ():
@@ -164,7 +164,7 @@ def filled(data: xr.Dataset) -> Array:
 
 
 def _cells(axes: Axes, data: xr.Dataset, edges: list[Array]) -> Any:
-    """Draw the probability of growth, and grey for what was refused."""
+    """Draw the share of whirling runs, and grey for what was refused."""
     look: Any = {"rasterized": True, "shading": "flat"}
     share = np.ma.masked_invalid(filled(data))
     mesh = axes.pcolormesh(*edges, share, cmap=COLOURS, vmin=0.0, vmax=1.0, **look)

@@ -366,7 +366,7 @@ def _row(
     judged = replace(
         row,
         verdict=judgement.verdict.name,
-        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.label,
+        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.value,
         reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.",
         pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
         **{name: getattr(judgement, name) for name in EVIDENCE},

@@ -25,7 +25,7 @@ INTERRUPTED = "interrupted before this was computed"
 
 
 EVIDENCE = (
-    *("verdict", "cage_motion", "growth_rate", "growth_rate_low", "growth_rate_high", "worst_kick"),
+    *("verdict", "growth_rate", "growth_rate_low", "growth_rate_high", "worst_kick"),
     *("largest_offset", "mean_offset", "orbit_evenness", "drift_rate", "drift_rate_law"),
     *("largest_contact_force", "largest_land_force", "land_impact_share"),
     *("whirl_frequency", "whirl_direction", "whirl_ratio"),
@@ -43,7 +43,7 @@ def sensitivity(record: Any, cage: Document) -> Document:
             judged = found.get((one["name"], row["name"]))
             row |= {key: plain(getattr(judged, key, None), key) for key in EVIDENCE}
             motion = getattr(judged, "cage_motion", None)
-            row["cage_motion"] = None if motion is None else motion.label
+            row["cage_motion"] = None if motion is None else motion.value
     return answer | _doubt(record.doubt) | cage | {"complete": record.doubt is not None}
 
 

@@ -26,7 +26,7 @@ ALIKE = 24
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """So many of the runs whirl."""
+    """Number of whirling runs among the runs made."""
 
     whirling: int
     runs: int

@@ -80,7 +80,7 @@ def deviance(share: Array, grew: Array) -> float:
 
 
 def calibration(share: Array, grew: Array) -> tuple[Array, Array, Array]:
-    """Mean foretold probability, whirling runs and runs in bins of equal numbers, shape (bin,) each."""
+    """Mean predicted probability, whirling runs and runs in bins of equal size, shape (bin,) each."""
     order = np.array_split(np.argsort(share, kind="stable"), BINS)
     return (
         np.array([share[part].mean() for part in order]),
