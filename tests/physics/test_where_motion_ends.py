@@ -207,7 +207,7 @@ def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
 
 
 def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
-    """It drifts at the slow root of the linear equations; the friction that its drift causes is not a whirl."""
+    """It drifts at the slow root of the linear equations; the friction of a drift is not a whirl."""
     cage = shipped("cryogenic-turbopump")
     cage = replace(cage, guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0)
     cage = replace(cage, ball_cage_friction=0.02)
