@@ -18,10 +18,13 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
+from separatrix.cage.drive import drive_energy
+from separatrix.cage.ending import LONGEST
 from separatrix.cage.linear import linear_roots
 from separatrix.cage.orbit import largest_room
 from separatrix.cage.verdict import kick_counts
 from separatrix.chain import cage_state
+from separatrix.stability.growth import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -150,6 +153,22 @@ def test_friction_on_the_land_alone_makes_a_whirl_or_a_drag():
     dragged = ends(replace(cage, land_friction=0.1), (0.1, 2.0))
     assert np.all(dragged.outcome == RunOutcome.SETTLES)
     assert np.all(dragged.cause == Cause.NONE)
+
+
+def test_a_whirl_weaker_than_the_loads_is_plain_after_a_duration():
+    """Unevenly driven balls hold the cage; pockets that return nothing whirl it, at a seventh of their energy."""
+    cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
+    settings = StabilitySettings(duration=0.3)
+    found = run_ensemble(cage, settings, kicks=(0.9,), runs=RUNS)
+    whirls = found.outcome == RunOutcome.WHIRLS
+    assert np.count_nonzero(whirls) > RUNS // 2
+    assert np.all(found.end_energy[whirls] < 0.5 * drive_energy(cage))
+    assert np.all(found.pocket_power[whirls] > 0.0)
+    assert found.followed[whirls].max() < 0.7 * LONGEST * found.duration
+    assert np.median(found.followed[whirls]) < 1.5 * found.duration
+    longer = run_ensemble(cage, replace(settings, duration=3.0), kicks=(0.9,), runs=RUNS)
+    # so near its threshold a whirl may end by chance: one does after 1.6 s
+    assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
 
 INTO_THE_LAND = """

@@ -51,6 +51,10 @@ LOOKS_FAR = 50
 """Looks in a row far above the drive energy, the later half no lower than the earlier, that make it plain
 that a motion lasts though its energy wanders. Where nothing drives the cage, nothing is far above."""
 
+TURNED_OVER, HELD = 10.0, 0.01
+"""How often pocket friction has put in the energy of a motion that it feeds for a whole duration, and the
+share of the room by which its mean offset may change: a whirl that unwinds creeps out of place first."""
+
 FED, HALF = 6, 0.5
 """Looks, the last, whose work says what feeds a motion that is high; and the share that is most of it."""
 
@@ -87,8 +91,8 @@ SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 UNRESOLVED = int(RunOutcome.UNRESOLVED)
 
 # What is remembered from look to look.
-ABOVE, ALIKE, LEVEL, QUIET, HIGH = range(5)
-MEMORY = 5
+ABOVE, ALIKE, LEVEL, QUIET, HIGH, MET = range(6)
+MEMORY = 6
 
 
 class Limits(NamedTuple):
@@ -101,6 +105,7 @@ class Limits(NamedTuple):
     least: int  # made even where the end is plain before
     window: int
     place: float  # change of the mean offset that is none, in half a window; below 0 where nothing holds it
+    held: float  # that is none in half a duration
     reach: float  # mean offset from which a cage that frame or loads move has come to its land
     drifts: bool  # nothing holds the centre
     far: float  # mean offset at which that is plain
@@ -132,6 +137,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         least=looks if least else 0,
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
+        held=HELD * room(cage),
         reach=0.0 if drive == 0.0 or landless else REACH * cage.land_gap,
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
@@ -169,6 +175,12 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
 def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
     """Mean kinetic energy of the looks from `first` to before `last`."""
     return np.sum(tally[first:last, KINETIC]) / ((last - first) * look)
+
+
+@kernel
+def mean_offset(tally, first, last, look):  # type: ignore[no-untyped-def]
+    """Mean offset in the looks from `first` to before `last`."""
+    return np.sum(tally[first:last, OFFSET]) / ((last - first) * look)
 
 
 @kernel
@@ -211,6 +223,9 @@ def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-d
         _, pockets, land = fed(tally, i + 1 - FED, i + 1)
         if max(pockets, land) > HALF:
             return WHIRLS if pockets > HALF else SETTLES
+    memory[MET] = memory[MET] + 1 if met else 0
+    if memory[MET] >= limits.looks and kept_up(tally, i + 1, look, limits):
+        return WHIRLS
     if memory[QUIET] >= limits.looks:
         return at_rest(tally, i + 1, limits.looks, HALF, look, limits)
     if memory[QUIET] < limits.window or not arrived(tally, i + 1, look, limits):
@@ -225,6 +240,19 @@ def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
     middle = end - LOOKS_FAR // 2
     before = mean_energy(tally, end - LOOKS_FAR, middle, look)
     return mean_energy(tally, middle, end, look) >= (1.0 - EVEN) * before
+
+
+@kernel
+def kept_up(tally, end, look, limits):  # type: ignore[no-untyped-def]
+    """Whether pocket friction kept up the motion in its place for a whole duration, in both its halves."""
+    first, middle = end - limits.looks, end - limits.looks // 2
+    before, after = mean_energy(tally, first, middle, look), mean_energy(tally, middle, end, look)
+    if limits.drifts or after < (1.0 - EVEN) * before or after <= REST * limits.drive:
+        return False
+    work, pockets, _ = fed(tally, first, middle)
+    more, still, _ = fed(tally, middle, end)
+    moved = abs(mean_offset(tally, middle, end, look) - mean_offset(tally, first, middle, look))
+    return min(pockets, still) > HALF and work + more > TURNED_OVER * after and moved <= limits.held
 
 
 @kernel
@@ -243,8 +271,8 @@ def at_rest(tally, end, quiet, share, look, limits):  # type: ignore[no-untyped-
 def arrived(tally, end, look, limits):  # type: ignore[no-untyped-def]
     """Whether the cage is in its place: on its land if anything moves it, and no further than before."""
     half = limits.window // 2
-    late = np.sum(tally[end - half : end, OFFSET]) / (half * look)
-    early = np.sum(tally[end - 2 * half : end - half, OFFSET]) / (half * look)
+    late = mean_offset(tally, end - half, end, look)
+    early = mean_offset(tally, end - 2 * half, end - half, look)
     return late >= limits.reach and abs(late - early) <= limits.place
 
 
