@@ -156,7 +156,7 @@ def test_friction_on_the_land_alone_makes_a_whirl_or_a_drag():
 
 
 def test_a_whirl_weaker_than_the_loads_is_plain_after_a_duration():
-    """Unevenly driven balls hold the cage; pockets that return nothing whirl it, at a seventh of their energy."""
+    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy."""
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
     settings = StabilitySettings(duration=0.3)
     found = run_ensemble(cage, settings, kicks=(0.9,), runs=RUNS)

@@ -34,7 +34,7 @@ def _of_row(row: Document, cage: Document) -> Iterator[str]:
     counts = row["by_kick"]
     if any(_ends(count) != row["runs"] for count in counts):
         yield f"runs do not add up to {row['runs']}: {counts}"
-    if row["energy_imbalance"] > 1e-6:
+    if row["energy_imbalance"] > 1e-9:
         yield f"the ledger leaves {row['energy_imbalance']} open"
     drifts = cage["land_clearance"] is None
     if row["longest_run"] > MOST_RUN[drifts] * row["duration"] * 1.02:  # a look of the longest run

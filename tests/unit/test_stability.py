@@ -128,8 +128,8 @@ def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
         point.low_scatter_high / point.low_scatter_low,
         point.high_scatter_high / point.high_scatter_low,
     )
-    # A ladder step of 10 % is 0.8 of P's width, 1/8: where the runs fall on it makes 21 % here. A third of the
-    # runs, those of the first look, would make an interval 70 % wider.
+    # A ladder step of 10 % is 0.8 of P's width, 1/8: where the runs fall on it makes 21 % here. A third of
+    # the runs, those of the first look, would make an interval 70 % wider.
     assert math.log(upper) == pytest.approx(math.log(lower), rel=0.3)
     assert point.kick_critical_friction[1] == point.critical_friction
 
