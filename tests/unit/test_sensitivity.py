@@ -242,7 +242,7 @@ def test_words_of_the_next_test():
         "Measuring the x0 to 0.2 % would settle 0.8 of 2 undecided materials (95 % interval "
     )
     assert lines[1] in {
-        f"Next to nothing would be settled by measuring the {a} or the {b}." for a, b in ORDERS
+        f"Measuring the {a} or the {b} would decide almost nothing." for a, b in ORDERS
     }
 
 

@@ -1,4 +1,4 @@
-"""The verb `sensitivity`: probabilities of stable and of best, what drives the doubt, what to test next."""
+"""The verb `sensitivity`: probabilities of stable and of best, the main sources of uncertainty, what to test next."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ STEPS = 1000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Doubt:
-    """What drives the doubt, which test to run next, and the inverse answers."""
+    """The main sources of uncertainty, which test to run next, and the inverse answers."""
 
     sobol: SobolAnswer
     next_test: NextTest
@@ -91,7 +91,8 @@ class SensitivityOptions:
 
     def __post_init__(self) -> None:
         if not FEWEST <= self.samples <= MOST or self.samples.bit_count() != 1:
-            cure = f"Points fill their space evenly in powers of two: {SAMPLES}."
+            near = 1 << max(0, self.samples - 1).bit_length()
+            cure = f"Try {min(max(near, FEWEST), MOST)}."
             rule = f"must be a power of two from {FEWEST} to {MOST}"
             raise InputError("--samples", rule, value=str(self.samples), cure=cure)
 
@@ -101,7 +102,7 @@ class SensitivityOptions:
 
 
 def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> SensitivityAnswer:
-    """Sample the study through the chain; what drives the doubt follows from the same model.
+    """Sample the study through the chain; the sources of uncertainty follow from the same model.
 
     Raises
     ------

@@ -42,7 +42,7 @@ def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures of the environments, of what drives the doubt, and of the film if there is one."""
+    """Yield the figures of the environments, of the main sources of uncertainty, and of the film if there is one."""
     yield from environments(data)
     if "sobol_margin_total" in data:
         yield "sensitivity-drivers", drivers(data)
@@ -68,7 +68,7 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     _missing(axes, data)
     untested(axes, data["material_extrapolation"])
     name = str(data["environment"].values)
-    axes.set_title(f"{name[:1].upper() + name[1:]}: where the next cage may lie")
+    axes.set_title(f"{name[:1].upper() + name[1:]}: predicted scatter of a new cage")
     legend_below(figure)
     return figure
 
@@ -77,7 +77,7 @@ def _line(axes: Axes, data: xr.Dataset, *, first: bool) -> None:
     """Draw the critical friction with its interval, and the stretch in which nothing is decided."""
     eta = data["restitution_factor"].values
     low, high = data["line_stable_up_to"].values, data["line_unstable_above"].values
-    label = "undecided: neither do nine in ten settle from every kick nor most whirl from one"
+    label = "undecided: neither verdict is reached"
     axes.fill_between(eta, low, high, color=GREY, alpha=0.15, lw=0, label=label if first else None)
     ends = data["line_critical_friction_low"].values, data["line_critical_friction_high"].values
     axes.fill_between(eta, *ends, color=BLACK, alpha=0.3, lw=0, label="its 95 % interval" if first else None)
@@ -246,7 +246,7 @@ def drivers(data: xr.Dataset) -> Figure:
     axes.set_yticks(range(len(rows)), labels, fontsize=6.0)
     axes.invert_yaxis()
     axes.set_xlabel("total Sobol index of the margin [-]; beyond 1 the inputs act together")
-    axes.set_title("What drives the doubt about the margin")
+    axes.set_title("Main sources of uncertainty in the margin")
     legend_below(figure, columns=3)
     return figure
 

@@ -89,8 +89,8 @@ def restitution_text(chain: Document) -> str:
     """Return both restitution factors in a few words."""
     printed, free = chain["restitution_factor"], chain["restitution_factor_free_spin"]
     hertz = number(chain["restitution_factor_hertz"])
-    spins = f"{number(free)} with the ball free to spin"
-    return f"{number(printed)} as printed (Eq. 18); {spins}; {hertz} with a Hertzian pocket"
+    spins = f"{number(free)}{' (overdamped)' if free == 0.0 else ''} if the ball may spin"
+    return f"{number(printed)} with race dampings summed (Eq. 18); {spins}; {hertz} with a Hertzian pocket"
 
 
 def ensemble_facts(settings: Document) -> list[tuple[str, str]]:

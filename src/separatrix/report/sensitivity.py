@@ -1,4 +1,4 @@
-"""Text of an uncertain ranking: probabilities, what drives the doubt, the next test, inverse answers."""
+"""Text of an uncertain ranking: probabilities, the main sources of uncertainty, the next test, inverse answers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Document = Mapping[str, Any]
 HEADERS = (
     "tie",
     "material",
-    "friction of\nnext cage",
+    "friction of\na new cage",
     "threshold",
     "margin\n(5-95 %)",
     "P(stable)\n(95 %)",
@@ -34,7 +34,7 @@ HEADERS = (
 MARK, GUESS = "*", "?"
 
 LEGEND = paragraph(
-    "tie: 1 is the leader and all that cannot be told from it at 95 %. friction of the next cage: mean, and "
+    "tie: 1 is the leader and all that cannot be told from it at 95 %. friction of a new cage: mean, and "
     "standard deviation in per cent of it. threshold: largest restitution factor eta at which the cage is "
     "stable, median; margin: threshold less the eta of bearing and film, the ends between which nine in ten "
     "samples lie. P(stable): at most one run in ten whirls, from every kick; P(unstable): more than half "
@@ -209,11 +209,11 @@ def _at(row: Document, k: int) -> str:
 
 
 def _doubt(document: Document) -> Iterator[str]:
-    """Yield what drives the doubt, the next test, and the inverse answers."""
+    """Yield the main sources of uncertainty, the next test, and the inverse answers."""
     if document["sobol"] is None:
-        yield section("What drives the doubt", paragraph(document["doubt_reason"]))
+        yield section("Main sources of uncertainty", paragraph(document["doubt_reason"]))
         return
-    yield section("What drives the doubt", DRIVERS_LEGEND, *_drivers(document))
+    yield section("Main sources of uncertainty", DRIVERS_LEGEND, *_drivers(document))
     yield section("Which test to run next", *map(paragraph, _next_test(document["next_test"])))
     allowed = dict.fromkeys(one["sentence"] for one in document["allowed_friction"]) or [NO_FRICTION]
     error = max(one["surrogate"]["error"] for one in document["boundaries"])

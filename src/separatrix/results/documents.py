@@ -189,7 +189,7 @@ def stability_map(record: Any) -> Document:
 
 
 def uncertain_ranking(record: Any) -> Document:
-    """Return probabilities with their intervals, what drives the doubt, and the cage's chain."""
+    """Return probabilities with their intervals, the main sources of uncertainty, and the cage's chain."""
     return sensitivity.sensitivity(record, cage(record.cage))
 
 

@@ -139,7 +139,7 @@ def _rest(answer: NextTest, told: Sequence[TestGain]) -> tuple[str, ...]:
     if not rest or not told:
         return ()
     named = _or(rest) if len(rest) <= NAMED else f"any of the other {len(rest)} inputs"
-    return (f"Next to nothing would be settled by measuring {named}.",)
+    return (f"Measuring {named} would decide almost nothing.",)
 
 
 def _border(answer: NextTest) -> tuple[str, ...]:
