@@ -9,6 +9,7 @@ import pytest
 from scipy.special import expit
 
 from separatrix.distribution import Normal, Uniform
+from separatrix.draws import uncertain_inputs
 from separatrix.ranking import ranking_question
 from separatrix.stability import (
     Count,
@@ -24,7 +25,6 @@ from separatrix.uncertainty import training
 from separatrix.uncertainty.boundary import STABLE, UNDECIDED, UNSTABLE, Boundary, Limits, first_fall
 from separatrix.uncertainty.held_out import calibration, foretold, misfit
 from separatrix.uncertainty.model import uncertain_model
-from separatrix.uncertainty.sampling import uncertain_inputs
 from separatrix.uncertainty.surrogate import Points, fitted
 from separatrix.uncertainty.terms import scale_of
 from separatrix.uncertainty.traced import TracedBoundary, boundary_of_points, clear_share, traced_boundary

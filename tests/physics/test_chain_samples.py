@@ -8,6 +8,7 @@ import pytest
 
 from separatrix import chain
 from separatrix.distribution import Normal, Samples
+from separatrix.draws import sample
 from separatrix.errors import InputError
 from separatrix.orbit import HIGHEST
 from separatrix.ranking.friction import conditions_of
@@ -16,7 +17,6 @@ from separatrix.study_file import read_study
 from separatrix.study_numbers import study_numbers, value_of, with_distributions, with_values
 from separatrix.uncertainty import chain_samples as module
 from separatrix.uncertainty.chain_samples import CHUNK, INTERRUPTED, chain_samples
-from separatrix.uncertainty.sampling import sample
 
 BASE = read_study("cryogenic-turbopump")
 VARIED = (

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
+from separatrix.draws import sample, uncertain_inputs
 from separatrix.friction_fit import FrictionTest
 from separatrix.friction_fit.fit import fit_friction
+from separatrix.ranking.friction import as_pockets_see
 from separatrix.study_file import read_study
 from separatrix.uncertainty import training
 from separatrix.uncertainty.answer import uncertain_ranking
 from separatrix.uncertainty.chain_samples import chain_samples
-from separatrix.uncertainty.pocket_friction import as_pockets_see, pocket_frictions
-from separatrix.uncertainty.sampling import sample, uncertain_inputs
+from separatrix.uncertainty.pocket_friction import pocket_frictions
 
 SPEEDS, PRESSURES = (5.0, 12.0, 30.0, 60.0), (20e6, 60e6, 200e6)
 PLACE = "liquid nitrogen, 440C"

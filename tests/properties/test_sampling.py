@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from scipy.special import ndtr
 
 from separatrix.distribution import Normal, Samples, Uniform
+from separatrix.draws import next_cage_deviation, sample, sobol_points, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.friction_fit import TestedFriction
 from separatrix.study import BallBearing, Candidate, Film, Friction, Operation, RankingQuestion, Study
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions
-from separatrix.uncertainty.sampling import next_cage_deviation, sample, sobol_points, uncertain_inputs
 
 BASE = read_study("cryogenic-turbopump")
 LAWS = {

@@ -10,6 +10,7 @@ import pytest
 from scipy.special import ndtr
 from scipy.stats import beta
 
+from separatrix.draws import sobol_points
 from separatrix.ranking.lowest import lowest_of
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import read_study
@@ -24,7 +25,6 @@ from separatrix.uncertainty.probability import (
     sizes,
     tie_groups,
 )
-from separatrix.uncertainty.sampling import sobol_points
 
 STUDY = read_study("cryogenic-turbopump")
 

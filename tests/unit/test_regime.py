@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from separatrix.distribution import Normal, Samples, Uniform
+from separatrix.draws import uncertain_inputs
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions
 from separatrix.uncertainty.regime import BENDS, play_of
-from separatrix.uncertainty.sampling import uncertain_inputs
 from separatrix.uncertainty.training import changed_cage, drawn, moving_inputs
 
 BASE = read_study("cryogenic-turbopump")

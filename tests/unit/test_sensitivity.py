@@ -10,6 +10,7 @@ from scipy.special import ndtr, ndtri
 
 from separatrix.chain import restitution_state
 from separatrix.distribution import LogNormal, Normal, Samples, Uniform
+from separatrix.draws import UncertainInput
 from separatrix.restitution import damping_ratio_for, restitution_factor
 from separatrix.sensitivity import (
     Case,
@@ -42,7 +43,6 @@ from separatrix.sensitivity.region import damping_ratios, restitution_factors
 from separatrix.sensitivity.spans import spans_above
 from separatrix.study import Friction
 from separatrix.study_file import read_study
-from separatrix.uncertainty.sampling import UncertainInput
 
 # Two candidates; the film's number x0 enters both, each has a friction. Means are far above the scatter, so
 # that an error given as a share of the value is nearly one of a fixed size.
@@ -241,9 +241,7 @@ def test_words_of_the_next_test():
     assert lines[0].startswith(
         "Measuring the x0 to 0.2 % would settle 0.8 of 2 undecided materials (95 % interval "
     )
-    assert lines[1] in {
-        f"Measuring the {a} or the {b} would decide almost nothing." for a, b in ORDERS
-    }
+    assert lines[1] in {f"Measuring the {a} or the {b} would decide almost nothing." for a, b in ORDERS}
 
 
 def test_words_of_more_tests_of_a_friction():

@@ -11,6 +11,7 @@ import pytest
 from scipy.stats import lognorm
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
+from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.ranking.friction import measured
 from separatrix.report import report
@@ -25,7 +26,6 @@ from separatrix.study_numbers import (
     with_distributions,
     with_values,
 )
-from separatrix.uncertainty.sampling import sample, uncertain_inputs
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 

@@ -129,8 +129,8 @@ def _foretold_friction(study: Study) -> None:
     candidates = study.ranking.candidates if study.ranking and study.cage else ()
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
         return
-    from separatrix.uncertainty.pocket_friction import as_pockets_see
-    from separatrix.uncertainty.sampling import uncertain_inputs
+    from separatrix.draws import uncertain_inputs
+    from separatrix.ranking.friction import as_pockets_see
 
     try:
         with warnings.catch_warnings():

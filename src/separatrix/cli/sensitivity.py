@@ -1,4 +1,4 @@
-"""The verb `sensitivity`: probabilities of stable and of best, the main sources of uncertainty, what to test next."""
+"""The verb `sensitivity`: probabilities of stable and of best, sources of uncertainty, what to test next."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ from math import hypot, sqrt
 from separatrix.cage_choice import cage_candidate, cage_friction, environment_of
 from separatrix.chain import CageState, cage_state, impact_speed, traction_state
 from separatrix.errors import ValidityWarning
+from separatrix.friction_fit import TestedFriction
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.study import Candidate, Friction, Operation, Study
 from separatrix.units import Ratio
@@ -90,6 +91,33 @@ def frictions_seen(study: Study) -> Study:
         for candidate in study.ranking.candidates
     )
     return replace(study, ranking=replace(study.ranking, candidates=tuple(seen)))
+
+
+def as_pockets_see(study: Study) -> Study:
+    """Return the study with the frictions of its tests asked for at the conditions of the pockets.
+
+    A friction that is stated without its tests keeps its scatter, that of an unrepeated test if none is
+    given: by how much it differs in the pocket nobody knows. What was not tested is said of both.
+    """
+    asked = study.ranking
+    if asked is None:
+        return study
+    every = [one for candidate in asked.candidates for one in candidate.friction.values()]
+    if all(one is None or one.law is None for one in every):
+        return study
+    seen = frictions_seen(study).ranking
+    candidates = tuple(
+        replace(old, friction={name: _seen(one, new.friction[name]) for name, one in old.friction.items()})
+        for old, new in zip(asked.candidates, seen.candidates if seen else (), strict=True)
+    )
+    return replace(study, ranking=replace(asked, candidates=candidates))
+
+
+def _seen(stated: Friction | None, seen: Friction | None) -> Friction | None:
+    """Friction of the tests as the pocket sees it; a stated one as it is, with what was not tested."""
+    if stated is None or seen is None or isinstance(stated.law, TestedFriction):
+        return seen
+    return replace(stated, extrapolation=seen.extrapolation)
 
 
 def candidate_seen(study: Study, candidate: Candidate, state: CageState) -> Candidate:

@@ -13,6 +13,7 @@ from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
+from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.lowest import lowest_among, may_be_lower
 from separatrix.ranking.order import Interval, meet, ranks
@@ -40,8 +41,8 @@ from separatrix.units import NewtonPerMetre, Ratio
 Key = tuple[NewtonPerMetre, Ratio]
 """Pocket stiffness, and a friction: what a verdict is about."""
 
-Piece = tuple[NewtonPerMetre, Ratio | Node]
-"""Piece of work: a verdict, or with the pocket stiffness a node of its curve."""
+Piece = tuple[NewtonPerMetre, Ratio | Node] | Case
+"""Piece of work: a verdict, or with the pocket stiffness a node of its curve; a case's drawn bearings."""
 
 EVIDENCE = {f.name for f in fields(Judgement)} - {
     *("verdict", "cage_motion", "reason", "pocket_impact_shares")
@@ -58,6 +59,7 @@ class _Question:
     tracers: Mapping[NewtonPerMetre, Tracer]
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
+    drawn: DrawnBearings | None
     stop: Event
 
 
@@ -68,6 +70,7 @@ class _Findings:
     points: Mapping[NewtonPerMetre, Sequence[CriticalFriction]]
     here: CriticalFriction | None
     judgements: Mapping[Key, Judgement]
+    drawn: Mapping[Case, Judgement]
     traced: Mapping[NewtonPerMetre, bool]
     complete: bool
 
@@ -145,7 +148,10 @@ def _notes(
 ) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
     other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
-    return (*([other] if other else []), *beyond_motion(study, question.cages[question.reference], rows))
+    failures = question.drawn.failures if question.drawn else ()
+    left_out = f"{len(failures)} of {study.stability.runs} draws of the uncertain inputs make no bearing: "
+    said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
+    return (*said, *beyond_motion(study, question.cages[question.reference], rows))
 
 
 def ranking_question(study: Study) -> RankingQuestion:
@@ -181,6 +187,7 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
         tracers={},
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
         reference=reference,
+        drawn=drawn_bearings(study, study.stability.runs),
         stop=Event(),
     )
 
@@ -213,10 +220,11 @@ def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
 def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: Progress | None) -> _Findings:
     """Critical frictions and verdicts, all in one row of work for the threads."""
     verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
+    cases: list[Case] = list(question.drawn.friction) if question.drawn else []
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
     results = work_out(
         lambda piece: _computed(question, piece),
-        [*verdicts, (question.reference, (HERE, None)), *nodes],
+        [*verdicts, *cases, (question.reference, (HERE, None)), *nodes],
         more=lambda piece, results: _more(question, piece, results),
         jobs=jobs,
         progress=progress,
@@ -225,17 +233,25 @@ def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: P
     points = {k: _points_of(results, k) for k in question.cages}
     here = points[question.reference].pop((HERE, None), None)
     judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
+    drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
     traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
     return _Findings(
         points={k: rising(found.values()) for k, found in points.items()},
         here=here,
         judgements=judged,
+        drawn=drawn,
         traced=traced,
-        complete=here is not None and all(traced.values()) and len(judged) == len(keys),
+        complete=here is not None
+        and all(traced.values())
+        and (len(judged), len(drawn)) == (len(keys), len(cases)),
     )
 
 
 def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement:
+    if isinstance(piece, Case):
+        if question.drawn is None:
+            raise LookupError(piece)
+        return question.drawn.judge(piece, question.settings.kicks, question.stop)
     stiffness, what = piece
     if isinstance(what, tuple):
         return question.tracers[stiffness].point(what)
@@ -247,6 +263,8 @@ def _more(
     question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
 ) -> list[Piece]:
     """Nodes of the same curve that are wanted once this one is known."""
+    if isinstance(piece, Case):
+        return []
     stiffness, node = piece
     if not isinstance(node, tuple):
         return []
@@ -260,8 +278,10 @@ def _points_of(
     """Points of the curve of one pocket stiffness."""
     return {
         what: found
-        for (k, what), found in results.items()
-        if k == stiffness and isinstance(what, tuple) and isinstance(found, CriticalFriction)
+        for piece, found in results.items()
+        if isinstance(found, CriticalFriction) and not isinstance(piece, Case)
+        for k, what in [piece]
+        if k == stiffness and isinstance(what, tuple)
     }
 
 
@@ -371,6 +391,15 @@ def _row(
         pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
         **{name: getattr(judgement, name) for name in EVIDENCE},
     )
+    if drawn := found.drawn.get(Case(name, environment)):
+        judged = replace(
+            judged,
+            uncertain_verdict=drawn.verdict.name,
+            uncertain_probability_stable=drawn.probability_stable,
+            uncertain_probability_low=drawn.probability_low,
+            uncertain_probability_high=drawn.probability_high,
+            uncertain_runs=drawn.runs,
+        )
     threshold = _threshold(found, stiffness, friction)
     if threshold is None:
         return judged

@@ -50,6 +50,10 @@ class RankedMaterial:
         Share of the runs from the worst kick that settle, and its 95 % interval [-].
     verdict : str or None
         STABLE, UNSTABLE or UNDECIDED.
+    uncertain_verdict, uncertain_probability_stable, uncertain_probability_low, uncertain_probability_high
+    uncertain_runs
+        The same, and the runs from each kick, where every run draws its own bearing from the uncertain inputs
+        of the study; None if it states none.
     rank : int or None
         By margin; those within the scatter of the best one share its rank.
     within_reach : bool or None
@@ -85,6 +89,11 @@ class RankedMaterial:
     probability_low: Ratio | None = None
     probability_high: Ratio | None = None
     verdict: str | None = None
+    uncertain_verdict: str | None = None
+    uncertain_probability_stable: Ratio | None = None
+    uncertain_probability_low: Ratio | None = None
+    uncertain_probability_high: Ratio | None = None
+    uncertain_runs: int | None = None
     rank: int | None = None
     within_reach: bool | None = None
     reason: str

@@ -141,7 +141,7 @@ def restitution(document: Document) -> list[str]:
         ("eta of a Hertzian pocket", f"{hertz} in a blow at the impact speed, less in a harder one"),
     ]
     return [
-        section("Restitution factor", table(("", "race dampings summed (Eq. 18)", "if the ball may spin"), cells)),
+        section("Restitution factor", table(("", "dampings summed (Eq. 18)", "if the ball may spin"), cells)),
         section("From the contacts of the most loaded ball", by_race(document, parts)),
         section("And the pocket", facts(pocket)),
     ]

@@ -47,6 +47,7 @@ def rank(document: Document) -> list[str]:
     return [
         paragraph(_in_short(document), indent=""),
         section(_title(document["environment"]), _table(rows), *_notes(rows)),
+        *_uncertain(rows),
         section(f"Evidence: {_ensemble(document)}", _short_evidence(rows), *_undecided(rows)),
         paragraph(_elsewhere(document), indent=""),
     ]
@@ -144,7 +145,29 @@ def _environment(document: Document, one: Document) -> str:
     rows = one["materials"]
     evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
     notes = ("", *footnotes(rows), *lowest(rows), "")
-    return section(_title(one["name"]), _table(rows), *notes, *evidence, *_reasons(rows))
+    drawn = ("", *_uncertain(rows)) if rows[0]["uncertain_verdict"] else ()
+    return section(_title(one["name"]), _table(rows), *notes, *evidence, *_reasons(rows), *drawn)
+
+
+UNCERTAIN = ("material", "P(stable)\n(95 %)", "verdict")
+
+
+def _uncertain(rows: Sequence[Document]) -> list[str]:
+    """Return the verdicts over the uncertain inputs; nothing if the study states none."""
+    known = [row for row in rows if row["uncertain_verdict"] is not None]
+    if not known:
+        return []
+    cells = [
+        [
+            row["name"],
+            _with_interval(row, "uncertain_probability_stable", "uncertain_probability"),
+            row["uncertain_verdict"],
+        ]
+        for row in known
+    ]
+    runs = known[0]["uncertain_runs"]
+    title = f"With uncertain inputs: each of {runs} runs from each kick draws its own bearing"
+    return [section(title, table(UNCERTAIN, cells, left=1))]
 
 
 def _first(rows: Sequence[Document]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Text of an uncertain ranking: probabilities, the main sources of uncertainty, the next test, inverse answers."""
+"""Text of an uncertain ranking: probabilities, sources of uncertainty, the next test, inverse answers."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ EVIDENCE = (
 
 
 def sensitivity(record: Any, cage: Document) -> Document:
-    """Return the uncertain ranking, the main sources of uncertainty, and the chain and cage of the cage's candidate."""
+    """Return the uncertain ranking, the sources of uncertainty, and the chain of the cage's candidate."""
     answer = plain_record(record.ranking, "sensitivity")
     found = record.evidence or {}
     for one in (*answer["environments"], {"name": "", "materials": answer["overall"]}):

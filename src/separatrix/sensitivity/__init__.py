@@ -1,4 +1,4 @@
-"""Which input brings most uncertainty, which test to run next, and what a cage or a new material may be at most.
+"""Sources of uncertainty, which test to run next, and what a cage or a new material may be at most.
 
 Every question is asked of a model, `records.Question`; it does not matter what computes it.
 """

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from separatrix.distribution import Samples
+from separatrix.draws import UncertainInput, sample
 from separatrix.sensitivity.fit import FitError, fitted_question
 from separatrix.sensitivity.question import Case, Evaluated, Input, Question, Verdicts
 from separatrix.sensitivity.words import case_name, input_words
@@ -15,7 +16,6 @@ from separatrix.study import Candidate, Friction
 from separatrix.uncertainty.model import Case as ModelCase
 from separatrix.uncertainty.model import Model
 from separatrix.uncertainty.polynomial import LEAST_FOR_A_TERM
-from separatrix.uncertainty.sampling import UncertainInput, sample
 from separatrix.units import Array, Ratio
 
 BOUNDARY = "boundary"

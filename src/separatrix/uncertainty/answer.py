@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.distribution import described
+from separatrix.draws import Draws, sample
 from separatrix.errors import InputError
 from separatrix.ranking import ranking_question
-from separatrix.ranking.friction import MeanFriction, overall, with_scatter
+from separatrix.ranking.friction import MeanFriction, as_pockets_see, overall, with_scatter
 from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.reason import not_measured
 from separatrix.study import Study
@@ -29,7 +30,6 @@ from separatrix.uncertainty.model import (
     lacks_alone,
     uncertain_model,
 )
-from separatrix.uncertainty.pocket_friction import as_pockets_see
 from separatrix.uncertainty.probability import (
     best_credit,
     mixed_interval,
@@ -48,7 +48,6 @@ from separatrix.uncertainty.records import (
     UncertainMaterial,
     UncertainRanking,
 )
-from separatrix.uncertainty.sampling import Draws, sample
 from separatrix.units import Array, Ratio
 
 BOUNDARIES = 64

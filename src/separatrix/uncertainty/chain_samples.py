@@ -23,6 +23,7 @@ from separatrix.chain import (
     pocket_stiffness,
     require_rolling,
 )
+from separatrix.draws import Draws, candidates_of
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.orbit import HIGHEST, orbital_waves
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
@@ -32,7 +33,6 @@ from separatrix.study import Candidate, KinematicModel, Study
 from separatrix.study_numbers import Setter, setter
 from separatrix.traction import film_compliance, traction_slope
 from separatrix.traction.curve import THIN
-from separatrix.uncertainty.sampling import Draws, candidates_of
 from separatrix.units import Array, NewtonSecondPerMetre, RadianPerSecond
 
 CHUNK = 32

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage.kicks import settings_for, with_reference
+from separatrix.draws import UncertainInput, sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.ranking import ranking_question
 from separatrix.stability import GrowthCounter
@@ -20,7 +21,6 @@ from separatrix.uncertainty.chain_samples import chain_samples
 from separatrix.uncertainty.pocket_friction import PocketFrictions, pocket_frictions
 from separatrix.uncertainty.records import SurrogateError
 from separatrix.uncertainty.regime import play_of
-from separatrix.uncertainty.sampling import UncertainInput, sample, uncertain_inputs
 from separatrix.uncertainty.traced import traced_boundary
 from separatrix.uncertainty.training import changed_cage, enters, moving_inputs, trained
 from separatrix.units import Array, Ratio

@@ -1,4 +1,4 @@
-"""Frictions of a study as the pockets see them: asked for before they are drawn, and moved with the inputs.
+"""Frictions from tests, moved with the inputs.
 
 A friction from tests is a function of slip speed and pressure, and these follow from the uncertain inputs:
 speed, load, geometry, mass, the pocket's stiffness. So a drawn friction is that of the pockets as the central
@@ -9,21 +9,20 @@ functions of the inputs; their logarithms are fitted by polynomials to samples o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import comb
 from threading import Event
 
 import numpy as np
 from numpy.typing import NDArray
 
+from separatrix.draws import UncertainInput, sample
 from separatrix.friction_fit import TestedFriction
 from separatrix.friction_fit.fit import MaterialFit
 from separatrix.ranking import ranking_question
-from separatrix.ranking.friction import frictions_seen
-from separatrix.study import Friction, Study
+from separatrix.study import Study
 from separatrix.uncertainty.chain_samples import chain_samples
 from separatrix.uncertainty.polynomial import LEAST_FOR_A_TERM, Basis, best_basis
-from separatrix.uncertainty.sampling import UncertainInput, sample
 from separatrix.units import Array, Ratio
 
 FEWEST, MOST = 64, 512
@@ -31,31 +30,6 @@ FEWEST, MOST = 64, 512
 
 WORTH_SAYING: Ratio = 1e-3
 """Share of a friction from which the error of the fit, or that an input moves frictions, is told."""
-
-
-def as_pockets_see(study: Study) -> Study:
-    """Return the study with the frictions of its tests asked for at the conditions of the pockets.
-
-    A friction that is stated without its tests keeps its scatter, that of an unrepeated test if none is
-    given: by how much it differs in the pocket nobody knows. What was not tested is said of both.
-    """
-    asked = ranking_question(study)
-    every = [one for candidate in asked.candidates for one in candidate.friction.values()]
-    if all(one is None or one.law is None for one in every):
-        return study
-    seen = ranking_question(frictions_seen(study)).candidates
-    candidates = tuple(
-        replace(old, friction={name: _seen(one, new.friction[name]) for name, one in old.friction.items()})
-        for old, new in zip(asked.candidates, seen, strict=True)
-    )
-    return replace(study, ranking=replace(asked, candidates=candidates))
-
-
-def _seen(stated: Friction | None, seen: Friction | None) -> Friction | None:
-    """Friction of the tests as the pocket sees it; a stated one as it is, with what was not tested."""
-    if stated is None or seen is None or isinstance(stated.law, TestedFriction):
-        return seen
-    return replace(stated, extrapolation=seen.extrapolation)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -16,6 +16,7 @@ from scipy.stats import qmc
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble
 from separatrix.chain import CageState, cage_state
+from separatrix.draws import UncertainInput
 from separatrix.errors import InputError, SeparatrixError
 from separatrix.ranking import ranking_question
 from separatrix.stability.growth import cage_at
@@ -25,7 +26,6 @@ from separatrix.study_numbers import setter
 from separatrix.uncertainty.held_out import misfit, surrogate_error
 from separatrix.uncertainty.records import SurrogateError
 from separatrix.uncertainty.regime import Play
-from separatrix.uncertainty.sampling import UncertainInput
 from separatrix.uncertainty.surrogate import Points, Surrogate, fitted
 from separatrix.uncertainty.terms import scale_of
 from separatrix.uncertainty.traced import TracedBoundary
