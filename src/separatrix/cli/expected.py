@@ -79,7 +79,8 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
         frictions.setdefault(stiffness, set()).update(known)
     for stiffness, (cage, settings) in cages.items():
         total += expected_curve(cage, settings, jobs=jobs, band=False)
-        total += expected_verdicts(cage, settings, frictions[stiffness], jobs=jobs)
+        verdicts = expected_verdicts(cage, settings, frictions[stiffness], jobs=jobs)
+        total += (2.0 if study.distributions else 1.0) * verdicts  # at central values, and over the inputs
     return total
 
 

@@ -42,7 +42,7 @@ def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures of the environments, of the sources of uncertainty, and of the film if there is one."""
+    """Yield the figures of the environments, of the sources of uncertainty, of the film if there is one."""
     yield from environments(data)
     if "sobol_margin_total" in data:
         yield "sensitivity-drivers", drivers(data)

@@ -36,7 +36,7 @@ FULL: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {
 QUIET: Mapping[str, Parts] = {"rank": only_table}
 """Of verbs whose answer can be put shorter: what `--quiet` leaves."""
 
-DRAWS = ("check", "sensitivity")
+DRAWS = ("check", "rank", "sensitivity")
 """Verbs that show uncertain inputs as what they are."""
 
 

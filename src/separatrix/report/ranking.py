@@ -47,7 +47,7 @@ def rank(document: Document) -> list[str]:
     return [
         paragraph(_in_short(document), indent=""),
         section(_title(document["environment"]), _table(rows), *_notes(rows)),
-        *_uncertain(rows),
+        *_uncertain(document, rows),
         section(f"Evidence: {_ensemble(document)}", _short_evidence(rows), *_undecided(rows)),
         paragraph(_elsewhere(document), indent=""),
     ]
@@ -145,29 +145,31 @@ def _environment(document: Document, one: Document) -> str:
     rows = one["materials"]
     evidence = (f"  Evidence: {_ensemble(document)}", "", _evidence(rows), "")
     notes = ("", *footnotes(rows), *lowest(rows), "")
-    drawn = ("", *_uncertain(rows)) if rows[0]["uncertain_verdict"] else ()
+    drawn = [line for text in _uncertain(document, rows) for line in ("", text)]
     return section(_title(one["name"]), _table(rows), *notes, *evidence, *_reasons(rows), *drawn)
 
 
-UNCERTAIN = ("material", "P(stable)\n(95 %)", "verdict")
-
-
-def _uncertain(rows: Sequence[Document]) -> list[str]:
+def _uncertain(document: Document, rows: Sequence[Document]) -> list[str]:
     """Return the verdicts over the uncertain inputs; nothing if the study states none."""
     known = [row for row in rows if row["uncertain_verdict"] is not None]
     if not known:
         return []
-    cells = [
-        [
-            row["name"],
-            _with_interval(row, "uncertain_probability_stable", "uncertain_probability"),
-            row["uncertain_verdict"],
-        ]
-        for row in known
-    ]
-    runs = known[0]["uncertain_runs"]
-    title = f"With uncertain inputs: each of {runs} runs from each kick draws its own bearing"
-    return [section(title, table(UNCERTAIN, cells, left=1))]
+    each: dict[str, list[str]] = {}
+    for row in known:
+        share = _with_interval(row, "uncertain_probability_stable", "uncertain_probability")
+        each.setdefault(row["uncertain_verdict"], []).append(f"{row['name']} {share}")
+    found = "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
+    inputs = [one["name"] for one in document["study"]["uncertain_inputs"]]
+    names = ", ".join(inputs[:NAMED]) + (", ..." if len(inputs) > NAMED else "")
+    text = (
+        f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
+        f"{known[0]['uncertain_runs']} runs from each kick, P(stable) is: {found}."
+    )
+    return [paragraph(text, indent="")]
+
+
+NAMED = 6
+"""Uncertain inputs that are named; `check` lists them all."""
 
 
 def _first(rows: Sequence[Document]) -> list[str]:

@@ -1,0 +1,132 @@
+"""Runs that draw their own bearing: limits, a probability counted another way, frictions of each pocket."""
+
+from dataclasses import replace
+from threading import Event
+
+import numpy as np
+import pytest
+
+from separatrix.cage import RunOutcome, judge, run_ensemble
+from separatrix.chain import cage_state
+from separatrix.distribution import Normal, Samples, Uniform
+from separatrix.draws import sample
+from separatrix.ranking import rank
+from separatrix.ranking.drawn import Case, drawn_bearings
+from separatrix.ranking.friction import as_pockets_see, candidate_seen
+from separatrix.study import Candidate, Friction
+from separatrix.study_file import read_study
+from separatrix.study_numbers import with_distributions
+
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+
+PLACE = "liquid nitrogen, 440C"
+CASE = Case("A", PLACE)
+FRICTION = f"ranking.A.{PLACE}"
+
+
+def study_of(friction, **given):
+    """The shipped study with one candidate, and some of its numbers uncertain."""
+    shipped = read_study("cryogenic-turbopump")
+    candidate = Candidate(name="A", friction={PLACE: Friction(mean=friction)})
+    ranking = replace(shipped.ranking, candidates=(candidate,), environments=(PLACE,))
+    study = replace(shipped, ranking=ranking, cage=replace(shipped.cage, material=None, material_name=""))
+    return with_distributions(study, {key.replace("__", "."): one for key, one in given.items()})
+
+
+def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
+    """Mass and friction to 1e-12 of themselves: the same runs, so the same counts from every kick."""
+    study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=2.5e-14))
+    study = with_distributions(study, {FRICTION: Normal(mean=0.2, standard_deviation=2e-13)})
+    drawn = drawn_bearings(study, 8)
+    state = cage_state(study, friction=0.2)
+    kicks = state.stability.kicks
+    certain = judge(state.cage, run_ensemble(state.cage, state.stability, kicks=kicks, runs=8))
+    found = drawn.judge(CASE, kicks, Event())
+    # settled and whirling runs alike: a change of 1e-12 is a different motion after some impacts
+    assert [count.settles for count in found.by_kick] == [count.settles for count in certain.by_kick]
+
+
+def test_the_probability_is_that_of_counting_over_the_distribution():
+    """Friction between 0.1 and 0.3: the mean of P(settles) counted at frictions one by one, by other runs."""
+    study = with_distributions(study_of(0.2), {FRICTION: Uniform(low=0.1, high=0.3)})
+    state = cage_state(study, friction=0.2)
+    kick, runs = state.stability.kicks[1], 256
+    found = drawn_bearings(study, runs).judge(CASE, (kick,), Event())
+    middles = np.linspace(0.1, 0.3, 33)[1::2]  # of 16 equal parts
+    shares = [
+        run_ensemble(
+            replace(state.cage, ball_cage_friction=f), state.stability, kicks=(kick,), runs=16, first_run=5000
+        ).count(RunOutcome.SETTLES)[0]
+        / 16
+        for f in middles
+    ]
+    assert 0.2 < np.mean(shares) < 0.8
+    # 256 runs each: standard deviations of at most 0.031, their difference within 2.5 of its own
+    assert found.probability_stable == pytest.approx(np.mean(shares), abs=0.11)
+
+
+def test_more_runs_are_those_before_and_more():
+    """Draw n belongs to run n, however many there are."""
+    study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=0.003))
+    few, many = drawn_bearings(study, 4), drawn_bearings(study, 16)
+    assert [one["A"].cage for one in few.states] == [one["A"].cage for one in many.states[:4]]
+    assert np.array_equal(few.friction[CASE], many.friction[CASE][:4])
+    masses = [one["A"].cage.mass for one in many.states]
+    assert len(set(masses)) == 16
+    assert np.mean(masses) == pytest.approx(0.025, rel=0.05)  # 16 spread points: far below 0.003/4
+
+
+def test_a_friction_from_tests_follows_the_pocket_of_its_draw(tmp_path):
+    """A power law of slip speed: the drawn friction times what the tests say at the draw's own speed."""
+    rows = [
+        f'[[test]]\nmaterial = "A"\ncounterface = "440C"\nmedium = "liquid nitrogen"\n'
+        f'slip_speed = "{v} m/s"\n'
+        f'friction = {0.1 * (v / 20.0) ** 0.4 * scatter}\npressure = "60 MPa"\ntemperature = "77 K"\n'
+        for v, scatter in zip((5.0, 12.0, 30.0, 60.0), (1.02, 0.97, 1.01, 1.0), strict=True)
+    ]
+    (tmp_path / "friction.toml").write_text("\n".join(rows), encoding="utf-8")
+    (tmp_path / "study.toml").write_text(
+        'extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "15000 rpm +- 20 %"\n'
+        '[ranking]\nfriction = "friction.toml"\n',
+        encoding="utf-8",
+    )
+    study = read_study(tmp_path / "study.toml")
+    asked = as_pockets_see(study)
+    drawn, draws = drawn_bearings(study, 8), sample(asked, 8)
+    column = draws.names.index(FRICTION)
+    central = asked.ranking.candidates[0].friction[PLACE].mean
+    ratios = []
+    for run, states in enumerate(drawn.states):
+        changed = draws.setter()(draws.values[run].tolist())
+        own = candidate_seen(changed, study.ranking.candidates[0], states["A"]).friction[PLACE].mean
+        ratios.append(own / central)
+        # the same law by two ways: rounding
+        assert drawn.friction[CASE][run] == pytest.approx(draws.values[run, column] * ratios[-1], rel=1e-9)
+    assert max(ratios) / min(ratios) > 1.05
+
+
+def test_draws_that_make_no_bearing_are_left_out_and_counted():
+    """Each size alone fits; the larger balls on the smaller pitch circle do not."""
+    shipped = read_study("cryogenic-turbopump").bearing
+    largest = 0.9 * shipped.pitch_diameter * np.sin(np.pi / shipped.ball_count)
+    given = {
+        "bearing.ball_diameter": Samples(values=(shipped.ball_diameter, largest)),
+        "bearing.pitch_diameter": Samples(values=(0.97 * shipped.pitch_diameter, shipped.pitch_diameter)),
+    }
+    found = drawn_bearings(with_distributions(study_of(0.1), given), 16)
+    assert 0 < len(found.failures) < 16
+    assert len(found.runs) == len(found.states) == 16 - len(found.failures)
+    assert found.friction[CASE].shape == (len(found.runs),)
+
+
+def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
+    """At central values, and over the stated inputs; a study without any has the first alone."""
+    few = {"runs": 4, "restitution_factors": (0.5,)}
+    certain = study_of(0.05)
+    certain = replace(certain, stability=replace(certain.stability, **few))
+    row = rank(certain, jobs=2).environments[0].materials[0]
+    assert (row.uncertain_verdict, row.uncertain_runs) == (None, None)
+    uncertain = with_distributions(certain, {"cage.mass": Normal(mean=0.025, standard_deviation=0.002)})
+    row = rank(uncertain, jobs=2).environments[0].materials[0]
+    assert (row.verdict, row.uncertain_verdict, row.uncertain_runs) == ("STABLE", "STABLE", 4)
+    assert row.uncertain_probability_low < row.uncertain_probability_stable == 1.0
