@@ -11,11 +11,11 @@ import time
 from dataclasses import replace
 
 from separatrix.distribution import LogUniform, Normal
+from separatrix.draws import sample
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions
 from separatrix.uncertainty.chain_samples import chain_samples
-from separatrix.draws import sample
 
 LAWS = {
     "film.thickness": LogUniform(low=2e-7, high=1e-6),

@@ -147,7 +147,7 @@ def sharpened(
 
 
 def hard_impacts(eta: float, settings: StabilitySettings) -> Crossing:
-    """The same ball leads and free ring, with walls: each blow returns what spring and damper would."""
+    """The same ball leads and free ring, with walls: each impact returns what spring and damper would."""
 
     def look(friction: float, first_run: int, runs: int) -> Count:
         numbered = replace(settings, seed=settings.seed + first_run)

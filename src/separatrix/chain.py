@@ -83,7 +83,7 @@ class TractionState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionState:
-    """Restitution factor of the cage's blows, and where the pocket's stiffness comes from."""
+    """Restitution factor of the cage's impacts, and where the pocket's stiffness comes from."""
 
     traction: TractionState
     restitution: Restitution
@@ -234,7 +234,7 @@ def cage_design(study: Study) -> CageDesign:
 
 
 def impact_speed(study: Study, cage_speed: RadianPerSecond) -> MetrePerSecond:
-    """Speed of a blow at which a Hertz pocket's stiffness is taken: the study's, or 2.5 pocket speeds.
+    """Speed of an impact at which a Hertz pocket's stiffness is taken: the study's, or 2.5 pocket speeds.
 
     It is a property of the bearing, whatever the kicks are.
     """
@@ -338,7 +338,7 @@ def _as_designed(design: CageDesign) -> dict[str, Any]:
 
 
 def _hertz_coefficient(study: Study, links: RestitutionState) -> NewtonPerMetre1_5 | None:
-    """Hertz's K behind the chain's stiffness: equal energy and depth in a blow at the impact speed.
+    """Hertz's K behind the chain's stiffness: equal energy and depth in an impact at the impact speed.
 
     A stiffness that came from a material by Hertz at that speed gives the material's own K back.
     """

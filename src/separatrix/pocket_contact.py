@@ -27,8 +27,8 @@ class PocketConditions:
     """Conditions of the rubbing contact of ball and pocket.
 
     `slip_speed` is the mean over the balls, between `slip_speed_low` and `slip_speed_high`. The pressures are
-    those of the strongest moment of a blow of the whole cage at the impact speed; `pressure` is the mean over
-    the contact, two thirds of `max_pressure`.
+    those of the strongest moment of an impact of the whole cage at the impact speed; `pressure` is the mean
+    over the contact, two thirds of `max_pressure`.
     """
 
     slip_speed: MetrePerSecond
@@ -58,7 +58,7 @@ def pocket_conditions(
     ball_cage_stiffness : float
         Linear stiffness of the pocket; Hertz's contact behind it gives the pressure [N/m].
     damping_ratio : float
-        Of the blow, from the chain: the races yield and take force from it [-].
+        Of the impact, from the chain: the races yield and take force from it [-].
     impact_speed : float
         Of the cage [m/s].
 

@@ -35,20 +35,20 @@ EQUAL_ENERGY = 0.8 * 1.25**0.2
 r"""k of the linear spring of equal energy and depth, over :math:`K^{4/5} (M v^2)^{1/5}` [-]."""
 
 FORGOTTEN = 6.0
-"""Damping group of a Hertzian blow from which its end forgets its start: what is left of the difference is
+"""Damping group of a Hertzian impact from which its end forgets its start: what is left of the difference is
 below 1e-38 (docs/theory/restitution.md)."""
 
 ORDER = 24
-"""Of the Taylor series of a blow; from 16 to 32 it makes no difference above 2e-14."""
+"""Of the Taylor series of an impact; from 16 to 32 it makes no difference above 2e-14."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Restitution:
-    """Restitution factor of the cage's blow on a ball, and what it is made of.
+    """Restitution factor of the cage's impact on a ball, and what it is made of.
 
     The plain names follow the paper's Eq. 18 (damping of both races added); the ones ending in
-    `_free_spin` let the ball change its spin within the blow. `restitution_factor_hertz` has the pocket's
-    contact as Hertz's, of the same energy at the same depth in a blow at the speed to which
+    `_free_spin` let the ball change its spin within the impact. `restitution_factor_hertz` has the pocket's
+    contact as Hertz's, of the same energy at the same depth in an impact at the speed to which
     `ball_cage_stiffness` belongs.
     """
 
@@ -66,7 +66,7 @@ class Restitution:
 
     @property
     def least_damping(self) -> NewtonSecondPerMetre:
-        """C_mu from which a blow returns anything, sqrt(k M)/2; below it the blow is overdamped."""
+        """C_mu from which an impact returns anything, sqrt(k M)/2; below it the impact is overdamped."""
         return 0.5 * sqrt(self.ball_cage_stiffness * self.cage_mass)
 
 
@@ -76,17 +76,17 @@ def contact_damping(slope: Ratio, load: Newton, rolling_speed: MetrePerSecond) -
 
 
 def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
-    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the blow."""
+    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the impact."""
     return inner + outer
 
 
 def race_damping_free_spin(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
-    """C_mu of a ball whose spin follows the blow, 4 C_I C_E / (C_I + C_E): both contacts carry half."""
+    """C_mu of a ball whose spin follows the impact, 4 C_I C_E / (C_I + C_E): both contacts carry half."""
     return 4.0 * inner * outer / (inner + outer)
 
 
 def damping_ratio(stiffness: NewtonPerMetre, mass: Kilogram, damping: NewtonSecondPerMetre) -> Ratio:
-    r"""Damping ratio of the blow, :math:`\zeta = \sqrt{k_{BC} M_C} / (2 C_\mu)`."""
+    r"""Damping ratio of the impact, :math:`\zeta = \sqrt{k_{BC} M_C} / (2 C_\mu)`."""
     if not damping > 0.0:
         cure = "A race friction above 0 and a rolling bearing give one."
         raise InputError("race_damping", "must be > 0", "N s/m", f"{damping:.6g}", cure)
@@ -108,11 +108,11 @@ def damping_ratio_for(restitution_factor: Ratio) -> Ratio:
     Raises
     ------
     InputError
-        Outside 0 <= eta < 1: a blow that returns everything needs infinite damping.
+        Outside 0 <= eta < 1: an impact that returns everything needs infinite damping.
     """
     eta = restitution_factor
     if not 0.0 <= eta < 1.0:
-        cure = "A blow that returns all its speed would need races that grip without any creep."
+        cure = "An impact that returns all its speed would need races that grip without any creep."
         raise InputError("restitution_factor", "must lie in 0 <= eta < 1", "-", f"{eta:.6g}", cure)
     return -log(eta) / hypot(pi, log(eta)) if eta > 0.0 else 1.0
 
@@ -125,7 +125,7 @@ def damping_for(restitution_factor: Ratio, stiffness: NewtonPerMetre, mass: Kilo
 def free_ring_restitution_factor(nominal: Ratio, inertia_ratio: Ratio = 1.0) -> Ratio:
     r"""Restitution factor felt by a ring that is free to turn, from the nominal one of the whole mass.
 
-    A blow at the pitch radius R moves the ring and turns it: it feels the mass
+    An impact at the pitch radius R moves the ring and turns it: it feels the mass
     :math:`M / (1 + M R^2/I)`, half of M for a thin ring.
 
     Parameters
@@ -162,7 +162,7 @@ def ball_pocket_stiffness(
     cage_mass : float
         The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
     impact_speed : float
-        Speed of the blow, [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
+        Speed of the impact, [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
 
     Notes
     -----
@@ -183,7 +183,7 @@ def hertz_coefficient(
 def equal_energy_stiffness(
     hertz_coefficient: NewtonPerMetre1_5, mass: Kilogram, speed: MetrePerSecond
 ) -> NewtonPerMetre:
-    r"""Linear spring that a blow of this mass and speed presses as deep as Hertz's, with the same energy.
+    r"""Linear spring that an impact of this mass and speed presses as deep as Hertz's, with the same energy.
 
     :math:`k = \frac45 K \delta_m^{1/2}` with :math:`\frac12 M v^2 = \frac25 K \delta_m^{5/2}`.
     """
@@ -205,13 +205,13 @@ def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
     Parameters
     ----------
     damping_ratio : float
-        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the blow
+        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the impact
         (`equal_energy_stiffness`). With Hertz it goes as the speed to the power 1/5 [-].
 
     Notes
     -----
-    The blow has one dimensionless group, and its equations become a polynomial system, which a Taylor series
-    of order `ORDER` solves to about 1e-13 (docs/theory/restitution.md).
+    The impact has one dimensionless group, and its equations become a polynomial system, which a Taylor
+    series of order `ORDER` solves to about 1e-13 (docs/theory/restitution.md).
     """
     beta = 2.0 * damping_ratio / sqrt(EQUAL_ENERGY)
     start = min(beta, FORGOTTEN)
@@ -224,7 +224,7 @@ def _speed_returned(beta: Ratio) -> Ratio:
     h, u = 0.0, 1.0
     a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)
     while True:
-        _blow_series(h, u, beta, a, b, square)
+        _impact_series(h, u, beta, a, b, square)
         step = exp(-2.0) / max(_growth(a), _growth(b))
         if _value(a, step) <= 0.0:
             return -_value(b, _root(a, step))
@@ -232,7 +232,7 @@ def _speed_returned(beta: Ratio) -> Ratio:
 
 
 @kernel
-def _blow_series(h: float, u: float, beta: Ratio, a: Array, b: Array, square: Array) -> None:
+def _impact_series(h: float, u: float, beta: Ratio, a: Array, b: Array, square: Array) -> None:
     """Taylor coefficients of h, u and h^2, shape (ORDER + 1,)."""
     a[0], b[0] = h, u
     for n in range(ORDER):
@@ -284,7 +284,7 @@ def restitution(
     ball_cage_stiffness: NewtonPerMetre,
     cage_mass: Kilogram,
 ) -> Restitution:
-    """Restitution factors of a blow, from the damping of each race (`contact_damping`)."""
+    """Restitution factors of an impact, from the damping of each race (`contact_damping`)."""
     both, free = race_damping(inner, outer), race_damping_free_spin(inner, outer)
     zeta = damping_ratio(ball_cage_stiffness, cage_mass, both)
     zeta_free = damping_ratio(ball_cage_stiffness, cage_mass, free)

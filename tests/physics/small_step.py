@@ -296,14 +296,14 @@ def contact(cage):
 
 
 def damping_ratio(restitution):
-    """Damping ratio of a spring and a damper, together never pulling, whose blow returns so much speed."""
+    """Damping ratio of a spring and a damper, together never pulling, whose impact returns so much speed."""
     if restitution == 1.0:
         return 0.0
     return brentq(lambda zeta: returned(zeta) - restitution, 0.0, 100.0, xtol=1e-14)
 
 
 def returned(zeta):
-    """Speed at which a unit blow leaves: x'' = -x - 2 zeta x' from x = 0, until x + 2 zeta x' = 0.
+    """Speed at which a unit impact leaves: x'' = -x - 2 zeta x' from x = 0, until x + 2 zeta x' = 0.
 
     With the roots -zeta +- root of the motion, x = exp(-zeta t) sinh(root t) / root, and the force is zero
     when tanh(root t) = 2 zeta root / (2 zeta^2 - 1); there the speed is x' = -x / 2 zeta.

@@ -1,4 +1,4 @@
-"""Every feature of the planar cage, engine against the second road, over the first blows.
+"""Every feature of the planar cage, engine against the second road, over the first impacts.
 
 The second road is run twice, with its step and its slip halved. The change is about three times the error
 left where a contact starts softly (second order), and about as large as it where the land's damper starts
@@ -141,7 +141,7 @@ def at(run, values, time):
 def hold(ours, coarse, fine, plain):
     """Hold the engine's run to the second road's two, and see that the plain cage's is another one.
 
-    The floors are what rounding leaves after some blows.
+    The floors are what rounding leaves after some impacts.
     """
     kinds = {"place": 1e-12, "speed": 1e-9}
     runs = [columns(run, run.rate, ours.time) for run in (coarse, fine, plain)]
@@ -154,7 +154,7 @@ def hold(ours, coarse, fine, plain):
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_engine_takes_the_second_road(case):
-    """Places, speeds and leads over the first blows, with the feature; not so without it."""
+    """Places, speeds and leads over the first impacts, with the feature; not so without it."""
     base, change, instead = CASES[case]
     cage, plain = replace(base, **change), replace(base, **instead)
     lead = LEAD[: cage.ball_count] * (cage.pocket_clearance > 0)
@@ -220,8 +220,8 @@ def test_balls_start_on_their_free_lead_held_by_their_pockets():
 def test_as_many_runs_grow_with_everything_on():
     """P(whirl) near the threshold with every feature on, from the same starts: within 3 standard errors.
 
-    What the first blows cannot tell: no contact is missed later. By the second road a whirl is what ends with
-    more than the drive energy. 96 runs tell 0.2; the step is a 25th of a contact's time.
+    What the first impacts cannot tell: no contact is missed later. By the second road a whirl is what ends
+    with more than the drive energy. 96 runs tell 0.2; the step is a 25th of a contact's time.
     """
     waves = {"orbital_cosines": (0.02, 0.01), "orbital_sines": (-0.01, 0.01)}
     cage = replace(

@@ -10,13 +10,13 @@ from separatrix.cage import (
     Cause,
     PlanarCage,
     RunOutcome,
-    blow_restitution,
     hard,
+    impact_restitution,
     run_ensemble,
     run_hard_ensemble,
     whirl_probability,
 )
-from separatrix.cage.hard import next_blow
+from separatrix.cage.hard import next_impact
 from separatrix.study import StabilitySettings
 
 M, K, R = 0.05, 3e6, 0.0325
@@ -59,15 +59,15 @@ def test_critical_friction_of_dead_impacts_between_even_pockets(balls, limit, et
 
 @pytest.mark.parametrize(("nominal", "free"), [(0.90, 0.928), (0.60, 0.698)])
 def test_a_ring_that_may_turn_returns_more(nominal, free):
-    """Its blow feels M/2; held against turning it has the nominal restitution."""
+    """Its impact feels M/2; held against turning it has the nominal restitution."""
     cage = replace(CAGE, race_damping=damping_of(nominal))
-    assert blow_restitution(cage) == pytest.approx(free, abs=5e-4)  # three digits given
-    assert blow_restitution(cage, may_turn=False) == pytest.approx(nominal, rel=1e-12)
-    assert blow_restitution(replace(cage, race_damping=1.0)) == 0.0
+    assert impact_restitution(cage) == pytest.approx(free, abs=5e-4)  # three digits given
+    assert impact_restitution(cage, may_turn=False) == pytest.approx(nominal, rel=1e-12)
+    assert impact_restitution(replace(cage, race_damping=1.0)) == 0.0
 
 
-def test_the_force_of_a_hard_blow_is_that_of_an_undamped_spring():
-    """Between races that grip, in the first crossing: blow speed times sqrt(k M/2); chi is 2e-4."""
+def test_the_force_of_a_hard_impact_is_that_of_an_undamped_spring():
+    """Between races that grip, in the first crossing: impact speed times sqrt(k M/2); chi is 2e-4."""
     cage = replace(CAGE, race_damping=math.inf, ball_cage_friction=0.0)
     weak = StabilitySettings(kicks=(5e-4,), runs=24, duration=1.2)
     soft = run_ensemble(cage, replace(weak, duration=0.3))
@@ -75,13 +75,13 @@ def test_the_force_of_a_hard_blow_is_that_of_an_undamped_spring():
     whole = replace(weak, duration=soft.followed.max())
     forces = [soft.largest_contact_force, run_hard_ensemble(cage, whole).largest_contact_force]
     assert forces[1].min() > 0.0
-    # one blow in some is met by another pocket before it is over
+    # one impact in some is met by another pocket before it is over
     assert np.quantile(np.abs(forces[0] / forces[1] - 1.0), 0.75) < 1e-3
 
 
 @pytest.mark.parametrize("speed", [0.0, 300.0])
 def test_the_energy_of_hard_impacts_is_accounted_for(speed):
-    """Work of blows, friction and frame explains the energy, to the rounding of 1e5 events."""
+    """Work of impacts, friction and frame explains the energy, to the rounding of 1e5 events."""
     cage = replace(CAGE, race_damping=damping_of(0.9), ball_cage_friction=0.12, cage_speed=speed)
     runs = run_hard_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=16, duration=0.3))
     assert runs.energy_imbalance.max() < 1e-10
@@ -95,7 +95,7 @@ def test_free_impacts_without_friction_or_loss_keep_the_energy():
     # From the start to the middle of the last fifth, 0.45 s; rounding.
     # the same formula on the same numbers: rounding
     np.testing.assert_allclose(tenth.growth_rate, 0.5 * np.log(tenth.end_energy / START) / 0.45, rtol=1e-12)
-    np.testing.assert_allclose(runs.end_energy, START, rtol=1e-10)  # rounding of some thousand blows
+    np.testing.assert_allclose(runs.end_energy, START, rtol=1e-10)  # rounding of some thousand impacts
     assert np.all(runs.largest_offset < 6e-4)
 
 
@@ -110,7 +110,7 @@ def test_whirl_of_hard_impacts_follows_the_balls_spin():
 
 
 def test_a_collapse_of_impacts_is_unresolved():
-    """The centrifugal force presses a turning cage into a corner, where dead blows come in no time."""
+    """The centrifugal force presses a turning cage into a corner, where dead impacts come in no time."""
     cage = replace(CAGE, cage_speed=600.0)
     runs = run_hard_ensemble(cage, replace(EVEN, duration=0.3), restitution=0.1)
     assert np.all(runs.outcome == RunOutcome.UNRESOLVED)
@@ -119,8 +119,8 @@ def test_a_collapse_of_impacts_is_unresolved():
 
 
 @pytest.mark.parametrize(("turning", "fastest", "longest"), [(2000.0, 0.3, 1e-3), (300.0, 3.0, 3e-4)])
-def test_no_wall_is_passed_before_the_next_blow(turning, fastest, longest):
-    """Flight up to the time of `next_blow` stays between the walls, bent by a fast frame or by its speed."""
+def test_no_wall_is_passed_before_the_next_impact(turning, fastest, longest):
+    """Flight up to the time of `next_impact` stays between the walls, bent by a fast frame or its speed."""
     cage = replace(CAGE, cage_speed=turning)
     p, angles = hard._walls(cage, may_turn=True), np.array(cage.ball_angles)
     cos, sin = np.cos(angles), np.sin(angles)
@@ -129,7 +129,7 @@ def test_no_wall_is_passed_before_the_next_blow(turning, fastest, longest):
         s = np.zeros(6)
         s[[hard.X, hard.Y]] = generator.uniform(-1e-4, 1e-4, 2)
         s[[hard.VX, hard.VY]] = generator.uniform(-fastest, fastest, 2)
-        dt, _, _ = next_blow(p, cos, sin, np.zeros(11), s, longest)
+        dt, _, _ = next_impact(p, cos, sin, np.zeros(11), s, longest)
         for _ in range(20):
             hard.fly(p, s, dt / 20)
             # rounding of the flight, relative to the play

@@ -1,6 +1,6 @@
 """A bearing that turns backward and its mirror image move alike, by the second road, with every input on.
 
-Tolerance: both runs take the same steps of mirrored states, so they differ by rounding, which some blows
+Tolerance: both runs take the same steps of mirrored states, so they differ by rounding, which some impacts
 raise by a few powers of ten.
 """
 

@@ -1,4 +1,4 @@
-"""What must hold of the planar motion: blows, land, free flight, energy, order of the step, repeatability."""
+"""What must hold of the planar motion: impacts, land, free flight, energy, order of the step, repeats."""
 
 import math
 from dataclasses import replace
@@ -45,7 +45,7 @@ TURNING = replace(
 
 
 def lone(eta: float, **change: float) -> PlanarCage:
-    """Cage with one ball, no friction and so much inertia that it cannot turn: one blow, head on."""
+    """Cage with one ball, no friction and so much inertia that it cannot turn: one impact, head on."""
     zeta = -math.log(eta) / math.hypot(math.pi, math.log(eta)) if eta > 0 else 1.5
     damping = math.sqrt(K * M) / (2 * zeta)
     whole = {"ball_count": 1, "ball_cage_friction": 0.0, "moment_of_inertia": 1e6, "race_damping": damping}
@@ -53,7 +53,7 @@ def lone(eta: float, **change: float) -> PlanarCage:
 
 
 @pytest.mark.parametrize("eta", [0.0, 0.07, 0.34, 0.6, 0.74, 0.94])
-def test_one_blow_returns_the_restitution_factor(eta):
+def test_one_impact_returns_the_restitution_factor(eta):
     """Head on against one ball the series spring and damper give back eta times the speed."""
     duration = 0.0015 if eta > 0 else 0.006  # without rebound the cage comes to rest with the ball
     run = follow(
@@ -69,7 +69,7 @@ def test_one_blow_returns_the_restitution_factor(eta):
     assert -run.velocity[-1, 1] / 0.5 == pytest.approx(eta, abs=3e-10 if eta > 0 else 0.0101)
 
 
-def test_a_blow_keeps_the_impulse_law():
+def test_a_impact_keeps_the_impulse_law():
     """Friction's impulse is f times the normal one, inward behind the ball (inner rotation)."""
     cage = replace(lone(0.6), ball_cage_friction=0.2)
     run = follow(
@@ -142,7 +142,7 @@ def test_friction_of_the_land_follows_its_sliding(guidance, ring):
     # A ring at rest meets a cage that only comes head on: no sliding, no friction (rounding).
     # The outer land is touched at angle 0 and its surface, of speed -ring, drags down; the inner one is
     # touched at the opposite side, where a positive speed drags down too.
-    # 1e-3: the cage slides along the land by 1e-4 of its gap during the blow
+    # 1e-3: the cage slides along the land by 1e-4 of its gap during the impact
     assert tangential == pytest.approx(0.2 * normal * (ring > 0), rel=1e-3, abs=1e-12)
     side = 1 if guidance is Guidance.OUTER else -1
     moment = side * R * tangential
@@ -158,7 +158,7 @@ def test_a_sticking_land_only_stops_the_sliding():
 
 
 def far_land(**change: object) -> PlanarCage:
-    """Cage in wide pockets, with a land so far out that a blow on it is head on to 1e-4, and free to turn."""
+    """Cage in wide pockets, with a land so far out that an impact is head on to 1e-4, and free to turn."""
     wide = {"pocket_clearance": 10.0, "moment_of_inertia": M * R * R, "land_clearance": 1.0}
     return lone(0.6, **(wide | change))
 
@@ -233,7 +233,7 @@ def test_a_land_that_has_let_go_presses_again_before_it_is_left():
 def test_a_history_is_consistent_with_itself(kick, friction, run):
     """Forces follow from the places of cage and balls, and the work entered from the energy, row by row.
 
-    So no blow was passed over: a ball beyond its play would lack its force.
+    So no impact was passed over: a ball beyond its play would lack its force.
     """
     cage = replace(TURNING, ball_cage_friction=friction)
     run = simulate(cage, kick=kick, run=run, duration=0.05, until=0.05, samples=3000)

@@ -96,7 +96,7 @@ def test_an_unbalanced_cage_circles_its_centre_of_mass():
     np.testing.assert_allclose(centre, straight - e * np.exp(1j * turned), atol=1e-15)
 
 
-def test_a_hertz_blow_lasts_and_dips_as_hertz_says():
+def test_a_hertz_impact_lasts_and_dips_as_hertz_says():
     """Without dampers: approach (5 M v^2 / 4 K)^(2/5), lasting 2.9432 approach/v, all the energy returned."""
     K_H, v = 3e8, 0.5
     cage = replace(HEAD_ON, race_damping=math.inf, hertz_coefficient=K_H)
@@ -109,7 +109,7 @@ def test_a_hertz_blow_lasts_and_dips_as_hertz_says():
     assert run.velocity[-1, 1] == pytest.approx(-v, rel=1e-6)
 
 
-def test_what_a_hertz_blow_loses_is_in_the_race_damper():
+def test_what_a_hertz_impact_loses_is_in_the_race_damper():
     """Energy before and after, and the damper's work."""
     cage = replace(HEAD_ON, hertz_coefficient=3e8, race_damping=300.0)
     run = go(cage, direction=math.pi / 2, duration=8e-4, step=1e-7)
@@ -234,8 +234,8 @@ def test_everything_at_once_explains_its_energy():
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.12])
-def test_the_first_blows_are_the_same(friction):
-    """Place and velocity after 2 ms: blows on pockets and land, before chaos takes over."""
+def test_the_first_impacts_are_the_same(friction):
+    """Place and velocity after 2 ms: impacts on pockets and land, before chaos takes over."""
     cage = replace(CAGE, ball_cage_friction=friction, land_clearance=4e-4)
     ours = follow(cage, kick=2.0, direction=0.4, ball_lead=LEAD, duration=0.002, until=0.002, samples=500)
     theirs = go(cage, kick=2.0, lead=LEAD, step=1e-7)

@@ -65,15 +65,18 @@ def test_a_sample_at_the_means_is_the_chain_to_the_last_bit(change):
     assert found.solved.tolist() == [True]
     for place, candidate in enumerate(study.ranking.candidates):
         state = chain.cage_state(study, material=candidate.material, friction=0.1)
-        blow, cage = state.restitution.restitution, state.cage
-        assert found.race_damping[0] == blow.race_damping == cage.race_damping
-        assert found.race_damping_free_spin[0] == blow.race_damping_free_spin
-        assert (found.inner_damping[0], found.outer_damping[0]) == (blow.inner_damping, blow.outer_damping)
+        impact, cage = state.restitution.restitution, state.cage
+        assert found.race_damping[0] == impact.race_damping == cage.race_damping
+        assert found.race_damping_free_spin[0] == impact.race_damping_free_spin
+        assert (found.inner_damping[0], found.outer_damping[0]) == (
+            impact.inner_damping,
+            impact.outer_damping,
+        )
         assert found.cage_speed[0] == cage.cage_speed
-        assert found.ball_cage_stiffness[0, place] == blow.ball_cage_stiffness == cage.ball_cage_stiffness
-        assert found.restitution_factor[0, place] == blow.restitution_factor
-        assert found.restitution_factor_free_spin[0, place] == blow.restitution_factor_free_spin
-        assert found.restitution_factor_hertz[0, place] == blow.restitution_factor_hertz
+        assert found.ball_cage_stiffness[0, place] == impact.ball_cage_stiffness == cage.ball_cage_stiffness
+        assert found.restitution_factor[0, place] == impact.restitution_factor
+        assert found.restitution_factor_free_spin[0, place] == impact.restitution_factor_free_spin
+        assert found.restitution_factor_hertz[0, place] == impact.restitution_factor_hertz
         pocket = conditions_of(study, state)
         assert (found.slip_speed[0], found.pocket_pressure[0, place]) == (pocket.slip_speed, pocket.pressure)
         waves = len(cage.orbital_cosines)
@@ -138,7 +141,7 @@ def test_the_order_of_the_samples_changes_nothing():
     [("cage.mass", 1, 1), ("film.thickness", 1, CHUNK), ("operation.axial_load", CHUNK, CHUNK)],
 )
 def test_a_stage_is_computed_again_only_where_its_inputs_differ(key, equilibria, tractions, monkeypatch):
-    """Mass acts on the blow alone, the film on traction and blow, a load on all."""
+    """Mass acts on the impact alone, the film on traction and impact, a load on all."""
     calls = {"bearing_state": 0, "traction_slope": 0}
 
     def counted(name):

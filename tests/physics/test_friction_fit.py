@@ -340,7 +340,7 @@ def test_of_two_the_probability_is_the_normal_integral_of_their_distance():
 
 
 @pytest.mark.parametrize("zeta", [0.05, 0.385, 0.9999999, 1.0, 2.5])
-def test_the_largest_force_of_a_blow_is_that_of_the_integrated_motion(zeta):
+def test_the_largest_force_of_a_impact_is_that_of_the_integrated_motion(zeta):
     """Mass on a spring and a damper in series, followed step by step."""
     mass, stiffness, speed = 0.025, 3e6, 0.5
     damper = sqrt(stiffness * mass) / (2.0 * zeta)

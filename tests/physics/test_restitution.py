@@ -1,4 +1,4 @@
-"""The restitution factor: table of the closed form, its inverse, and the same blows by integration."""
+"""The restitution factor: table of the closed form, its inverse, and the same impacts by integration."""
 
 from math import pi, sqrt
 
@@ -32,7 +32,7 @@ def polymer(elastic_modulus):
     return Material(name="polymer", elastic_modulus=elastic_modulus, poisson_ratio=0.4)
 
 
-def blow(mass, stiffness, damping):
+def impact(mass, stiffness, damping):
     """Speed after over speed before, by integrating mass, spring and damper in series until they part."""
 
     def rates(_, state):
@@ -67,18 +67,18 @@ def test_nothing_returns_from_the_critical_damping_down():
 
 
 @pytest.mark.parametrize("damping", [10000.0, 2000.0, 600.0, 300.0])
-def test_closed_form_equals_the_integrated_blow(damping):
+def test_closed_form_equals_the_integrated_impact(damping):
     """Mass, spring and damper in series, stepped in time; tolerance: 1e-6 of the integrator at its event."""
     eta = restitution_factor(damping_ratio(STIFFNESS, MASS, damping))
-    assert blow(MASS, STIFFNESS, damping) == pytest.approx(eta, abs=1e-6)
+    assert impact(MASS, STIFFNESS, damping) == pytest.approx(eta, abs=1e-6)
 
 
 @pytest.mark.parametrize(("nominal", "free"), [(0.90, 0.928), (0.60, 0.698)])
 def test_a_ring_free_to_turn_feels_half_its_mass(nominal, free):
-    """Three digits computed independently, and the same by integrating the blow on M/2."""
+    """Three digits computed independently, and the same by integrating the impact on M/2."""
     assert free_ring_restitution_factor(nominal) == pytest.approx(free, abs=5e-4)
     damping = damping_for(nominal, STIFFNESS, MASS)
-    assert blow(MASS / 2.0, STIFFNESS, damping) == pytest.approx(
+    assert impact(MASS / 2.0, STIFFNESS, damping) == pytest.approx(
         free_ring_restitution_factor(nominal), abs=1e-6
     )
 
@@ -88,7 +88,7 @@ def test_a_ring_that_cannot_turn_feels_its_whole_mass():
     assert free_ring_restitution_factor(0.6, 1e12) == pytest.approx(0.6, rel=1e-9)
 
 
-def test_a_blow_on_a_turning_ring_feels_half_its_mass():
+def test_a_impact_on_a_turning_ring_feels_half_its_mass():
     """Impulse J at radius R: J/M of translation and J R^2/I of turning at the point, with I = M R^2."""
     radius, impulse = 0.03, 0.7
     inertia = MASS * radius**2
@@ -111,8 +111,8 @@ def test_the_two_dampings_agree_only_for_equal_contacts():
     assert race_damping_free_spin(500.0, 1e-9) == pytest.approx(4e-9, rel=1e-9)
 
 
-def test_pocket_stiffness_stores_the_energy_of_the_blow_at_the_depth_of_hertz():
-    """Integrate the true blow, M x'' = -K x^1.5, to its deepest point: both springs then hold M v^2/2."""
+def test_pocket_stiffness_stores_the_energy_of_the_impact_at_the_depth_of_hertz():
+    """Integrate the true impact, M x'' = -K x^1.5, to its deepest point: both springs then hold M v^2/2."""
     modulus, diameter, speed = 4e9, 11.1125e-3, 0.5
     k = ball_pocket_stiffness(diameter, STEEL, polymer(modulus), cage_mass=MASS, impact_speed=speed)
     K = 4.0 / 3.0 * contact_modulus(STEEL, polymer(modulus)) * sqrt(diameter / 2.0)
@@ -140,7 +140,7 @@ def test_polymer_pockets_are_of_the_stated_stiffness(elastic_modulus):
         assert 1e6 < k < 1e7
 
 
-def test_blow_lasts_half_a_period():
+def test_impact_lasts_half_a_period():
     """Weak damping: contact ends at pi / omega_d, here 0.41 ms, long against the ball's spin."""
     zeta = damping_ratio(STIFFNESS, MASS, 3979.0)
     assert pi / (sqrt(STIFFNESS / MASS) * sqrt(1 - zeta**2)) == pytest.approx(
@@ -148,7 +148,7 @@ def test_blow_lasts_half_a_period():
     )  # three digits
 
 
-def hertz_blow(mass, coefficient, damping, speed):
+def hertz_impact(mass, coefficient, damping, speed):
     """The same with Hertz's contact in place of the spring, by another integrator."""
 
     def rates(_, state):
@@ -168,12 +168,12 @@ def hertz_blow(mass, coefficient, damping, speed):
 
 @pytest.mark.parametrize("damping", [20000.0, 2000.0, 600.0, 300.0, 150.0])
 @pytest.mark.parametrize("speed", [0.1, 2.0])
-def test_the_series_of_a_hertzian_blow_equals_the_integrated_blow(damping, speed):
+def test_the_series_of_a_hertzian_impact_equals_the_integrated_impact(damping, speed):
     """In newtons and metres with a stepped integrator; 1e-9: its own 1e-12, after up to a thousand steps."""
     K = hertz_coefficient(11.1125e-3, STEEL, polymer(4e9))
     zeta = damping_ratio(equal_energy_stiffness(K, MASS, speed), MASS, damping)
     eta = hertzian_restitution_factor(zeta)
-    assert hertz_blow(MASS, K, damping, speed) == pytest.approx(eta, abs=1e-9)
+    assert hertz_impact(MASS, K, damping, speed) == pytest.approx(eta, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_hertzian_restitution_of_the_table(zeta, eta):
     assert hertzian_restitution_factor(zeta) == pytest.approx(eta, rel=2e-5 if eta < 1e-3 else 0, abs=5e-8)
 
 
-def test_a_weakly_damped_hertzian_blow_loses_what_perturbation_says():
+def test_a_weakly_damped_hertzian_impact_loses_what_perturbation_says():
     """1 - eta = 1.25^0.6 B(1/2, 8/5) beta for small damping: 3.783 zeta, the linear spring pi zeta."""
     zeta = 1e-6
     slope = 2.0 * 1.25**0.6 * beta(0.5, 1.6) / sqrt(0.8 * 1.25**0.2)
@@ -202,16 +202,16 @@ def test_a_weakly_damped_hertzian_blow_loses_what_perturbation_says():
     assert hertzian_restitution_factor(0.0) == 1.0
 
 
-def test_a_strongly_damped_hertzian_blow_forgets_its_start():
-    """Eta goes as the group to the power -5, with a constant of the blow's last part; never quite nothing."""
+def test_a_strongly_damped_hertzian_impact_forgets_its_start():
+    """Eta goes as the group to the power -5, with a constant of the impact's last part; never quite 0."""
     group = 2.0 / sqrt(0.8 * 1.25**0.2)
     ends = [hertzian_restitution_factor(zeta) * (group * zeta) ** 5 for zeta in (2.3, 2.7, 3.0, 100.0)]
     assert ends == pytest.approx([0.67929306] * 4, abs=5e-9)  # digits of the docs
     assert restitution_factor(2.3) == 0.0
 
 
-def test_a_harder_blow_returns_less_from_a_hertzian_pocket():
-    """A harder blow meets a stiffer pocket; zeta as the fifth root of the speed, here twenty times."""
+def test_a_harder_impact_returns_less_from_a_hertzian_pocket():
+    """A harder impact meets a stiffer pocket; zeta as the fifth root of the speed, here twenty times."""
     K = hertz_coefficient(11.1125e-3, STEEL, polymer(4e9))
     slow, fast = (damping_ratio(equal_energy_stiffness(K, MASS, v), MASS, 2000.0) for v in (0.1, 2.0))
     assert fast / slow == pytest.approx(20.0**0.2, rel=1e-12)  # rounding

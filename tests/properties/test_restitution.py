@@ -47,7 +47,7 @@ def test_more_damping_returns_more(inner, outer, factor):
 
 @settings(derandomize=True, max_examples=50, deadline=None)
 @given(st.floats(1e-6, 1e3), st.floats(1.01, 100.0))
-def test_a_hertzian_blow_returns_between_all_and_nothing(zeta, factor):
+def test_a_hertzian_impact_returns_between_all_and_nothing(zeta, factor):
     """Strictly between 0 and 1, less for more damping, and beside the linear one as the docs say."""
     less, more = hertzian_restitution_factor(factor * zeta), hertzian_restitution_factor(zeta)
     assert 0.0 < less < more < 1.0

@@ -197,7 +197,7 @@ def test_hertz_contact_has_the_coefficient_of_the_material():
 
 
 def test_hertz_contact_behind_a_given_stiffness_stores_the_kick_as_deep():
-    """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of a blow at 0.5 m/s."""
+    """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of an impact at 0.5 m/s."""
     found = cage_state(cage(impact_speed=0.5, pocket_contact=PocketContact.HERTZ)).cage
     K, energy = found.hertz_coefficient, 0.5 * found.mass * 0.5**2
     depth = (2.5 * energy / K) ** 0.4

@@ -166,7 +166,7 @@ def test_a_touch_is_counted_once_and_on_its_side():
 
 
 @pytest.mark.parametrize("columns", [3, 10, 40])
-def test_pooling_loses_no_blow(columns):
+def test_pooling_loses_no_impact(columns):
     """The largest force of each pocket stays, with fewer columns than samples and with more."""
     rng = np.random.default_rng(1)
     time, force = np.linspace(0.0, 1.0, 11), rng.normal(size=(11, 4))

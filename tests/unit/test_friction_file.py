@@ -204,7 +204,7 @@ def test_a_bare_number_scatters_as_an_unrepeated_test():
 
 
 def test_the_shipped_study_rubs_at_25_metres_a_second():
-    """The pocket of the shipped study: regression, 25.1 m/s and 169 MPa in a blow of the middle kick."""
+    """The pocket of the shipped study: regression, 25.1 m/s and 169 MPa in an impact of the middle kick."""
     from separatrix.chain import cage_state
     from separatrix.ranking.friction import conditions_of
 

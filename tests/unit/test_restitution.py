@@ -17,6 +17,6 @@ def test_a_restitution_factor_outside_its_range_is_refused(eta):
 
 @pytest.mark.parametrize("damping", [0.0, -1.0, float("nan")])
 def test_races_that_do_not_damp_are_refused(damping):
-    """A massless ball held by nothing takes no blow: there is no restitution factor."""
+    """A massless ball held by nothing takes no impact: there is no restitution factor."""
     with pytest.raises(InputError, match=r"race_damping must be > 0 \[N s/m\]"):
         damping_ratio(3e6, 0.05, damping)

@@ -277,7 +277,7 @@ def test_24_that_agree_are_unanimous():
 
 
 @pytest.mark.parametrize(("balls", "limit"), [(11, 0.1438), (12, 0.2679)])
-def test_hard_dead_blows_have_a_closed_limit(balls, limit):
+def test_hard_dead_impacts_have_a_closed_limit(balls, limit):
     """tan(pi/22) and tan(pi/12), four digits given; two balls leave the cage a way out."""
     assert closed_hard_limit(balls) == pytest.approx(limit, abs=5e-5)
     assert closed_hard_limit(2) is None

@@ -1,7 +1,7 @@
 """Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
 
 from separatrix.cage.ensemble import Ensemble, run_ensemble
-from separatrix.cage.hard import blow_restitution, run_hard_ensemble
+from separatrix.cage.hard import impact_restitution, run_hard_ensemble
 from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.interval import wilson_interval
 from separatrix.cage.kicks import settings_for
@@ -26,9 +26,9 @@ __all__ = [
     "PlanarCage",
     "RunOutcome",
     "Verdict",
-    "blow_restitution",
     "drift_law",
     "follow",
+    "impact_restitution",
     "judge",
     "linear_critical_friction",
     "linear_roots",

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
 
 ONSET = 1e-5
-"""Depth at which a Hertz contact starts and ends, over that of a blow at the kick's speed: at zero depth the
-force has no power series. The force there is 3e-8 of the blow's largest."""
+"""Depth at which a Hertz contact starts and ends, over that of an impact at the kick's speed: at zero depth
+the force has no power series. The force there is 3e-8 of the impact's largest."""
 
 
 class Coefficients(NamedTuple):

@@ -24,7 +24,7 @@ def drive_energy(cage: PlanarCage) -> Joule:
 
     with the room :math:`w`: the depth of the centrifugal potential, which is also the energy, in the turning
     frame, of a cage that rests on its land at a place fixed in space; the fall across the room under
-    gravity and unbalance; and a blow of balls that lead and lag at speeds up to V.
+    gravity and unbalance; and an impact of balls that lead and lag at speeds up to V.
     """
     w, M, speed = room(cage), cage.mass, cage.cage_speed
     fall = 2.0 * w * (M * cage.gravity + cage.unbalance * speed**2)

@@ -1,7 +1,7 @@
-r"""The hard-impact form: pockets are walls, and a blow is over at once.
+r"""The hard-impact form: pockets are walls, and an impact is over at once.
 
 The normal velocity is reversed times eta and the friction impulse is f times the normal one, along
--sigma N e_r; between blows the cage flies freely, in the turning frame. Landless: pockets only. The balls
+-sigma N e_r; between impacts the cage flies freely, in the turning frame. Landless: pockets only. The balls
 hold their places.
 """
 
@@ -48,7 +48,7 @@ STALL = 1_000
 """So many events in a billionth of the run each, one after the other, are an inelastic collapse."""
 
 STILL = 1e-12
-"""Share of the cage's speed at which a pocket slides along its ball and strikes no blow."""
+"""Share of the cage's speed at which a pocket slides along its ball instead of striking it."""
 
 CHUNK_RUNS = 8
 X, Y, VX, VY, THETA, SPIN = range(6)
@@ -72,13 +72,13 @@ class Walls(NamedTuple):
 
 
 def felt_mass(cage: PlanarCage, *, may_turn: bool = True) -> float:
-    """Mass that a blow feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
+    """Mass that an impact feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
     turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
     return 1.0 / (1.0 / cage.mass + turning)
 
 
-def blow_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
-    r"""Restitution of a blow of the series spring and damper on the mass that it feels [-].
+def impact_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
+    r"""Restitution of an impact of the series spring and damper on the mass that it feels [-].
 
     :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})` with :math:`\zeta = \sqrt{km}/2C_\mu`, 0 from :math:`\zeta
     = 1`. The nominal eta has m = M; a thin ring that may turn returns more: 0.928 for 0.90, 0.698 for 0.60.
@@ -108,7 +108,7 @@ def energy_of(p, s):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def next_blow(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
+def next_impact(p, cos, sin, lead, s, longest):  # type: ignore[no-untyped-def]
     """Time in which no wall is passed, and the ball and side that may be reached then.
 
     From the gap g, the speed u towards the wall and a bound A on the acceleration that the frame gives:
@@ -152,8 +152,8 @@ def coast(p, s, note, dt, late):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def blow(p, c, i, s, note, side, eta, mass):  # type: ignore[no-untyped-def]
-    """Blow of the ball in direction (c, i), if its pocket comes at it, and note its work."""
+def impact(p, c, i, s, note, side, eta, mass):  # type: ignore[no-untyped-def]
+    """Impact of the ball in direction (c, i), if its pocket comes at it, and note its work."""
     before = energy_of(p, s)
     speed = side * (s[VY] * c - s[VX] * i + p.radius * s[SPIN])
     if speed <= STILL * np.sqrt(2.0 * before / p.mass):
@@ -174,11 +174,11 @@ def blow(p, c, i, s, note, side, eta, mass):  # type: ignore[no-untyped-def]
 
 @kernel
 def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # type: ignore[no-untyped-def]
-    """Go from blow to blow until the time is over, the energy has grown, or blows come in no time."""
+    """Go from impact to impact until the time is over, the energy has grown, or impacts come in no time."""
     horizon = duration if p.turning == 0.0 else min(duration, 0.1 / abs(p.turning))
     late, idle = 0.8 * duration, 0
     for _ in range(MOST_BLOWS):
-        dt, ball, side = next_blow(p, cos, sin, lead, s, min(horizon, duration - note[TIME]))
+        dt, ball, side = next_impact(p, cos, sin, lead, s, min(horizon, duration - note[TIME]))
         coast(p, s, note, dt, late)
         if note[TIME] >= duration:
             return UNKNOWN
@@ -188,7 +188,7 @@ def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # typ
         if ball >= 0:
             u = s[Y] * cos[ball] - s[X] * sin[ball] + p.radius * s[THETA] - lead[ball]
             if p.half_play - side * u <= 1e-10 * p.half_play:
-                blow(p, cos[ball], sin[ball], s, note, side, eta, mass)
+                impact(p, cos[ball], sin[ball], s, note, side, eta, mass)
         if energy_of(p, s) > grows_above:
             return WHIRLS
     return UNRESOLVED
@@ -196,7 +196,7 @@ def follow(p, cos, sin, lead, s, note, eta, mass, duration, grows_above):  # typ
 
 @kernel
 def hard_run(p, cos, sin, direction, kick, lead, eta, mass, duration, limits, out):  # type: ignore[no-untyped-def]
-    """Run from one kick, blow by blow; outcome and evidence into `out`, shape (evidence,)."""
+    """Run from one kick, impact by impact; outcome and evidence into `out`, shape (evidence,)."""
     s, note = np.zeros(6), np.zeros(NOTES)
     s[VX], s[VY] = kick * np.cos(direction), kick * np.sin(direction)
     start = energy_of(p, s)
@@ -245,15 +245,15 @@ def run_hard_ensemble(
     settings, kicks, runs, first_run, jobs
         As in `run_ensemble`, and the same starts.
     restitution : float, optional
-        Of a blow [-]; default: `blow_restitution`, from the mass that the blow feels.
+        Of an impact [-]; default: `impact_restitution`, from the mass that the impact feels.
     may_turn : bool
         False holds the cage's rotation to that of the ball set.
 
     Returns
     -------
     Ensemble
-        With the force that an undamped spring would reach at each blow, the whirl as the mean turning rate of
-        the offset, and no drift rate. Runs that meet too many events in no time are UNRESOLVED.
+        With the force that an undamped spring would reach at each impact, the whirl as the mean turning rate
+        of the offset, and no drift rate. Runs that meet too many events in no time are UNRESOLVED.
 
     Raises
     ------
@@ -264,7 +264,7 @@ def run_hard_ensemble(
     cage = turned_forward(cage)
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     mass = felt_mass(cage, may_turn=may_turn)
-    eta = blow_restitution(cage, may_turn=may_turn) if restitution is None else restitution
+    eta = impact_restitution(cage, may_turn=may_turn) if restitution is None else restitution
     p = _walls(cage, may_turn=may_turn)
     angles, starts = np.array(cage.ball_angles), random_starts(cage, settings, first_run, runs)
     directions = np.cos(angles), np.sin(angles)

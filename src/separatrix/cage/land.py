@@ -40,7 +40,7 @@ LOWEST_RESTITUTION = 1e-4
 def rebound(damping_ratio: Ratio) -> Ratio:
     r"""Restitution of a mass on a spring and a parallel damper that can push but not pull [-].
 
-    The blow ends when the force is back at zero, before the spring is. With :math:`\beta = \zeta\omega` and
+    The impact ends when the force is back at zero, before the spring is. With :math:`\beta = \zeta\omega` and
     :math:`\Omega = \omega\sqrt{|1-\zeta^2|}` (Schwager and Poeschel 2007, with their :math:`\omega_0` as unit
     of time).
     """

@@ -232,7 +232,7 @@ def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
     Warns
     -----
     ValidityWarning
-        The factor is 0: the blow is overdamped.
+        The factor is 0: the impact is overdamped.
     """
     from separatrix.chain import lubrication, restitution_state
 

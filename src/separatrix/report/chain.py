@@ -138,7 +138,7 @@ def restitution(document: Document) -> list[str]:
     pocket = [
         ("Ball/cage stiffness", stiffness),
         ("Cage mass", quantity(document["cage_mass"], "kg")),
-        ("eta of a Hertzian pocket", f"{hertz} in a blow at the impact speed, less in a harder one"),
+        ("eta of a Hertzian pocket", f"{hertz} in an impact at the impact speed, less in a harder one"),
     ]
     return [
         section("Restitution factor", table(("", "dampings summed (Eq. 18)", "if the ball may spin"), cells)),

@@ -337,7 +337,7 @@ def _pocket(pocket: Document) -> str:
         slip += f" ({low:.3g} to {high:.3g} around the bearing)"
     pressure = quantity(float(f"{pocket['pressure']:.3g}"), "Pa")
     force = quantity(float(f"{pocket['impact_force']:.3g}"), "N")
-    return f"slides at {slip}; mean pressure {pressure} in a blow of {force} (impact speed)"
+    return f"slides at {slip}; mean pressure {pressure} in an impact of {force} (impact speed)"
 
 
 def _scatter(document: Document) -> str:

@@ -29,7 +29,7 @@ class HardLimit:
     """Friction at which half the runs whirl in hard impacts; None if less than half whirl anywhere.
 
     Pockets are walls at even places, the ball set is at rest, the cage has no land and does not turn, so
-    that every blow returns just the restitution factor. What it is the limit of: kicks so weak that the
+    that every impact returns just the restitution factor. What it is the limit of: kicks so weak that the
     pocket's spring gives by far less than the clearance.
     """
 

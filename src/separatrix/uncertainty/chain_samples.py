@@ -93,7 +93,7 @@ class ChainSamples:
     slip_speed : ndarray
         Mean sliding speed of balls on pockets, shape (sample,) [m/s].
     pocket_pressure : ndarray
-        Mean contact pressure in the pocket at a blow of the impact speed, shape (sample, candidate) [Pa].
+        Mean contact pressure in the pocket at an impact of the impact speed, shape (sample, candidate) [Pa].
     ball_cage_stiffness : ndarray
         k_BC, shape (sample, candidate) [N/m].
     restitution_factor, restitution_factor_hertz, restitution_factor_free_spin : ndarray
@@ -151,7 +151,7 @@ class ChainSamples:
 
 
 class _Traction(NamedTuple):
-    """What a sample takes from the stages before the blow."""
+    """What a sample takes from the stages before the impact."""
 
     inner: NewtonSecondPerMetre
     outer: NewtonSecondPerMetre
@@ -161,7 +161,7 @@ class _Traction(NamedTuple):
 class _Answer(NamedTuple):
     """What one sample gives."""
 
-    blows: tuple[Restitution, ...]
+    impacts: tuple[Restitution, ...]
     pockets: tuple[PocketConditions, ...]
     cage_speed: float
     film_over_semi_minor: float
@@ -310,10 +310,10 @@ def _traction(study: Study, state: BearingState) -> _Traction:
 def _answer(study: Study, state: BearingState, traction: _Traction) -> _Answer:
     found = state.equilibrium
     waves = orbital_waves(found.orbital_speed, found.azimuth, study.bearing.pitch_diameter / 2.0)
-    blows = _blows(study, traction, state.cage_speed)
+    impacts = _impacts(study, traction, state.cage_speed)
     return _Answer(
-        blows=blows,
-        pockets=_pockets(study, state, blows),
+        impacts=impacts,
+        pockets=_pockets(study, state, impacts),
         cage_speed=state.cage_speed,
         film_over_semi_minor=traction.thin,
         cosines=waves.cosines,
@@ -321,34 +321,36 @@ def _answer(study: Study, state: BearingState, traction: _Traction) -> _Answer:
     )
 
 
-def _blows(study: Study, traction: _Traction, cage_speed: RadianPerSecond) -> tuple[Restitution, ...]:
-    """Blow on the pocket of each candidate; candidates of the same stiffness share one."""
+def _impacts(study: Study, traction: _Traction, cage_speed: RadianPerSecond) -> tuple[Restitution, ...]:
+    """Impact on the pocket of each candidate; candidates of the same stiffness share one."""
     mass, known = cage_design(study).mass, {}
-    blows = []
+    impacts = []
     for candidate in candidates_of(study):
         stiffness = pocket_stiffness(study, cage_speed, candidate.material if candidate else None)[0]
         if stiffness not in known:
             known[stiffness] = restitution(
                 traction.inner, traction.outer, ball_cage_stiffness=stiffness, cage_mass=mass
             )
-        blows.append(known[stiffness])
-    return tuple(blows)
+        impacts.append(known[stiffness])
+    return tuple(impacts)
 
 
-def _pockets(study: Study, state: BearingState, blows: Sequence[Restitution]) -> tuple[PocketConditions, ...]:
+def _pockets(
+    study: Study, state: BearingState, impacts: Sequence[Restitution]
+) -> tuple[PocketConditions, ...]:
     """What rubs in the pocket of each candidate; those of the same stiffness share it."""
     known = {
-        blow.ball_cage_stiffness: pocket_conditions(
+        impact.ball_cage_stiffness: pocket_conditions(
             state.equilibrium,
             ball_diameter=study.bearing.ball_diameter,
-            ball_cage_stiffness=blow.ball_cage_stiffness,
+            ball_cage_stiffness=impact.ball_cage_stiffness,
             cage_mass=cage_design(study).mass,
-            damping_ratio=blow.damping_ratio,
+            damping_ratio=impact.damping_ratio,
             impact_speed=impact_speed(study, state.cage_speed),
         )
-        for blow in dict.fromkeys(blows)
+        for impact in dict.fromkeys(impacts)
     }
-    return tuple(known[blow.ball_cage_stiffness] for blow in blows)
+    return tuple(known[impact.ball_cage_stiffness] for impact in impacts)
 
 
 def _collected(study: Study, answers: Sequence[_Answer | Failure]) -> ChainSamples:
@@ -362,11 +364,11 @@ def _collected(study: Study, answers: Sequence[_Answer | Failure]) -> ChainSampl
     for i, answer in enumerate(answers):
         if isinstance(answer, Failure):
             continue
-        first = answer.blows[0]
+        first = answer.impacts[0]
         for name in _PER_SAMPLE:
             one[name][i] = getattr(first if hasattr(first, name) else answer, name)
         for name in _PER_CANDIDATE:
-            each[name][i] = [getattr(blow, name) for blow in answer.blows]
+            each[name][i] = [getattr(impact, name) for impact in answer.impacts]
         slip_speed[i] = answer.pockets[0].slip_speed
         pressure[i] = [pocket.pressure for pocket in answer.pockets]
         for name, held in (("orbital_cosines", answer.cosines), ("orbital_sines", answer.sines)):
