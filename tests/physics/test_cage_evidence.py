@@ -1,8 +1,8 @@
 """What an ensemble says of its runs, against sums over densely sampled histories of the same runs.
 
 Tolerances: a history of 20 000 rows has some 50 within an impact, so trapezia are good to 1e-3, and the
-largest of the rows to (pi/50)^2/8 = 5e-4; rates go with logarithms of such means, over a fifth of 4 ms. The ensemble
-reads the turning of the velocity at five places of a step: to 1 %. What counts events is exact.
+largest of the rows to (pi/50)^2/8 = 5e-4; rates go with logarithms of such means, over a fifth of 4 ms. The
+ensemble reads the turning of the velocity at five places of a step: to 1 %. What counts events is exact.
 """
 
 import math
@@ -76,8 +76,8 @@ def told(cage, ours):
     A fifth has 4000 rows or more and ends within one, 2.5e-4 of it at each end: means differ by up to 6e-4,
     rates and orbit by such a part of what they are differences of. Between two rows a largest value is missed
     by up to 6e-5. A row across an impact, of some 10 in its contact, turns the heading by a finite angle, and
-    an ensemble reads it at five places of a step: 2.5 % of what it turns either way (seen: 2.1 %). Work done in
-    a touch at an end of the last part is cut by a row (seen: 3.3e-3 of the work there).
+    an ensemble reads it at five places of a step: 2.5 % of what it turns either way (seen: 2.1 %). Work done
+    in a touch at an end of the last part is cut by a row (seen: 3.3e-3 of the work there).
     """
     near, cut, largest = {"rel": 1e-3}, {"rel": 5e-3}, {"rel": 5e-4}
     limits = run_limits(cage, 0.5, SETTINGS.duration)
