@@ -12,13 +12,13 @@ from separatrix.units import Array, Ratio
 NORMAL_95 = 1.959963984540054
 
 
-def wilson_interval(successes: int, count: int) -> tuple[Ratio, Ratio]:
-    """Wilson's 95 % interval of a share [-]; 0 to 1 without a trial."""
+def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
+    """Wilson's interval of a share, 95 % or that of another normal quantile [-]; 0 to 1 without a trial."""
     if count == 0:
         return 0.0, 1.0
-    p, z2 = successes / count, NORMAL_95**2
+    p, z2 = successes / count, normal**2
     middle = (p + z2 / (2 * count)) / (1 + z2 / count)
-    half = NORMAL_95 / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
+    half = normal / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
     low, high = max(0.0, middle - half), min(1.0, middle + half)
     return min(low, p), max(high, p)  # rounding would leave none and all just outside
 

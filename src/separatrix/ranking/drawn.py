@@ -7,16 +7,17 @@ kind, made and loaded with the stated uncertainties, runs stably.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from threading import Event
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
-from separatrix.cage import Judgement, judge, run_ensemble
+from separatrix.cage import Ensemble, Judgement, PlanarCage, judge, run_ensemble
 from separatrix.chain import CageState, cage_state, traction_state
-from separatrix.draws import sample
+from separatrix.draws import UncertainInput, sample
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction_fit import TestedFriction
 from separatrix.ranking.friction import as_pockets_see, conditions_of
@@ -34,6 +35,9 @@ class Case(NamedTuple):
     environment: str
 
 
+Change = Callable[[int, PlanarCage], PlanarCage]
+"""Gives another cage for the one of a bearing, by its place."""
+
 States = Mapping[str, CageState]
 """Cage of each candidate, by its name."""
 
@@ -44,8 +48,12 @@ class DrawnBearings:
 
     Attributes
     ----------
-    inputs : tuple of str
-        Names of the uncertain inputs.
+    study : Study
+        With the frictions of its tests as the central pockets see them.
+    inputs : tuple of UncertainInput
+        What is drawn.
+    scores : ndarray
+        Draws as standard normal numbers of the same probability, shape (run, input) [-].
     central : mapping
         Cage of each candidate with every input at its central value.
     runs : tuple of int
@@ -58,7 +66,9 @@ class DrawnBearings:
         Why the other draws make no bearing, one reason each.
     """
 
-    inputs: tuple[str, ...]
+    study: Study
+    inputs: tuple[UncertainInput, ...]
+    scores: Array
     central: States
     runs: tuple[int, ...]
     states: tuple[States, ...]
@@ -66,7 +76,40 @@ class DrawnBearings:
     failures: tuple[str, ...]
 
     def judge(self, case: Case, kicks: Sequence[MetrePerSecond], stop: Event) -> Judgement:
-        """Judge the runs of a case: one from each kick with each bearing, offsets by the central cage.
+        """Judge all the runs of a case, offsets by the central cage: see `ensemble`."""
+        return judge(self.cage(case), self.ensemble(case, kicks, range(len(self.runs)), stop))
+
+    @property
+    def kicks(self) -> tuple[MetrePerSecond, ...]:
+        """Kicks of the central cages [m/s]."""
+        return next(iter(self.central.values())).stability.kicks
+
+    def cage(self, case: Case) -> PlanarCage:
+        """Cage of a case with every input at its central value, without friction."""
+        return self.central[case.candidate].cage
+
+    def ensemble(
+        self,
+        case: Case,
+        kicks: Sequence[MetrePerSecond],
+        places: Iterable[int],
+        stop: Event,
+        change: Change | None = None,
+    ) -> Ensemble:
+        """Run some of the bearings of a case once from each kick.
+
+        Parameters
+        ----------
+        case : Case
+            Whose.
+        kicks : sequence of float
+            From each of them [m/s].
+        places : iterable of int
+            Which bearings.
+        stop : Event
+            Ends the work.
+        change : callable, optional
+            Gives another cage for the one of a place.
 
         Raises
         ------
@@ -74,17 +117,18 @@ class DrawnBearings:
             `stop` was set before the last run.
         """
         parts = []
-        for run, states, friction in zip(self.runs, self.states, self.friction[case].tolist(), strict=True):
+        for place in places:
             if stop.is_set():
                 raise Stopped
-            state = states[case.candidate]
-            cage = replace(state.cage, ball_cage_friction=friction)
-            parts.append(run_ensemble(cage, state.stability, kicks=kicks, runs=1, first_run=run))
-        return judge(self.central[case.candidate].cage, joined(parts))
+            state = self.states[place][case.candidate]
+            cage = replace(state.cage, ball_cage_friction=float(self.friction[case][place]))
+            cage = cage if change is None else change(place, cage)
+            parts.append(run_ensemble(cage, state.stability, kicks=kicks, runs=1, first_run=self.runs[place]))
+        return joined(parts)
 
 
-def drawn_bearings(study: Study, runs: int) -> DrawnBearings | None:
-    """Draw a bearing for each run; None if the study states no uncertain input.
+def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
+    """Draw a bearing for each run.
 
     Frictions that the study gives no distribution for scatter as their tests do: drawn is that of a new cage.
     A friction from tests follows the slip speed and the pressure in the pocket of its own draw.
@@ -99,10 +143,8 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings | None:
     Raises
     ------
     InputError
-        No draw makes a bearing.
+        Nothing is uncertain, or no draw makes a bearing.
     """
-    if not study.distributions:
-        return None
     asked = as_pockets_see(study)
     draws, numbers = sample(asked, runs), study_numbers(asked)
     put, failures = draws.setter(), []
@@ -120,7 +162,9 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings | None:
     if not made:
         raise InputError(study.name, "makes no bearing in any draw of its uncertain inputs", "", failures[0])
     return DrawnBearings(
-        inputs=draws.names,
+        study=asked,
+        inputs=draws.inputs,
+        scores=ndtri(draws.probabilities[[run for run, _, _ in made]]),
         central=central,
         runs=tuple(run for run, _, _ in made),
         states=tuple(states for _, _, states in made),

@@ -187,7 +187,7 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
         tracers={},
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
         reference=reference,
-        drawn=drawn_bearings(study, study.stability.runs),
+        drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
         stop=Event(),
     )
 

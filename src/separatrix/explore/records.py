@@ -1,0 +1,259 @@
+"""What `sensitivity` answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from separatrix.cage import KickCount
+from separatrix.units import Array, Hertz, Metre, MetrePerSecond, Newton, Ratio, Second, Watt
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InputRow:
+    """One uncertain input: its key in the study, its distribution in words, and where that comes from.
+
+    `source` is "study" where the study states it, "measured" for the scatter of a measured friction,
+    "assumed" for the default one, a guess. Mean and standard deviation are in SI.
+    """
+
+    name: str
+    unit: str
+    distribution: str
+    source: str
+    mean: float
+    standard_deviation: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UncertainMaterial:
+    """One candidate in one environment, or over all of them; if not measured, only its name and the reason.
+
+    Attributes
+    ----------
+    name : str
+        The candidate.
+    friction, friction_deviation : float or None
+        Mean and standard deviation of the friction of a new cage [-].
+    friction_scatter_assumed : bool or None
+        Whether that scatter is the default one, a guess.
+    extrapolation : tuple of str
+        In what respect the friction is extrapolated beyond its tests.
+    probability_lowest_friction : float or None
+        Probability that no other candidate's mean friction is lower; None if no other was measured [-].
+    restitution_factor, restitution_factor_low, restitution_factor_high : float or None
+        Median over the bearings, and the ends between which nine in ten lie [-].
+    verdict : str or None
+        STABLE, UNSTABLE or UNDECIDED, by the rule of every verb.
+    probability_stable, probability_low, probability_high : float or None
+        Share of the bearings whose cage settles, from the worst kick, and its 95 % interval [-].
+    worst_kick, by_kick, runs, cage_motion, largest_offset, mean_offset, drift_rate, largest_contact_force
+    largest_land_force, whirl_frequency, rubbing_power, energy_imbalance, duration, longest_run
+        Evidence, as in `Judgement`; `runs` are those from each kick.
+    reason : str
+        A sentence with the numbers.
+    """
+
+    name: str
+    friction: Ratio | None = None
+    friction_deviation: Ratio | None = None
+    friction_scatter_assumed: bool | None = None
+    extrapolation: tuple[str, ...] = ()
+    probability_lowest_friction: Ratio | None = None
+    restitution_factor: Ratio | None = None
+    restitution_factor_low: Ratio | None = None
+    restitution_factor_high: Ratio | None = None
+    verdict: str | None = None
+    probability_stable: Ratio | None = None
+    probability_low: Ratio | None = None
+    probability_high: Ratio | None = None
+    worst_kick: MetrePerSecond | None = None
+    by_kick: tuple[KickCount, ...] | None = None
+    runs: int | None = None
+    cage_motion: str | None = None
+    largest_offset: Metre | None = None
+    mean_offset: Metre | None = None
+    drift_rate: float | None = None
+    largest_contact_force: Newton | None = None
+    largest_land_force: Newton | None = None
+    whirl_frequency: Hertz | None = None
+    rubbing_power: Watt | None = None
+    energy_imbalance: Ratio | None = None
+    duration: Second | None = None
+    longest_run: Second | None = None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UncertainEnvironment:
+    """The candidates in one environment, best first; those not measured come last."""
+
+    name: str
+    materials: tuple[UncertainMaterial, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConvergenceRow:
+    """P(stable) of one case with the first so many bearings, from its worst kick; `environment` "": overall.
+
+    `size` : shape (size,); `probability_stable` with its 95 % interval, shape (size,) [-].
+    """
+
+    name: str
+    environment: str
+    size: tuple[int, ...]
+    probability_stable: Array
+    probability_low: Array
+    probability_high: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cloud:
+    """Bearings of one case: restitution factor, friction [-], and whether it settles; shape (run,) each."""
+
+    name: str
+    environment: str
+    restitution_factor: Array
+    friction: Array
+    settles: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Share:
+    """Part of a variance that one input brings, and its 95 % interval [-]."""
+
+    name: str
+    share: Ratio
+    share_low: Ratio
+    share_high: Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drivers:
+    """Which inputs decide whether a bearing of one case settles.
+
+    Attributes
+    ----------
+    name, environment : str
+        The case.
+    shares : tuple of Share
+        Of the variance of the logit of P(settles), the largest first, and last that of the single run
+        ("chance"); empty where `reason` says why.
+    reason : str
+        Why nothing can be said; empty otherwise.
+    predicted, counted, bearings : ndarray
+        Calibration on bearings that were left out of the fit: mean prediction and counted share in each bin
+        [-], and how many are in it; shape (bin,).
+    skill : float or None
+        Part of the deviance that the fit removes, on bearings left out [-].
+    """
+
+    name: str
+    environment: str
+    shares: tuple[Share, ...]
+    reason: str
+    predicted: Array
+    counted: Array
+    bearings: Array
+    skill: Ratio | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothShares:
+    """First-order and total Sobol indices of a number that the chain computes.
+
+    `quantity` is "restitution_factor" or "race_damping", `name` the candidate.
+    """
+
+    quantity: str
+    name: str
+    first: tuple[Share, ...]
+    total: tuple[Share, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestGain:
+    """How many undecided cases measuring one input settles on average, and which with what probability."""
+
+    name: str
+    settled: float
+    cases: tuple[str, ...]
+    chances: tuple[Ratio, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AllowedFriction:
+    """Largest pocket friction of a new material at which a bearing settles with a probability.
+
+    `names` are the candidates whose pockets it holds for. `friction` is None where no friction is low enough,
+    or none too high; `reason` says which.
+    """
+
+    names: tuple[str, ...]
+    probability: Ratio
+    scatter: Ratio
+    friction: Ratio | None
+    friction_low: Ratio | None
+    friction_high: Ratio | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AllowedFilm:
+    """Largest restitution factor at which a case settles with a probability, and the films that keep to it.
+
+    Attributes
+    ----------
+    name : str
+        The candidate, in the bearing's own environment.
+    probability : float
+        Wanted [-].
+    restitution_factor, restitution_factor_low, restitution_factor_high : float or None
+        Of the central bearing, the others scaled with it [-]; None where `reason` says why.
+    film_thickness : ndarray
+        Shape (thickness,) [m].
+    race_friction : ndarray
+        Shape (friction,) [-].
+    allowed : ndarray
+        1 where the film keeps below it, shape (friction, thickness); empty without a film.
+    """
+
+    name: str
+    probability: Ratio
+    restitution_factor: Ratio | None
+    restitution_factor_low: Ratio | None
+    restitution_factor_high: Ratio | None
+    reason: str
+    film_thickness: Array
+    race_friction: Array
+    allowed: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UncertainStudy:
+    """Answer of `sensitivity`.
+
+    `bearings` were drawn, of which `failed` make no bearing, for the reasons in `notes`. A case that is plain
+    before has fewer runs (`stopped_risk`: largest probability that all of them would decide otherwise).
+    `undecided` names the cases without a verdict. `complete` is False if an interrupt left something out.
+    """
+
+    bearings: int
+    failed: int
+    stopped_risk: Ratio
+    default_scatter: Ratio
+    environment: str
+    inputs: tuple[InputRow, ...]
+    environments: tuple[UncertainEnvironment, ...]
+    overall: tuple[UncertainMaterial, ...]
+    convergence: tuple[ConvergenceRow, ...]
+    clouds: tuple[Cloud, ...]
+    drivers: tuple[Drivers, ...]
+    shares: tuple[SmoothShares, ...]
+    undecided: tuple[str, ...]
+    next_tests: tuple[TestGain, ...]
+    allowed_friction: tuple[AllowedFriction, ...]
+    allowed_films: tuple[AllowedFilm, ...]
+    kicks: tuple[MetrePerSecond, ...]
+    runs: int
+    notes: tuple[str, ...]
+    complete: bool

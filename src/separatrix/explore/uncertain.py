@@ -1,0 +1,330 @@
+"""A study with its uncertain inputs drawn: verdicts, what decides them, and what would have to be better."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import fields, replace
+from functools import partial
+from threading import Event
+
+import numpy as np
+
+from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
+from separatrix.cage_choice import reference_candidate, required_environment
+from separatrix.chain import lubrication, restitution_state
+from separatrix.distribution import described
+from separatrix.draws import UncertainInput
+from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.explore.allowed import allowed_film, allowed_friction
+from separatrix.explore.counting import BLOCK, RISK, counted, settles
+from separatrix.explore.drivers import drivers, fitted
+from separatrix.explore.next_test import next_tests, reducible_shares
+from separatrix.explore.records import (
+    AllowedFilm,
+    AllowedFriction,
+    Cloud,
+    ConvergenceRow,
+    Drivers,
+    InputRow,
+    SmoothShares,
+    TestGain,
+    UncertainEnvironment,
+    UncertainMaterial,
+    UncertainStudy,
+)
+from separatrix.explore.shares import sobol_shares
+from separatrix.ranking import ranking_question
+from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
+from separatrix.ranking.friction import MeanFriction, overall, with_scatter
+from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
+from separatrix.stability.pool import Progress, work_out
+from separatrix.study import Study
+from separatrix.study_numbers import setter, study_numbers
+from separatrix.units import Array
+
+FEWEST = 64
+"""Bearings below which no probability is worth a table."""
+
+CLOUD = 256
+"""Bearings of a case that are kept for the pictures."""
+
+EVIDENCE = {f.name for f in fields(UncertainMaterial)} & {f.name for f in fields(Judgement)} - {
+    *("verdict", "cage_motion", "reason")
+}
+"""What a row takes from its judgement as it is."""
+
+Counted = tuple[Judgement, Ensemble]
+
+
+def uncertain_study(
+    study: Study, bearings: int, *, jobs: int = 1, progress: Progress | None = None
+) -> UncertainStudy:
+    """Draw bearings from the uncertain inputs of a study and judge the cages of every candidate.
+
+    Parameters
+    ----------
+    study : Study
+        With candidates; a friction without stated scatter has the study's default one, a guess.
+    bearings : int
+        How many, best a power of two; at least `FEWEST`.
+    jobs : int
+        Threads; the numbers do not depend on it.
+    progress : callable, optional
+        Called with (done, total) pieces of work.
+
+    Raises
+    ------
+    InputError
+        Too few bearings, no candidates, or no draw makes a bearing.
+    """
+    ranking_question(study)
+    if bearings < FEWEST:
+        cure = "Powers of two spread most evenly: 512."
+        raise InputError("--samples", f"must be at least {FEWEST}", value=str(bearings), cure=cure)
+    drawn, stop = drawn_bearings(study, bearings), Event()
+    work = {case: partial(counted, drawn, case, drawn.kicks, stop) for case in drawn.friction}
+    inverse = _inverse(drawn, stop)
+    pieces: dict[Case | str, Callable[[], object]] = {**work, **inverse}
+    found = work_out(
+        lambda key: pieces[key](),
+        pieces,
+        jobs=jobs,
+        progress=progress,
+        stop=stop,
+    )
+    judged = {case: one for case in work if isinstance(one := found.get(case), tuple)}
+    return _answer(study, drawn, judged, [found[key] for key in inverse if key in found], bearings)
+
+
+def _answer(
+    study: Study, drawn: DrawnBearings, judged: Mapping[Case, Counted], inverse: Sequence[object], asked: int
+) -> UncertainStudy:
+    """Record of what was computed; an interrupt leaves parts out."""
+    ranking = ranking_question(drawn.study)
+    decided = {case: _drivers(drawn, case, one) for case, one in judged.items() if case.environment}
+    undecided = [case for case in decided if judged[case][0].verdict is Verdict.UNDECIDED]
+    open_cases = {case: judged[case] for case in undecided if decided[case].shares}
+    return UncertainStudy(
+        bearings=asked,
+        failed=len(drawn.failures),
+        stopped_risk=RISK,
+        default_scatter=ranking.friction_scatter,
+        environment=required_environment(study, ranking),
+        inputs=tuple(map(_input_row, drawn.inputs)),
+        environments=tuple(
+            UncertainEnvironment(name=place, materials=_rows(drawn, place, judged))
+            for place in ranking.environments
+        ),
+        overall=_rows(drawn, "", judged),
+        convergence=tuple(_convergence(case, *one) for case, one in judged.items()),
+        clouds=tuple(_cloud(drawn, case, *one) for case, one in judged.items() if case.environment),
+        drivers=tuple(decided.values()),
+        shares=_smooth(study, drawn),
+        undecided=tuple(map(_words, undecided)),
+        next_tests=_next_tests(drawn, open_cases),
+        allowed_friction=tuple(one for one in inverse if isinstance(one, AllowedFriction)),
+        allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
+        kicks=drawn.kicks,
+        runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
+        notes=tuple(_notes(drawn, asked)),
+        complete=len(judged) == len(drawn.friction) and len(inverse) == len(_inverse(drawn, Event())),
+    )
+
+
+def _inverse(drawn: DrawnBearings, stop: Event) -> dict[str, Callable[[], object]]:
+    """Inverse questions: a friction for each pocket stiffness, a film for each candidate."""
+    ranking = ranking_question(drawn.study)
+    alike: dict[float, list[str]] = {}
+    for name in dict.fromkeys(case.candidate for case in drawn.friction):
+        alike.setdefault(drawn.central[name].cage.ball_cage_stiffness, []).append(name)
+    pieces: dict[str, Callable[[], object]] = {
+        f"friction {names[0]}": partial(
+            allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, stop
+        )
+        for names in alike.values()
+    }
+    environment = required_environment(drawn.study, ranking)
+    for names in alike.values():
+        films = lubrication(drawn.study, drawn.central[names[0]].restitution)
+        for name in names:
+            case = Case(name, environment)
+            if case in drawn.friction:
+                pieces[f"film {name}"] = partial(allowed_film, drawn, case, drawn.kicks, films, stop)
+    return pieces
+
+
+def _rows(
+    drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]
+) -> tuple[UncertainMaterial, ...]:
+    """Rows of an environment: verdicts first that are better, then the larger P(stable)."""
+    ranking = ranking_question(drawn.study)
+    means: dict[str, MeanFriction | None] = {}
+    for candidate in ranking.candidates:
+        places = (environment,) if environment else ranking.environments
+        known = [one for place in places if (one := candidate.friction.get(place)) is not None]
+        means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
+    lowest = lowest_among({name: one for name, one in means.items() if one is not None}).probabilities
+    rows = [
+        _row(drawn, Case(name, environment), mean, lowest.get(name), judged.get(Case(name, environment)))
+        for name, mean in means.items()
+    ]
+    return tuple(sorted(rows, key=_best_first))
+
+
+def _row(
+    drawn: DrawnBearings, case: Case, mean: MeanFriction | None, lowest: float | None, found: Counted | None
+) -> UncertainMaterial:
+    """One candidate in one environment."""
+    if mean is None:
+        return UncertainMaterial(name=case.candidate, reason=not_measured(case.environment))
+    eta = np.quantile(_factors(drawn, case), (0.5, 0.05, 0.95))
+    row = UncertainMaterial(
+        name=case.candidate,
+        friction=mean.mean,
+        friction_deviation=float(np.std(drawn.friction[case])),
+        friction_scatter_assumed=mean.assumed,
+        extrapolation=mean.extrapolation,
+        probability_lowest_friction=lowest,
+        restitution_factor=float(eta[0]),
+        restitution_factor_low=float(eta[1]),
+        restitution_factor_high=float(eta[2]),
+        reason=NOT_FINISHED,
+    )
+    if found is None:
+        return row
+    judgement = found[0]
+    if broken := not_finite(judgement):
+        return replace(row, reason=broken)
+    return replace(
+        row,
+        verdict=judgement.verdict.name,
+        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.value,
+        reason=judgement.reason,
+        **{name: getattr(judgement, name) for name in EVIDENCE},
+    )
+
+
+def _best_first(row: UncertainMaterial) -> tuple[int, float, float]:
+    order = {"STABLE": 0, "UNDECIDED": 1, "UNSTABLE": 2}.get(row.verdict or "", 3)
+    return order, -(row.probability_stable or 0.0), row.friction or 0.0
+
+
+def _factors(drawn: DrawnBearings, case: Case) -> Array:
+    """Restitution factor of each bearing, shape (bearing,) [-]."""
+    return np.array([one[case.candidate].restitution.restitution.restitution_factor for one in drawn.states])
+
+
+def _input_row(one: UncertainInput) -> InputRow:
+    law = one.distribution
+    return InputRow(
+        name=one.key,
+        unit=one.unit,
+        distribution=law.text or described(law, one.unit),
+        source=one.source,
+        mean=law.mean,
+        standard_deviation=law.standard_deviation,
+    )
+
+
+def _convergence(case: Case, judged: Judgement, found: Ensemble) -> ConvergenceRow:
+    """P(stable) with the first bearings, by doubling."""
+    settled = np.array(settles(found, judged))
+    sizes = [BLOCK << k for k in range(20) if BLOCK << k < settled.size] + [settled.size]
+    counts = [int(settled[:size].sum()) for size in sizes]
+    ends = [wilson_interval(count, size) for count, size in zip(counts, sizes, strict=True)]
+    return ConvergenceRow(
+        name=case.candidate,
+        environment=case.environment,
+        size=tuple(sizes),
+        probability_stable=np.array(counts) / np.array(sizes),
+        probability_low=np.array([low for low, _ in ends]),
+        probability_high=np.array([high for _, high in ends]),
+    )
+
+
+def _cloud(drawn: DrawnBearings, case: Case, judged: Judgement, found: Ensemble) -> Cloud:
+    settled = np.array(settles(found, judged), dtype=np.float64)[:CLOUD]
+    return Cloud(
+        name=case.candidate,
+        environment=case.environment,
+        restitution_factor=_factors(drawn, case)[: settled.size],
+        friction=drawn.friction[case][: settled.size],
+        settles=settled,
+    )
+
+
+def _columns(drawn: DrawnBearings, case: Case) -> list[int]:
+    """Inputs that may matter to a case: all but the frictions and materials of others."""
+    own = (f"ranking.{case.candidate}.{case.environment}", f"ranking.{case.candidate}.material.")
+    return [
+        i
+        for i, one in enumerate(drawn.inputs)
+        if not one.key.startswith("ranking.") or one.key == own[0] or one.key.startswith(own[1])
+    ]
+
+
+def _drivers(drawn: DrawnBearings, case: Case, found: Counted) -> Drivers:
+    """What decides a case, by a regression of its runs."""
+    settled, columns = np.array(settles(found[1], found[0]), dtype=np.float64), _columns(drawn, case)
+    names = [drawn.inputs[i].key for i in columns]
+    return drivers(case, names, drawn.scores[: settled.size, columns], settled)
+
+
+def _next_tests(drawn: DrawnBearings, cases: Mapping[Case, Counted]) -> tuple[TestGain, ...]:
+    """What measuring each input would settle of these cases."""
+    asked = {}
+    for case, (judged, found) in cases.items():
+        settled, columns = np.array(settles(found, judged), dtype=np.float64), _columns(drawn, case)
+        scores = drawn.scores[: settled.size]
+        b = np.zeros(1 + len(drawn.inputs))
+        b[[0, *(1 + i for i in columns)]] = fitted(scores[:, columns], settled)
+        asked[_words(case)] = (b, scores)
+    return next_tests(drawn.inputs, reducible_shares(drawn.study, drawn.inputs), asked)
+
+
+def _words(case: Case) -> str:
+    return f"{case.candidate} in {case.environment}"
+
+
+def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
+    """Sobol indices of restitution factor and race damping of the cage's own candidate."""
+    own, numbers = reference_candidate(study, ranking_question(study)), study_numbers(drawn.study)
+    inputs = [
+        one
+        for one in drawn.inputs
+        if not numbers[one.key].is_friction
+        and (not one.key.startswith("ranking.") or one.key.startswith(f"ranking.{own.name}."))
+    ]
+    if not inputs:
+        return ()
+    put = setter(drawn.study, [one.key for one in inputs])
+    central = drawn.central[own.name].restitution.restitution
+
+    def model(points: Array) -> Array:
+        values = np.column_stack([one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)])
+        rows = []
+        for row in values.tolist():
+            found = central
+            with suppress(SeparatrixError):  # such draws are left out, and counted among the bearings
+                changed = put(row)
+                every = {one.name: one.material for one in ranking_question(changed).candidates}
+                found = restitution_state(changed, material=every[own.name]).restitution
+            rows.append((found.restitution_factor, found.race_damping))
+        return np.array(rows)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        found = sobol_shares(model, [one.key for one in inputs], seed=study.stability.seed)
+    return tuple(
+        SmoothShares(quantity=quantity, name=own.name, first=first, total=total)
+        for quantity, (first, total) in zip(("restitution_factor", "race_damping"), found, strict=True)
+    )
+
+
+def _notes(drawn: DrawnBearings, asked: int) -> Iterator[str]:
+    """Sentences on what a reader must know of the draws."""
+    if drawn.failures:
+        yield f"{len(drawn.failures)} of {asked} draws make no bearing and are left out: {drawn.failures[0]}"
