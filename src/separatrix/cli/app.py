@@ -203,7 +203,7 @@ def _simulate(
 
 def _sensitivity(
     study: StudyArgument,
-    samples: Annotated[int, typer.Option(**WHOLE, help="Samples, a power of two.")] = SAMPLES,
+    samples: Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")] = SAMPLES,
     json: Json = False,
     out: Out = None,
     quiet: Quiet = False,

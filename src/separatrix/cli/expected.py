@@ -84,6 +84,25 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
     return total
 
 
+def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
+    """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
+    from separatrix.chain import cage_state, traction_state
+    from separatrix.ranking import ranking_question
+
+    asked, traction = ranking_question(study), traction_state(study)
+    total = PICTURES
+    for candidate in asked.candidates:
+        state = cage_state(study, material=candidate.material, traction=traction, friction=0.0)
+        known = [found.mean for found in candidate.friction.values() if found is not None]
+        whole = expected_verdicts(state.cage, replace(state.stability, runs=bearings), known, jobs=jobs)
+        total += SHARE_RUN * whole
+    return total
+
+
+SHARE_RUN = 0.7
+"""Of the runs of all cases, those that are made, with what the inverse questions take."""
+
+
 def expected_map(
     question: MapQuestion, known: Mapping[tuple[float, float], MapPoint], *, jobs: int
 ) -> Second:

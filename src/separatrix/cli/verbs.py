@@ -98,7 +98,7 @@ VERBS: tuple[Verb, ...] = (
     ),
     Verb(
         name="sensitivity",
-        help="Probability of stable and best, and what to test next.",
+        help="Verdicts over uncertain inputs, their sources, next test.",
         compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
     ),

@@ -39,6 +39,7 @@ from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, overall, with_scatter
 from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.plausible import beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
 from separatrix.stability.pool import Progress, work_out
 from separatrix.study import Study
@@ -85,9 +86,11 @@ def uncertain_study(
         cure = "Powers of two spread most evenly: 512."
         raise InputError("--samples", f"must be at least {FEWEST}", value=str(bearings), cure=cure)
     drawn, stop = drawn_bearings(study, bearings), Event()
-    work = {case: partial(counted, drawn, case, drawn.kicks, stop) for case in drawn.friction}
     inverse = _inverse(drawn, stop)
-    pieces: dict[Case | str, Callable[[], object]] = {**work, **inverse}
+    pieces: dict[Case | str, Callable[[], object]] = {
+        case: partial(counted, drawn, case, drawn.kicks, stop) for case in drawn.friction
+    }
+    pieces.update(inverse)
     found = work_out(
         lambda key: pieces[key](),
         pieces,
@@ -95,7 +98,7 @@ def uncertain_study(
         progress=progress,
         stop=stop,
     )
-    judged = {case: one for case in work if isinstance(one := found.get(case), tuple)}
+    judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
     return _answer(study, drawn, judged, [found[key] for key in inverse if key in found], bearings)
 
 
@@ -106,13 +109,16 @@ def _answer(
     ranking = ranking_question(drawn.study)
     decided = {case: _drivers(drawn, case, one) for case, one in judged.items() if case.environment}
     undecided = [case for case in decided if judged[case][0].verdict is Verdict.UNDECIDED]
+    environment = required_environment(study, ranking)
+    own = _rows(drawn, environment, judged)
+    reference = reference_candidate(study, ranking)
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
     return UncertainStudy(
         bearings=asked,
         failed=len(drawn.failures),
         stopped_risk=RISK,
         default_scatter=ranking.friction_scatter,
-        environment=required_environment(study, ranking),
+        environment=environment,
         inputs=tuple(map(_input_row, drawn.inputs)),
         environments=tuple(
             UncertainEnvironment(name=place, materials=_rows(drawn, place, judged))
@@ -129,7 +135,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=tuple(_notes(drawn, asked)),
+        notes=(*_notes(drawn, asked), *beyond_motion(study, drawn.central[reference.name], own)),
         complete=len(judged) == len(drawn.friction) and len(inverse) == len(_inverse(drawn, Event())),
     )
 

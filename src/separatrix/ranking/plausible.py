@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Protocol
 
+from separatrix.cage import KickCount
 from separatrix.chain import CageState
 from separatrix.pocket_contact import contact_radius
-from separatrix.ranking.records import RankedMaterial
 from separatrix.restitution import hertz_coefficient
 from separatrix.study import BallBearing, Material, Study
-from separatrix.units import Newton, Pascal, Ratio, format_quantity
+from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
@@ -21,13 +22,33 @@ YIELDS: Ratio = 1.6
 yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
 
 
+class Moved(Protocol):
+    """A row of an answer: whose cage, and what its runs showed; None where there is none."""
+
+    @property
+    def name(self) -> str:
+        """The candidate."""
+
+    @property
+    def largest_contact_force(self) -> Newton | None:
+        """Between a ball and its pocket, in any run [N]."""
+
+    @property
+    def largest_offset(self) -> Metre | None:
+        """Of the cage centre, in any run [m]."""
+
+    @property
+    def by_kick(self) -> tuple[KickCount, ...] | None:
+        """Where the runs from every kick end."""
+
+
 def transmitted_force(study: Study, state: CageState) -> Newton:
     """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
     contacts = state.restitution.traction.bearing
     return study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
 
 
-def beyond_motion(study: Study, state: CageState, rows: Sequence[RankedMaterial]) -> Iterator[str]:
+def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iterator[str]:
     """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
     judged = [row for row in rows if row.largest_contact_force is not None]
     if not judged:
@@ -66,7 +87,7 @@ def pocket_pressure(bearing: BallBearing, wall: Material, force: Newton) -> Pasc
     return 1.5 * force / (math.pi * contact_radius(force, K, bearing.ball_diameter) ** 2)
 
 
-def _beyond_strength(study: Study, rows: Sequence[RankedMaterial]) -> Iterator[str]:
+def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
     """A sentence on the pockets that yield, of candidates, or a cage beside them, whose strength is known."""
     walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
     own = study.cage.material if study.cage else None
@@ -87,7 +108,7 @@ def _beyond_strength(study: Study, rows: Sequence[RankedMaterial]) -> Iterator[s
         )
 
 
-def _kept_by_land(row: RankedMaterial) -> str:
+def _kept_by_land(row: Moved) -> str:
     """In how many runs from which kick, for one candidate; empty if in none."""
     counts = [count for count in row.by_kick or () if count.kept_by_land]
     runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)

@@ -1,11 +1,11 @@
-"""An uncertain ranking as plain data, and its convergence, clouds, lines and indices as labelled arrays."""
+"""An uncertain study as plain data, and its convergence, clouds, shares and films as labelled arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.results.plain import plain, plain_record
+from separatrix.results.plain import plain_record
 
 Document = dict[str, Any]
 
@@ -13,91 +13,32 @@ Arrays = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 """Name of an array: its dimensions, nested values and attributes."""
 
 ITS_OWN = (
-    *("inputs", "sizes", "convergence", "clouds", "boundaries", "sobol", "next_test", "notes"),
-    *("allowed_friction", "films", "films_reason", "doubt_reason"),
+    *("inputs", "convergence", "clouds", "drivers", "shares", "undecided", "next_tests", "notes"),
+    *("allowed_friction", "allowed_films"),
 )
 """Keys of the document that `grid` turns into arrays, or that stay in the document alone."""
 
-BOUNDARY = "boundary"
-"""The factor that is no input of the study: what the finite number of runs leaves open."""
-
-INTERRUPTED = "interrupted before this was computed"
-
-
-EVIDENCE = (
-    *("verdict", "growth_rate", "growth_rate_low", "growth_rate_high", "worst_kick"),
-    *("largest_offset", "mean_offset", "orbit_evenness", "drift_rate", "drift_rate_law"),
-    *("largest_contact_force", "largest_land_force", "land_impact_share"),
-    *("whirl_frequency", "whirl_direction", "whirl_ratio"),
-    *("drive_energy", "end_energy", "pocket_power", "energy_imbalance", "runs", "duration"),
-)
-"""What a row takes from the single runs with every input at its central value."""
+NUMBER = {"units": "-"}
+ENDS = ("", "_low", "_high")
 
 
 def sensitivity(record: Any, cage: Document) -> Document:
-    """Return the uncertain ranking, the sources of uncertainty, and the chain of the cage's candidate."""
-    answer = plain_record(record.ranking, "sensitivity")
-    found = record.evidence or {}
-    for one in (*answer["environments"], {"name": "", "materials": answer["overall"]}):
-        for row in one["materials"]:
-            judged = found.get((one["name"], row["name"]))
-            row |= {key: plain(getattr(judged, key, None), key) for key in EVIDENCE}
-            motion = getattr(judged, "cage_motion", None)
-            row["cage_motion"] = None if motion is None else motion.value
-    return answer | _doubt(record.doubt) | cage | {"complete": record.doubt is not None}
-
-
-def _doubt(doubt: Any) -> Document:
-    """Return indices, tests, inverse answers and their sentences; None where an interrupt left them out."""
-    if doubt is None:
-        parts = dict.fromkeys(("sobol", "next_test", "allowed_friction", "films", "films_reason"))
-        return parts | {"doubt_reason": INTERRUPTED}
-    from separatrix import sensitivity as doubts
-
-    following = plain_record(doubt.next_test, "next_test")
-    return {
-        "sobol": plain_record(doubt.sobol, "sobol")
-        | {"sentences": [doubts.sobol_sentence(case) for case in doubt.sobol.cases]},
-        "next_test": following | {"sentences": list(doubts.next_test_sentences(doubt.next_test))},
-        "allowed_friction": [
-            plain_record(one, "allowed_friction") | {"sentence": doubts.allowed_sentence(one)}
-            for one in doubt.allowed_friction
-        ],
-        "films": [_film(one) for one in doubt.films],
-        "films_reason": doubt.films_reason,
-        "doubt_reason": "",
-    }
-
-
-def _film(region: Any) -> Document:
-    """Return where in the plane of film thickness and race friction a case is stable."""
-    from separatrix.sensitivity import region_sentences
-
-    return {
-        "candidate": region.candidate,
-        "environment": region.environment,
-        "probability": region.probability,
-        "film_thickness": plain(region.grid.x.values),
-        "holds_up_to": plain(region.grid.holds_up_to),
-        "race_friction": plain(region.grid.y.values),
-        "probability_stable": plain(region.probability_stable),
-        "rows": plain(region.rows),
-        "sentences": list(region_sentences(region)),
-    }
+    """Return the uncertain study, and the chain and cage of the cage's candidate."""
+    answer = plain_record(record.uncertain, "sensitivity")
+    return answer | {"warnings": answer["notes"]} | cage
 
 
 def grid(document: Mapping[str, Any]) -> Arrays:
     """Return the arrays of the document: name to dimensions, nested values and attributes."""
     environments = [one["name"] for one in document["environments"]]
     materials = sorted(row["name"] for row in document["overall"])
-    places = [*environments, ""]
     return (
         _inputs(document["inputs"])
-        | _convergence(document, places, materials)
+        | _convergence(document["convergence"], [*environments, ""], materials)
         | _clouds(document["clouds"], environments, materials)
-        | _lines(document["boundaries"])
-        | _indices(document, environments, materials)
-        | _films(document, environments, materials)
+        | _drivers(document["drivers"], environments, materials)
+        | _smooth(document["shares"])
+        | _films(document, materials)
     )
 
 
@@ -108,95 +49,97 @@ def _inputs(rows: Sequence[Document]) -> Arrays:
     return found
 
 
-def _convergence(document: Mapping[str, Any], places: Sequence[str], materials: Sequence[str]) -> Arrays:
-    """Return probabilities against the number of samples; the place "" is over all environments."""
-    sizes, dims = document["sizes"], ("place", "material", "size")
-    rows = {(row["environment"], row["name"]): row for row in document["convergence"]}
+def _convergence(rows: Sequence[Document], places: Sequence[str], materials: Sequence[str]) -> Arrays:
+    """Return P(stable) against the number of bearings; the place "" is over all environments."""
+    sizes = sorted({size for row in rows for size in row["size"]})
     found: Arrays = {"size": (("size",), sizes, {}), "place": (("place",), list(places), {})}
-    for name in ("probability_stable", "probability_best"):
-        for end in ("", "_low", "_high"):
-            values = _table(rows, places, materials, name + end, len(sizes))
-            found[f"convergence_{name}{end}"] = (dims, values, {"units": "-"})
+    for key in ("probability_stable", "probability_low", "probability_high"):
+        values = {
+            (row["environment"], row["name"]): dict(zip(row["size"], row[key], strict=True)) for row in rows
+        }
+        table = [[[values.get((p, m), {}).get(n) for n in sizes] for m in materials] for p in places]
+        name = key.replace("probability_", "probability_stable_") if key != "probability_stable" else key
+        found[f"convergence_{name}"] = (("place", "material", "size"), table, NUMBER)
     return found
 
 
 def _clouds(rows: Sequence[Document], environments: Sequence[str], materials: Sequence[str]) -> Arrays:
     known = {(row["environment"], row["name"]): row for row in rows}
     count = max((len(row["friction"]) for row in rows), default=0)
-    dims = ("environment", "material", "sample")
-    return {
-        f"cloud_{name}": (dims, _table(known, environments, materials, name, count), {"units": "-"})
-        for name in ("restitution_factor", "friction")
-    }
-
-
-def _table(
-    rows: Mapping[tuple[str, str], Document],
-    places: Sequence[str],
-    materials: Sequence[str],
-    key: str,
-    count: int,
-) -> Any:
-    """Return lists of numbers by place and material; None where a material was not measured, or alone."""
-    none = [None] * count
-    return [[rows.get((place, name), {}).get(key) or none for name in materials] for place in places]
-
-
-def _lines(boundaries: Sequence[Document]) -> Arrays:
-    """Return the line of each boundary, and which of them a material has."""
-    dims = ("boundary", "restitution_factor")
     found: Arrays = {}
-    for key in boundaries[0]["line"]:
-        values = [one["line"][key] for one in boundaries]
-        if key == "restitution_factor":
-            found[key] = ((key,), values[0], {"units": "-"})
-        else:
-            found[f"line_{key}"] = (dims, values, {"units": "-"})
-    names = sorted(name for one in boundaries for name in one["candidates"])
-    own = [next(i for i, one in enumerate(boundaries) if name in one["candidates"]) for name in names]
-    return found | {"boundary_of": (("material",), own, {})}
-
-
-def _indices(document: Mapping[str, Any], environments: Sequence[str], materials: Sequence[str]) -> Arrays:
-    """Return total Sobol indices by factor; missing where a factor does not enter."""
-    if document["sobol"] is None:
-        return {}
-    cases = {(case["environment"], case["candidate"]): case for case in document["sobol"]["cases"]}
-    names = [row["name"] for row in document["inputs"]] + [BOUNDARY]
-    found: Arrays = {"factor": (("factor",), names, {})}
-    for what in ("margin", "verdict"):
-        for kind in ("first", "total"):
-            for end in ("value", "low", "high"):
-                table = [
-                    [_of_factor(cases.get((place, name)), what, kind, end, names) for name in materials]
-                    for place in environments
-                ]
-                suffix = "" if end == "value" else f"_{end}"
-                dims = ("environment", "material", "factor")
-                found[f"sobol_{what}_{kind}{suffix}"] = (dims, table, {"units": "-"})
+    for key in ("restitution_factor", "friction", "settles"):
+        table = [
+            [_padded(known.get((place, name), {}).get(key, []), count) for name in materials]
+            for place in environments
+        ]
+        found[f"cloud_{key}"] = (("environment", "material", "sample"), table, NUMBER)
     return found
 
 
-def _of_factor(case: Document | None, what: str, kind: str, end: str, names: Sequence[str]) -> list[Any]:
-    known = {} if case is None else {index["factor"]: index[kind][end] for index in case[what]}
-    return [known.get(name) for name in names]
+def _padded(values: Sequence[float], count: int) -> list[float | None]:
+    return [*values, *[None] * (count - len(values))]
 
 
-def _films(document: Mapping[str, Any], environments: Sequence[str], materials: Sequence[str]) -> Arrays:
-    """Return P(STABLE) over film thickness and race friction, and the film of the study."""
-    films, own = document["films"], document["study"]["film"]
-    if not films:
+def _drivers(rows: Sequence[Document], environments: Sequence[str], materials: Sequence[str]) -> Arrays:
+    """Return the shares by input, chance last, and the calibration; nothing where no case has any."""
+    known = {(row["environment"], row["name"]): row for row in rows if row["shares"]}
+    if not known:
         return {}
-    axes = {name: films[0][name] for name in ("race_friction", "film_thickness")}
-    known = {(one["environment"], one["candidate"]): one["probability_stable"] for one in films}
-    none = [[None] * len(axes["film_thickness"])] * len(axes["race_friction"])
-    values = [[known.get((place, name), none) for name in materials] for place in environments]
+    names = list(dict.fromkeys(one["name"] for row in known.values() for one in row["shares"]))
+    chance = next(iter(known.values()))["shares"][-1]["name"]
+    names = [name for name in names if name != chance] + [chance]
+    found: Arrays = {"driver": (("driver",), names, {})}
+    for end in ENDS:
+        by_case = {
+            case: {one["name"]: one[f"share{end}"] for one in row["shares"]} for case, row in known.items()
+        }
+        table = [
+            [[by_case.get((place, m), {}).get(name) for name in names] for m in materials]
+            for place in environments
+        ]
+        found[f"driver_share{end}"] = (("environment", "material", "driver"), table, NUMBER)
+    bins = max(len(row["predicted"]) for row in known.values())
+    for key in ("predicted", "counted"):
+        table = [
+            [_padded(known.get((place, m), {}).get(key, []), bins) for m in materials]
+            for place in environments
+        ]
+        found[f"calibration_{key}"] = (("environment", "material", "bin"), table, NUMBER)
+    return found
+
+
+def _smooth(rows: Sequence[Document]) -> Arrays:
+    """Return the Sobol indices of what the chain computes smoothly."""
+    if not rows:
+        return {}
+    names = [one["name"] for one in rows[0]["total"]]
+    found: Arrays = {
+        "quantity": (("quantity",), [row["quantity"] for row in rows], {}),
+        "chain_input": (("chain_input",), names, {}),
+    }
+    for kind in ("first", "total"):
+        for end in ENDS:
+            values = [{one["name"]: one[f"share{end}"] for one in row[kind]} for row in rows]
+            table = [[each[name] for name in names] for each in values]
+            found[f"sobol_{kind}{end}"] = (("quantity", "chain_input"), table, NUMBER)
+    return found
+
+
+def _films(document: Mapping[str, Any], materials: Sequence[str]) -> Arrays:
+    """Return which films keep each candidate stable, and the film of the study."""
+    films, own = {one["name"]: one for one in document["allowed_films"]}, document["study"]["film"]
+    first = next(iter(films.values()), None)
+    if first is None or not first["film_thickness"]:
+        return {}
+    none = [[None] * len(first["film_thickness"])] * len(first["race_friction"])
+    allowed = [films[name]["allowed"] if name in films else none for name in materials]
+    limits = [films[name]["restitution_factor"] if name in films else None for name in materials]
     return {
-        "race_friction": (("race_friction",), axes["race_friction"], {"units": "-"}),
-        "film_thickness": (("film_thickness",), axes["film_thickness"], {"units": "m"}),
-        "film_probability_stable": (("environment", "material", *axes), values, {"units": "-"}),
-        "film_holds_up_to": ((), films[0]["holds_up_to"], {"units": "m"}),
-        "film_probability": ((), films[0]["probability"], {"units": "-"}),
+        "race_friction": (("race_friction",), first["race_friction"], NUMBER),
+        "film_thickness": (("film_thickness",), first["film_thickness"], {"units": "m"}),
+        "film_allowed": (("material", "race_friction", "film_thickness"), allowed, NUMBER),
+        "film_restitution_factor": (("material",), limits, NUMBER),
+        "film_probability": ((), first["probability"], NUMBER),
         "film_thickness_here": ((), own["thickness"]["value"], {"units": "m"}),
-        "film_race_friction_here": ((), own["race_friction"]["value"], {"units": "-"}),
+        "race_friction_here": ((), own["race_friction"]["value"], NUMBER),
     }

@@ -1,1 +1,0 @@
-"""Uncertain inputs through the chain: sampling, samples of the chain, probabilities."""
