@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields, replace
 from threading import Event
 
-from separatrix.cage import Ensemble, Judgement, RunOutcome, Verdict, judge, wilson_interval
+import numpy as np
+
+from separatrix.cage import Ensemble, Judgement, KickCount, RunOutcome, Verdict, judge, wilson_interval
 from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.ranking.drawn import Case, DrawnBearings
 from separatrix.stability.whole import joined
@@ -26,20 +29,52 @@ def counted(
 ) -> tuple[Judgement, Ensemble]:
     """Run the bearings of a case in blocks, until all have run or the verdict is plain.
 
+    A kick from which plainly more bearings settle than from the worst is not run further; its count stays in
+    the judgement, whose other evidence is that of the kicks that are left.
+
     Raises
     ------
     Stopped
         `stop` was set before the end.
     """
     parts: list[Ensemble] = []
-    total = len(bearings.runs)
+    left_out: list[KickCount] = []
+    total, kicks = len(bearings.runs), list(kicks)
     for first in range(0, total, BLOCK):
         parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), stop))
         found = joined(parts)
         judged = judge(bearings.cage(case), found)
         if is_plain(judged):
             break
-    return judged, found
+        better = [one for one in judged.by_kick if settles_more(one, judged)]
+        if better:
+            left_out += better
+            kept = [i for i, one in enumerate(judged.by_kick) if one not in better]
+            kicks = [kicks[i] for i in kept]
+            parts = [of_kicks(found, kept)]
+    found = joined(parts)
+    judged = judge(bearings.cage(case), found)
+    counts = sorted((*left_out, *judged.by_kick), key=lambda one: one.kick)
+    return replace(judged, by_kick=tuple(counts)), found
+
+
+def settles_more(count: KickCount, judged: Judgement) -> bool:
+    """Whether plainly more bearings settle from a kick than from the worst, most do, and in their pockets."""
+    worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
+    low = wilson_interval(count.settles, count.runs, NORMAL)[0]
+    return 2 * count.kept_by_land <= count.runs and low > max(
+        FEW, wilson_interval(worst.settles, worst.runs, NORMAL)[1]
+    )
+
+
+def of_kicks(found: Ensemble, places: Sequence[int]) -> Ensemble:
+    """Return the runs from some of the kicks."""
+    rows = list(places)
+    arrays = {name: value[rows] for name in FIELDS if np.ndim(value := getattr(found, name)) > 0}
+    return replace(found, **arrays)
+
+
+FIELDS = tuple(one.name for one in fields(Ensemble))
 
 
 def is_plain(judged: Judgement) -> bool:

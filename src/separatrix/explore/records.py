@@ -48,7 +48,7 @@ class UncertainMaterial:
         Share of the bearings whose cage settles, from the worst kick, and its 95 % interval [-].
     worst_kick, by_kick, runs, cage_motion, largest_offset, mean_offset, drift_rate, largest_contact_force
     largest_land_force, whirl_frequency, rubbing_power, energy_imbalance, duration, longest_run
-        Evidence, as in `Judgement`; `runs` are those from each kick.
+        Evidence, as in `Judgement`; `runs` are those from the worst kick.
     reason : str
         A sentence with the numbers.
     """

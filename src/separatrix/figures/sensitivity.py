@@ -1,7 +1,8 @@
-"""Clouds of the candidates about the stability curve (the paper's Figs 9-12), probabilities, convergence."""
+"""Drawn bearings of every candidate, their probabilities, what decides them, and the films they allow."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,321 +11,275 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withTickedStroke
+from matplotlib.ticker import NullLocator
 
-from separatrix.figures.ranking import file_name, untested
+from separatrix.figures.ranking import file_name, own_environment, untested
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
 from separatrix.figures.style import (
     BLACK,
-    BLUE,
     CYCLE,
     GREY,
     MARK,
     MARKERS,
-    ORANGE,
     PAGE,
-    VERMILION,
+    VERDICT_COLOURS,
+    VERDICT_MARKERS,
     canvas,
     label_lines,
     legend_below,
 )
 from separatrix.units import Array
 
-VERDICTS = (("stable", BLUE), ("undecided", ORANGE), ("unstable", VERMILION))
-ENDS_95 = (0.025, 0.975)
 OVERALL = "over all environments"
-
-
-def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield a figure for each environment: every candidate's cloud about the curve with its band."""
-    top = 1.08 * float(np.nanmax(data["cloud_friction"].values, initial=0.1))
-    for i, name in enumerate(data["environment"].values):
-        yield f"sensitivity-{i + 1}-{file_name(str(name))}", environment(data.isel(environment=i), top)
+OWN = "its own "
+FRICTION = "pocket friction"
+LEAST, MOST = 0.02, 7
+"""Smallest share of an input that is drawn, and the most inputs and cases."""
 
 
 def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures of the environments, of the sources of uncertainty, of the film if there is one."""
+    """Yield the figures of the environments, of what decides, and of the film if there is one."""
     yield from environments(data)
-    if "sobol_margin_total" in data:
+    if "driver_share" in data and np.isfinite(_floats(data, "driver_share")).any():
         yield "sensitivity-drivers", drivers(data)
-    if "film_probability_stable" in data:
+    if "film_allowed" in data:
         yield "sensitivity-film", film(data)
 
 
-def is_friction(name: str) -> bool:
-    """Whether an input is the friction of a candidate."""
-    return name.startswith("ranking.") and ".material." not in name
+def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield a figure for each environment: every candidate's bearings, on the same axes."""
+    top = 1.08 * float(np.nanmax(_floats(data, "cloud_friction"), initial=0.01))
+    eta = _floats(data, "cloud_restitution_factor")
+    eta = eta[np.isfinite(eta)] if np.isfinite(eta).any() else np.array([0.0, 1.0])
+    space = max(0.05 * float(np.ptp(eta)), 0.02)
+    limits = max(float(eta.min()) - space, 0.0), min(float(eta.max()) + space, 1.0)
+    for i, name in enumerate(data["environment"].values.astype(str)):
+        figure, axes = canvas(PAGE, 4.3)
+        axes.set(xlim=limits, ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
+        _bearings(axes, data.isel(environment=i))
+        legend_below(figure, columns=3)
+        yield f"sensitivity-{i + 1}-{file_name(name)}", figure
 
 
-def environment(data: xr.Dataset, top: float) -> Figure:
-    """Stability curve with its scatter, and the samples of the candidates in one environment."""
-    figure, axes = canvas(PAGE, 4.3)
-    axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
-    for kind in np.unique(data["boundary_of"].values).astype(int):
-        _line(axes, data.isel(boundary=kind), first=kind == 0)
-    labels = []
-    for i in _rising(data):
-        labels += _cloud(axes, data.isel(material=i), CYCLE[i % len(CYCLE)], MARKERS[i % len(MARKERS)])
-    label_lines(axes, [(1.0, y, text, colour) for y, text, colour in labels], gap=0.04)
-    _missing(axes, data)
+def _floats(data: xr.Dataset, name: str, *dims: str) -> Array:
+    """Return numbers with NaN where they are absent; the dimensions in this order if given."""
+    return data[name].transpose(*dims).values.astype(float)
+
+
+def _headed(axes: Axes, title: str, lines: list[str]) -> None:
+    """Write a title, and below it further lines in grey, all above the axes."""
+    rows = [row for line in lines for row in textwrap.wrap(line, 100)]
+    axes.set_title(_capital(title), pad=6 + 9 * len(rows))
+    beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), fontsize=6.5, color=GREY, **beside)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _bearings(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the bearings of the candidates in one environment, and write the names at the right."""
+    central, right, labels = _floats(data, "material_friction"), axes.get_xlim()[1], []
+    for i in np.flatnonzero(np.isfinite(central)):
+        at, colour = data.isel(material=i), CYCLE[i % len(CYCLE)]
+        eta, friction, settles = (
+            _floats(at, f"cloud_{name}") for name in ("restitution_factor", "friction", "settles")
+        )
+        look: Any = {"color": colour, "ls": ""}
+        axes.plot(eta[settles == 1], friction[settles == 1], ".", ms=3.0, mew=0, alpha=0.6, **look)
+        axes.plot(eta[settles == 0], friction[settles == 0], "x", ms=2.8, mew=0.6, alpha=0.8, **look)
+        known = np.isfinite(eta) & np.isfinite(friction)
+        middle = float(np.median(friction[known])) if known.any() else float(central[i])
+        if known.any():
+            axes.plot([np.median(eta[known]), right], [middle] * 2, color=colour, lw=0.3, alpha=0.6, zorder=1)
+        mark = MARK if str(at["material_extrapolation"].values) else ""
+        share = float(_floats(at, "material_probability_stable"))
+        chance = f"  P(stable) {share:.2f}" if np.isfinite(share) else ""
+        labels.append((right, middle, f"{at['material'].values}  {middle:.3f}{mark}{chance}", colour))
+    label_lines(axes, labels, gap=0.04)
+    beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    head = "candidate  median friction"
+    axes.annotate(head, (1, 1), xytext=(12, 5), fontsize=6.5, color=GREY, **beside)
+    absent = ", ".join(data["material"].values.astype(str)[~np.isfinite(central)])
+    title = f"{data['environment'].values}: drawn bearings"
+    _headed(axes, title, [f"not measured: {absent}"] if absent else [])
+    axes.plot([], [], ".", color=GREY, ms=3.0, mew=0, label="a bearing whose cage settles")
+    axes.plot([], [], "x", color=GREY, ms=2.8, mew=0.6, label="a bearing whose cage does not settle")
     untested(axes, data["material_extrapolation"])
-    name = str(data["environment"].values)
-    axes.set_title(f"{name[:1].upper() + name[1:]}: predicted scatter of a new cage")
-    legend_below(figure)
-    return figure
-
-
-def _line(axes: Axes, data: xr.Dataset, *, first: bool) -> None:
-    """Draw the critical friction with its interval, and the stretch in which nothing is decided."""
-    eta = data["restitution_factor"].values
-    low, high = data["line_stable_up_to"].values, data["line_unstable_above"].values
-    label = "undecided: neither verdict is reached"
-    axes.fill_between(eta, low, high, color=GREY, alpha=0.15, lw=0, label=label if first else None)
-    ends = data["line_critical_friction_low"].values, data["line_critical_friction_high"].values
-    axes.fill_between(eta, *ends, color=BLACK, alpha=0.3, lw=0, label="its 95 % interval" if first else None)
-    label = "half of the runs whirl from the reference kick"
-    axes.plot(eta, data["line_critical_friction"].values, color=BLACK, lw=1.0, label=label if first else None)
-
-
-def _rising(data: xr.Dataset) -> list[int]:
-    """Places of the measured candidates, rising in friction."""
-    friction = data["material_friction"].values.astype(float)
-    return [int(i) for i in np.argsort(friction, kind="stable") if np.isfinite(friction[i])]
-
-
-def _cloud(axes: Axes, data: xr.Dataset, colour: str, marker: str) -> list[tuple[float, str, str]]:
-    """Draw one candidate's samples with bars that hold 95 % of them; return its label."""
-    eta, friction = (
-        data[f"cloud_{name}"].values.astype(float) for name in ("restitution_factor", "friction")
-    )
-    axes.plot(eta, friction, ".", color=colour, ms=1.6, alpha=0.35, ls="", mew=0, zorder=2)
-    middle = float(np.median(eta)), float(np.median(friction))
-    bars = [
-        np.abs(np.quantile(x, ENDS_95) - m)[:, None] for x, m in zip((eta, friction), middle, strict=True)
-    ]
-    look: Any = {"marker": marker, "ms": 4.0, "mfc": "white", "mec": colour, "ecolor": colour, "ls": ""}
-    axes.errorbar(*middle, xerr=bars[0], yerr=bars[1], elinewidth=1.2, zorder=4, **look)
-    axes.plot([middle[0], 1.0], [middle[1]] * 2, color=colour, lw=0.3, alpha=0.5, zorder=1)
-    share = float(data["material_probability_stable"])
-    mark = MARK if str(data["material_extrapolation"].values) else ""
-    text = f"{data['material'].values}  {middle[1]:.3f}{mark}  P(stable) {share:.2f}"
-    return [(middle[1], text, colour)]
-
-
-def _missing(axes: Axes, data: xr.Dataset) -> None:
-    """Name the candidates that were not measured."""
-    friction = data["material_friction"].values.astype(float)
-    names = [str(name) for name in data["material"].values[~np.isfinite(friction)]]
-    if names:
-        text = f"not measured: {', '.join(names)}"
-        axes.text(0.99, 0.985, text, transform=axes.transAxes, ha="right", va="top", fontsize=6.5, color=GREY)
 
 
 def probabilities(data: xr.Dataset) -> Figure:
-    """Probabilities of each verdict and of being best, with the intervals of the first and the last."""
-    places = [*(str(name) for name in data["environment"].values), OVERALL]
-    count = data.sizes["material"]
-    shape: Any = {"nrows": len(places), "ncols": 2, "sharex": "col", "squeeze": False}
-    shape["gridspec_kw"] = {"width_ratios": (2.0, 1.0)}
-    figure, axes = canvas(PAGE, 0.6 + len(places) * (0.6 + 0.16 * count), **shape)
-    for row, name in enumerate(places):
-        part = _part(data, row)
-        _verdicts(axes[row, 0], part)
-        _best(axes[row, 1], part)
-        axes[row, 0].set_title(name[:1].upper() + name[1:])
-    axes[-1, 0].set_xlabel("probability of the verdict [-]")
-    axes[-1, 1].set_xlabel("probability of being best [-]")
-    legend_below(figure, [axes[0, 0], axes[0, 1]], columns=3)
-    return figure
-
-
-COLUMNS = (
-    *("friction", "probability_stable", "probability_stable_low", "probability_stable_high"),
-    *("probability_undecided", "probability_unstable", "probability_best", "probability_best_low"),
-    *("probability_best_high", "tie_group"),
-)
-
-
-def _part(data: xr.Dataset, row: int) -> dict[str, Array]:
-    """Columns of one environment, or over all of them, best group at the top."""
-    inside = row < data.sizes["environment"]
-    at = data.isel(environment=row) if inside else data
-    prefix = "material" if inside else "overall"
-    found = {name: at[f"{prefix}_{name}"].values.astype(float) for name in COLUMNS}
-    group = np.where(np.isfinite(found["tie_group"]), found["tie_group"], np.inf)
-    order = np.lexsort((found["friction"], group))[::-1]
-    return {name: values[order] for name, values in found.items()} | {
-        "name": data["material"].values.astype(str)[order]
-    }
-
-
-def _verdicts(axes: Axes, part: dict[str, Array]) -> None:
-    """Draw the shares of the verdicts beside each other, and the interval of the first."""
-    places, left = np.arange(len(part["name"])), np.zeros(len(part["name"]))
-    for name, colour in VERDICTS:
-        share = np.nan_to_num(part[f"probability_{name}"])
-        axes.barh(places, share, left=left, color=colour, alpha=0.75, height=0.65, label=name.upper())
-        left = left + share
-    value, low, high = (part[f"probability_stable{end}"] for end in ("", "_low", "_high"))
-    label = "95 % interval of STABLE: samples and runs"
-    axes.errorbar(value, places, xerr=[value - low, high - value], fmt="none", ecolor=BLACK, elinewidth=1.0,
-                  capsize=2.0, label=label)  # fmt: skip
-    names = [
-        name if np.isfinite(friction) else f"{name}: not measured"
-        for name, friction in zip(part["name"], part["friction"], strict=True)
-    ]
-    axes.set_yticks(places, names, fontsize=6.5)
-    axes.set_xlim(0, 1)
-    axes.tick_params(axis="y", length=0)
-
-
-def _best(axes: Axes, part: dict[str, Array]) -> None:
-    """Draw the probabilities of being best with their intervals; the leaders' tie group is filled."""
-    places = np.arange(len(part["name"]))
-    value, low, high = (np.nan_to_num(part[f"probability_best{end}"]) for end in ("", "_low", "_high"))
-    leading = part["tie_group"] == 1
-    axes.barh(places[leading], value[leading], color=BLACK, alpha=0.55, height=0.65, label="tied for first")
-    axes.barh(places[~leading], value[~leading], color=GREY, alpha=0.3, height=0.65, label="others")
-    axes.errorbar(value, places, xerr=[value - low, high - value], fmt="none", ecolor=BLACK, elinewidth=1.0,
-                  capsize=2.0)  # fmt: skip
-    axes.set_xlim(0, 1)
-    axes.set_yticks([])
-    for place in places[leading & ~np.isfinite(part["probability_best"])]:
-        axes.text(0.02, place, "none: no other measured", va="center", fontsize=6.5, color=GREY)
-
-
-def convergence(data: xr.Dataset) -> Figure:
-    """Probabilities of STABLE, and of being best, against the number of samples, with their intervals."""
-    figure, panels = canvas(PAGE, 3.4, ncols=2, sharey=True)
-    for axes, name, title in (
-        (panels[0], "probability_stable", "a  P(stable)"),
-        (panels[1], "probability_best", "b  P(best)"),
-    ):
-        _converging(axes, data, name)
-        axes.set(xscale="log", ylim=(-0.02, 1.02), xlabel="samples [-]", ylabel="probability [-]")
-        axes.set_xticks(data["size"].values, [str(n) for n in data["size"].values], fontsize=6.5)
-        axes.minorticks_off()
-        axes.set_title(f"{title}, least decided of each environment")
-    legend_below(figure, [panels[0], panels[1]], columns=2)
-    return figure
-
-
-def _converging(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Draw the candidate whose probability lies nearest to one half, for each environment and overall."""
-    sizes = data["size"].values
-    for row, place in enumerate(data["place"].values.astype(str)):
-        at = data.isel(place=row)
-        last = at[f"convergence_{name}"].values[:, -1].astype(float)
-        if not np.isfinite(last).any():
-            continue
-        chosen = int(np.nanargmin(np.abs(last - 0.5)))
-        value, low, high = (
-            at[f"convergence_{name}{end}"].values[chosen].astype(float) for end in ("", "_low", "_high")
-        )
-        colour, shift = CYCLE[row % len(CYCLE)], 1.0 + 0.05 * (row - 2)
-        label = f"{name[12:]}: {data['material'].values[chosen]}, {place or OVERALL}"
-        axes.errorbar(sizes * shift, value, yerr=[np.maximum(value - low, 0), np.maximum(high - value, 0)],
-                      color=colour, marker=MARKERS[row % len(MARKERS)], ms=3.0, lw=0.8, elinewidth=0.8,
-                      label=label)  # fmt: skip
-
-
-def drivers(data: xr.Dataset) -> Figure:
-    """Total Sobol indices of the margin, for the inputs that matter, in every environment."""
-    total = data["sobol_margin_total"].transpose("environment", "material", "factor").values.astype(float)
-    own = _own_friction(data, total)
-    chosen = [i for i in np.argsort(-np.nan_to_num(own).max(axis=(0, 1)), kind="stable")
-              if np.nan_to_num(own[:, :, i]).max() >= LEAST][:MOST]  # fmt: skip
-    factors = [*data["factor"].values, FRICTIONS]
-    names = ["the boundary itself (runs)" if factors[i] == "boundary" else str(factors[i]) for i in chosen]
-    rows = [(e, m) for e in range(own.shape[0]) for m in range(own.shape[1]) if np.isfinite(own[e, m]).any()]
-    figure, axes = canvas(PAGE, 1.8 + 0.16 * len(rows))
-    left = np.zeros(len(rows))
-    for k, (i, name) in enumerate(zip(chosen, names, strict=True)):
-        share = np.array([np.nan_to_num(own[e, m, i]) for e, m in rows])
-        axes.barh(range(len(rows)), share, left=left, color=CYCLE[k % len(CYCLE)], alpha=0.75, label=name)
-        left = left + share
-    labels = [f"{data['material'].values[m]}, {data['environment'].values[e]}" for e, m in rows]
-    axes.set_yticks(range(len(rows)), labels, fontsize=6.0)
-    axes.invert_yaxis()
-    axes.set_xlabel("total Sobol index of the margin [-]; beyond 1 the inputs act together")
-    axes.set_title("Main sources of uncertainty in the margin")
+    """Probability that a bearing's cage settles, of every candidate in every environment and overall."""
+    places = [*data["environment"].values.astype(str), OVERALL]
+    rows = -(-len(places) // 2)
+    shape: Any = {"nrows": rows, "ncols": 2, "sharex": True, "squeeze": False}
+    figure, panels = canvas(PAGE, 0.9 + rows * (0.4 + 0.17 * data.sizes["material"]), **shape)
+    for row, axes in enumerate(panels.flat):
+        axes.set_visible(row < len(places))
+        if row < len(places):
+            inside = row < data.sizes["environment"]
+            part = data.isel(environment=row) if inside else data
+            _chances(axes, part, "material" if inside else "overall")
+            axes.set_title(_capital(places[row]))
+        if row >= len(places) - 2:
+            axes.set_xlabel("probability that a bearing's cage settles [-]")
+            axes.tick_params(labelbottom=True)
+    for verdict, marker in VERDICT_MARKERS.items():
+        label = f"{verdict}, with the 95 % interval"
+        panels[0, 0].plot([], [], marker, color=VERDICT_COLOURS[verdict], ms=4.5, label=label)
+    panels[0, 0].plot([], [], color=GREY, lw=0.6, ls=":", label="probabilities of 0.5 and 0.9")
+    untested(panels[0, 0], xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any"))
     legend_below(figure, columns=3)
     return figure
 
 
-LEAST, MOST = 0.02, 7
-FRICTIONS = "its own pocket friction"
-
-
-def _own_friction(data: xr.Dataset, total: Array) -> Array:
-    """Indices with one more input at the end: the frictions, of which each case has but its own."""
-    frictions = np.array([is_friction(str(name)) for name in data["factor"].values])
-    sums = np.nansum(np.where(frictions, total, np.nan), axis=2, keepdims=True)
-    kept = np.where(frictions, np.nan, total)
-    return np.concatenate(
-        [kept, np.where(np.isfinite(total).any(axis=2, keepdims=True), sums, np.nan)], axis=2
+def _chances(axes: Axes, data: xr.Dataset, prefix: str) -> None:
+    """Draw one environment, or all of them: the best at the top, those not measured at the bottom."""
+    value, low, high = (
+        _floats(data, f"{prefix}_probability_{end}", "material") for end in ("stable", "low", "high")
     )
+    names = []
+    for place, i in enumerate(np.argsort(np.where(np.isfinite(value), value, -1.0), kind="stable")):
+        verdict = str(data[f"{prefix}_verdict"].values[i])
+        look: Any = {"color": VERDICT_COLOURS.get(verdict, GREY), "marker": VERDICT_MARKERS.get(verdict, ".")}
+        ends = [[max(value[i] - low[i], 0.0)], [max(high[i] - value[i], 0.0)]]
+        axes.errorbar(value[i], place, xerr=ends, ms=4.5, elinewidth=1.2, capsize=1.5, **look)
+        mark = MARK if str(data[f"{prefix}_extrapolation"].values[i]) else ""
+        absent = "" if np.isfinite(value[i]) else ": not measured"
+        names.append(f"{data['material'].values[i]}{mark}{absent}")
+    for line in (0.5, 0.9):
+        axes.axvline(line, color=GREY, lw=0.6, ls=":", zorder=0)
+    axes.set_yticks(range(len(names)), names, fontsize=6.5)
+    axes.set(xlim=(-0.02, 1.02), ylim=(-0.6, len(names) - 0.4))
+    axes.tick_params(axis="y", length=0)
 
 
-THICKNESS_LABEL = "film thickness [um]; bare races: as at the left end"
-RACE_FRICTION_LABEL = "friction of ball on race [-]"
-
-
-def film(data: xr.Dataset) -> Figure:
-    """Which film keeps each candidate stable: lines of P(STABLE) in the plane of thickness and friction."""
-    places = [str(name) for name in data["environment"].values]
-    rows, columns = -(-len(places) // 2), min(len(places), 2)
-    shape: Any = {"nrows": rows, "ncols": columns, "sharex": True, "sharey": True, "squeeze": False}
-    figure, panels = canvas(PAGE, 1.0 + 2.5 * rows, **shape)
-    for i, axes in enumerate(panels.flat):
-        axes.set_visible(i < len(places))
-        if i < len(places):
-            _film_panel(axes, data.isel(environment=i))
-            axes.set_title(places[i][:1].upper() + places[i][1:])
-    for axes in panels[-1]:
-        axes.set_xlabel(THICKNESS_LABEL)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(RACE_FRICTION_LABEL)
+def convergence(data: xr.Dataset) -> Figure:
+    """P(stable) of the least decided candidate of each place against the number of bearings."""
+    figure, axes = canvas(PAGE, 3.4)
+    size, drawn = data["size"].values.astype(float), []
+    places = data["place"].values.astype(str)
+    for row, place in enumerate(places):
+        value, low, high = (
+            _floats(data.isel(place=row), f"convergence_probability_{end}", "material", "size")
+            for end in ("stable", "low", "high")
+        )
+        known = np.isfinite(value)
+        last = [one[there][-1] if there.any() else np.nan for one, there in zip(value, known, strict=True)]
+        if not known.any():
+            continue
+        i = int(np.nanargmin(np.abs(np.array(last) - 0.5)))
+        there, shift = known[i], 1.0 + 0.03 * (row - (len(places) - 1) / 2)
+        middle = value[i, there]
+        ends = np.maximum([middle - low[i, there], high[i, there] - middle], 0.0)
+        label = f"{data['material'].values[i]}, {place or OVERALL}"
+        look: Any = {"color": CYCLE[row % len(CYCLE)], "marker": MARKERS[row % len(MARKERS)], "label": label}
+        axes.errorbar(size[there] * shift, middle, yerr=ends, ms=3.5, lw=0.8, elinewidth=0.8, **look)
+        drawn += [*size[there]]
+    ticks: list[float] = []
+    for one in sorted(set(drawn)):
+        ticks += [one] if not ticks or one > 1.15 * ticks[-1] else []
+    axes.set(xscale="log", ylim=(-0.02, 1.02), xlabel="number of bearings [-]", ylabel="P(stable) [-]")
+    axes.set_xticks(ticks, [f"{one:g}" for one in ticks])
+    axes.xaxis.set_minor_locator(NullLocator())
+    title = "P(stable) of the least decided candidate of each environment, with its 95 % interval"
+    axes.set_title(title)
     legend_below(figure)
     return figure
 
 
-def _film_panel(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the line of each candidate, and say of which there is none; mark the film of the study."""
-    thickness, friction = 1e6 * data["film_thickness"].values[1:], data["race_friction"].values
-    level, limit = float(data["film_probability"]), 1e6 * float(data["film_holds_up_to"])
+def drivers(data: xr.Dataset) -> Figure:
+    """Show which inputs decide whether a cage settles, and whether the fit behind it predicts the counts."""
+    share = _floats(data, "driver_share", "environment", "material", "driver")
+    stable = _floats(data, "material_probability_stable", "environment", "material")
+    rows = sorted(np.argwhere(np.isfinite(share).any(axis=2)).tolist(), key=lambda c: abs(stable[*c] - 0.5))
+    cases = sorted(rows[:MOST])
+    groups = _groups(data, cases)
+    height = 1.7 + len(groups) * (0.1 + 0.06 * len(cases))
+    figure, (left, right) = canvas(PAGE, max(height, 3.4), ncols=2, width_ratios=(1.35, 1.0))
+    for k, (e, m) in enumerate(cases):
+        at = data.isel(environment=e, material=m)
+        name = f"{at['material'].values}, {at['environment'].values}"
+        look: Any = {"color": CYCLE[k % len(CYCLE)], "marker": MARKERS[k % len(MARKERS)], "ms": 3.5}
+        ends = np.array([_largest(at, columns) for columns in groups.values()])
+        value, errors = ends[:, 0], np.maximum([ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]], 0.0)
+        y = np.arange(len(groups)) + 0.7 * ((k + 0.5) / len(cases) - 0.5)
+        left.errorbar(value, y, xerr=errors, ls="", elinewidth=0.8, label=name, **look)
+        counts = (_floats(at, f"calibration_{kind}") for kind in ("predicted", "counted"))
+        right.plot(*counts, lw=0.8, **look)
+    for place in range(0, len(groups), 2):
+        left.axhspan(place - 0.5, place + 0.5, color=GREY, alpha=0.08, lw=0)
+    left.set_yticks(range(len(groups)), [textwrap.fill(name, 26) for name in groups], fontsize=6.5)
+    left.set(ylim=(len(groups) - 0.5, -0.5), xlabel="share of the variance of the logit\nof P(settles) [-]")
+    left.set_xlim(min(left.get_xlim()[0], -0.02), 1.02)
+    left.tick_params(axis="y", length=0)
+    left.set_title("a  Inputs that matter most, 95 % intervals")
+    right.plot([0, 1], [0, 1], color=BLACK, lw=0.6, ls="--", label="counted as predicted")
+    right.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02), aspect="equal", anchor="N")
+    right.set(xlabel="predicted P(settles) [-]", ylabel="counted share that settles [-]")
+    right.set_title("b  Bearings left out of the fit")
+    legend_below(figure)
+    return figure
+
+
+def _groups(data: xr.Dataset, cases: list[list[int]]) -> dict[str, list[int]]:
+    """Return the inputs to draw, each with its columns: a candidate's own are one; chance comes last."""
+    share = _floats(data, "driver_share", "environment", "material", "driver")
+    found: dict[str, list[int]] = {}
+    for column, key in enumerate(data["driver"].values.astype(str)):
+        part = key.partition(".material.")[2]
+        own = key.startswith("ranking.")
+        found.setdefault(OWN + (part or FRICTION) if own else key, []).append(column)
+    largest = {
+        name: max(np.nan_to_num(share[e, m, columns]).max() for e, m in cases)
+        for name, columns in found.items()
+    }
+    chance = list(found)[-1]
+    chosen = sorted((name for name in found if name != chance), key=lambda name: -largest[name])
+    return {name: found[name] for name in [*[n for n in chosen if largest[n] >= LEAST][:MOST], chance]}
+
+
+def _largest(data: xr.Dataset, columns: list[int]) -> list[float]:
+    """Return the largest share among these columns of one case, and its interval; NaN without one."""
+    share = _floats(data, "driver_share")[columns]
+    chosen = columns[int(np.argmax(np.where(np.isfinite(share), share, -np.inf)))]
+    return [float(_floats(data, f"driver_share{end}")[chosen]) for end in ("", "_low", "_high")]
+
+
+def film(data: xr.Dataset) -> Figure:
+    """Which film keeps each candidate stable: lines in the plane of thickness and race friction."""
+    figure, axes = canvas(PAGE, 4.3)
+    thickness, friction = 1e6 * _floats(data, "film_thickness")[1:], _floats(data, "race_friction")
     axes.set(xscale="log", yscale="log", xlim=thickness[[0, -1]], ylim=friction[[0, -1]])
-    axes.set_xticks(decades := 10.0 ** np.arange(-3, 2), [f"{x:g}" for x in decades])
-    axes.set_yticks(friction, [f"{f:g}" for f in friction])
-    axes.minorticks_off()
-    without: dict[str, list[str]] = {"any film": [], "no film": []}
-    for i in _rising(data):
-        share = data["film_probability_stable"].isel(material=i).values[:, 1:].astype(float)
-        name, colour = str(data["material"].values[i]), CYCLE[i % len(CYCLE)]
-        if share.min() >= level or share.max() < level:
-            without["any film" if share.min() >= level else "no film"].append(name)
-            continue
-        lines = axes.contour(thickness, friction, share, levels=[level], colors=[colour], linewidths=1.2)
+    axes.set(xlabel="film thickness [um]", ylabel="friction of ball on race [-]")
+    steps = np.outer(10.0 ** np.arange(-4, 3), [1, 2, 5]).ravel()
+    for axis, ends in ((axes.xaxis, thickness), (axes.yaxis, friction)):
+        ticks = steps[(steps >= 0.999 * ends[0]) & (steps <= 1.001 * ends[-1])]
+        axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
+        axis.set_minor_locator(NullLocator())
+    allowed = _floats(data, "film_allowed", "material", "race_friction", "film_thickness")[:, :, 1:]
+    names = data["material"].values.astype(str)
+    known = [i for i in range(names.size) if np.isfinite(allowed[i]).all()]
+    lined = [i for i in known if np.ptp(allowed[i]) > 0]
+    for i, level in zip(lined, np.linspace(0.4, 0.6, len(lined)), strict=True):  # else equal lines hide
+        look: Any = {"levels": [level], "colors": [CYCLE[i % len(CYCLE)]], "linewidths": 1.2}
+        lines = axes.contour(thickness, friction, allowed[i], **look)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
-        axes.plot([], [], color=colour, label=name)
-    ticks: Any = {"color": GREY, "lw": 1.2, "path_effects": [withTickedStroke(angle=90, length=0.5)]}
-    axes.plot(
-        [], [], label=f"ticks: the side that is stable with a probability of {level:.2f} or more", **ticks
+        axes.plot([], [], color=CYCLE[i % len(CYCLE)], label=names[i])
+    chance = f"P(stable) of {float(data['film_probability']):.2f} or more"
+    ticked: Any = {"color": GREY, "lw": 1.2, "path_effects": [withTickedStroke(angle=90, length=0.5)]}
+    axes.plot([], [], label=f"ticks: the side of the films with {chance}", **ticked)
+    here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
+    axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study", ls="")
+    said = (("every film here is thin enough", 1), ("no film here is enough", 0))
+    own = own_environment(data)
+    where = "" if own is None else f" in {data['environment'].values[own]}"
+    parts = {head: [names[i] for i in known if i not in lined and allowed[i, 0, 0] == v] for head, v in said}
+    _headed(
+        axes,
+        f"Films that keep the cage stable{where}",
+        [f"{a}: {', '.join(b)}" for a, b in parts.items() if b],
     )
-    if limit < thickness[-1]:
-        label = "thicker than the model of a film holds for"
-        axes.axvspan(limit, thickness[-1], color=GREY, alpha=0.12, lw=0, label=label)
-    _own_film(axes, data)
-    said = [f"{what}: {', '.join(names)}" for what, names in without.items() if names]
-    axes.text(0.02, 0.02, "\n".join(said), transform=axes.transAxes, fontsize=6.0, color=GREY)
-
-
-def _own_film(axes: Axes, data: xr.Dataset) -> None:
-    """Mark the film of the study, with two standard deviations where it is uncertain."""
-    names = [str(name) for name in data["input"].values]
-    bars = [
-        2.0 * scale * float(data["input_standard_deviation"][names.index(key)]) if key in names else 0.0
-        for key, scale in (("film.thickness", 1e6), ("film.race_friction", 1.0))
-    ]
-    x, y = 1e6 * float(data["film_thickness_here"]), float(data["film_race_friction_here"])
-    axes.errorbar(x, y, xerr=bars[0], yerr=bars[1], fmt="o", ms=3.5, color=BLACK, elinewidth=1.0,
-                  label="film of the study, with two standard deviations")  # fmt: skip
+    legend_below(figure)
+    return figure

@@ -14,7 +14,6 @@ Document = Mapping[str, Any]
 HEADERS = (
     "material",
     "friction of\na new cage",
-    "eta\n(5-95 %)",
     "P(stable)\n(95 %)",
     "verdict",
     "motion",
@@ -26,10 +25,9 @@ HEADERS = (
 MARK, GUESS = "*", "?"
 
 LEGEND = paragraph(
-    "friction of a new cage: mean, and standard deviation in per cent of it. eta: restitution factor of the "
-    "drawn bearings, median. P(stable): share of the bearings whose cage settles, from the worst kick. "
-    "motion: what most of them end in. offset, forces: largest in any run. bearings: run once from each kick; fewer "
-    "where the verdict was plain before."
+    "friction of a new cage: mean, and standard deviation in per cent of it. P(stable): share of the "
+    "bearings whose cage settles, from the worst kick. motion: what most of them end in. offset, forces: "
+    "largest in any run. bearings: run from the worst kick; fewer where the verdict was plain before."
 )
 
 
@@ -54,7 +52,17 @@ def sensitivity(document: Document) -> list[str]:
 
 
 def _environment(name: str, rows: Sequence[Document]) -> str:
-    return section(name[:1].upper() + name[1:], table(HEADERS, [_row(row) for row in rows], left=1))
+    etas: dict[str, list[str]] = {}
+    for row in rows:
+        if row["restitution_factor"] is not None:
+            ends = (number(row[f"restitution_factor{end}"], 2) for end in ("", "_low", "_high"))
+            etas.setdefault("{} ({} to {})".format(*ends), []).append(row["name"])
+    alike = len(etas) == 1
+    each = "; ".join(eta if alike else f"{eta} {', '.join(names)}" for eta, names in etas.items())
+    words = paragraph(f"Restitution factor of the drawn bearings, median (nine in ten): {each}.")
+    return section(
+        name[:1].upper() + name[1:], table(HEADERS, [_row(row) for row in rows], left=1), "", words
+    )
 
 
 def _row(row: Document) -> list[str]:
@@ -62,12 +70,7 @@ def _row(row: Document) -> list[str]:
         return [row["name"], "not measured", *[ABSENT] * (len(HEADERS) - 2)]
     marks = (GUESS if row["friction_scatter_assumed"] else "") + (MARK if row["extrapolation"] else "")
     share = row["friction_deviation"] / row["friction"] if row["friction"] else 0.0
-    low, high = (number(row[f"restitution_factor_{end}"], 2) for end in ("low", "high"))
-    known = [
-        row["name"],
-        f"{number(row['friction'])} ({100.0 * share:.0f} %){marks}",
-        f"{number(row['restitution_factor'], 2)} ({low}-{high})",
-    ]
+    known = [row["name"], f"{number(row['friction'])} ({100.0 * share:.0f} %){marks}"]
     if row["verdict"] is None:
         return [*known, "not finished", *[ABSENT] * (len(HEADERS) - len(known) - 1)]
     ends = "-".join(number(row[f"probability_{end}"], 2) for end in ("low", "high"))
@@ -205,8 +208,8 @@ def _friction(document: Document) -> Iterator[str]:
             continue
         ends = f"{number(one['friction_low'])} to {number(one['friction_high'])}"
         yield (
-            f"At most {number(one['friction'])} ({ends}), if it scatters by {100.0 * one['scatter']:.3g} % of "
-            f"itself, to be stable {wanted}."
+            f"At most {number(one['friction'])} ({ends}), if it scatters by {100.0 * one['scatter']:.3g} % "
+            f"of itself, to be stable {wanted}."
         )
 
 
@@ -224,7 +227,8 @@ def _films(document: Document) -> Iterator[str]:
     ]
     yield paragraph(
         f"Largest restitution factor eta at which {wanted} of the bearings settle (95 %), and the film "
-        "thickness that keeps to it, by the friction f_BT of ball on race; all else as it is, with its uncertainty."
+        "thickness that keeps to it, by the friction f_BT of ball on race; all else as it is, with its "
+        "uncertainty."
     )
     yield table(headers, cells, left=1)
 

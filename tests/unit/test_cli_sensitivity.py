@@ -1,0 +1,197 @@
+"""The verb `sensitivity`: keys, text, files, threads, interrupts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from separatrix import results
+from separatrix.cli import main
+from separatrix.explore import uncertain
+from separatrix.figures import figures
+from separatrix.study_file import read_study
+
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small uncertain ranking"
+
+[film]
+thickness = { between = ["0.4 um", "0.6 um"] }
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 8
+duration = "10 ms"
+restitution_factors = [0.2, 0.5, 0.8]
+
+[ranking]
+environment = "air"
+
+[[ranking.candidates]]
+name = "A"
+friction = { air = { mean = 0.1, standard_deviation = 0.02, count = 4 }, vacuum = 0.15 }
+
+[[ranking.candidates]]
+name = "B"
+friction = { air = "0.3 +- 10 %" }
+"""
+KEYS = (
+    "bearings failed stopped_risk default_scatter environment inputs environments overall convergence clouds "
+    "drivers shares undecided next_tests allowed_friction allowed_films kicks runs notes complete chain cage "
+    "seed study warnings"
+)
+OF_A_ROW = (
+    "name friction friction_deviation friction_scatter_assumed extrapolation probability_lowest_friction "
+    "restitution_factor restitution_factor_low restitution_factor_high verdict probability_stable "
+    "probability_low probability_high worst_kick by_kick runs cage_motion largest_offset drift_rate "
+    "largest_contact_force largest_land_force energy_imbalance duration longest_run reason"
+)
+
+
+@pytest.fixture(autouse=True)
+def _small(tmp_path, monkeypatch):
+    """Run in a folder with nothing but the small study."""
+    monkeypatch.chdir(tmp_path)
+    Path("small.toml").write_text(SMALL)
+
+
+def asked(capsys, *options: str) -> dict:
+    """Return the document of the small study."""
+    assert main(["sensitivity", "small.toml", "--json", "--samples", "64", *options]) == 0
+    return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+
+
+def row(document, environment, name):
+    """Return the row of a candidate."""
+    one = next(one for one in document["environments"] if one["name"] == environment)
+    return next(row for row in one["materials"] if row["name"] == name)
+
+
+def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
+    """Every candidate in every environment; probabilities in their intervals, with their evidence."""
+    found = asked(capsys)
+    assert set(KEYS.split()) <= set(found)
+    assert set(OF_A_ROW.split()) <= set(found["overall"][0])
+    rows = [r for one in found["environments"] for r in one["materials"] if r["friction"]] + found["overall"]
+    assert len(rows) == 5
+    for one in rows:
+        assert 0.0 <= one["probability_low"] <= one["probability_stable"] <= one["probability_high"] <= 1.0
+        assert one["runs"] == 64
+        assert one["largest_offset"] > 0.0
+        assert one["energy_imbalance"] < 1e-9
+        (count,) = one["by_kick"]
+        assert count["settles"] == round(64 * one["probability_stable"])
+    assert found["complete"] is True
+
+
+def test_what_was_not_measured_is_missing(capsys):
+    """Everything is null but name and reason; one that is measured alone is lowest among none."""
+    found = asked(capsys)
+    missing = row(found, "vacuum", "B")
+    assert missing["reason"] == "not measured in vacuum"
+    assert missing["friction"] is missing["probability_stable"] is missing["verdict"] is None
+    assert row(found, "vacuum", "A")["probability_lowest_friction"] is None
+    assert row(found, "air", "A")["probability_lowest_friction"] > 0.99
+
+
+def test_each_friction_has_the_scatter_that_is_known_of_it(capsys):
+    """A measured one that of a new cage, an unrepeated one the default, a stated one its own."""
+    found = asked(capsys)
+    expected = {("air", "A"): 0.02 * (1 + 1 / 4) ** 0.5, ("vacuum", "A"): 0.09 * 0.15, ("air", "B"): 0.015}
+    for place, deviation in expected.items():
+        known = row(found, *place)
+        assert known["friction_deviation"] == pytest.approx(deviation, rel=0.05)  # of 64 spread draws
+        assert known["friction_scatter_assumed"] is (place == ("vacuum", "A"))
+
+
+def test_inputs_say_where_they_come_from(capsys):
+    """Key, distribution as it was written, and its source."""
+    inputs = {one["name"]: one for one in asked(capsys)["inputs"]}
+    assert inputs["film.thickness"]["source"] == "study"
+    assert inputs["ranking.A.air"]["source"] == "measured"
+    assert inputs["ranking.A.vacuum"]["source"] == "assumed"
+
+
+def test_any_number_of_threads_gives_the_same_answer(capsys):
+    """To the last bit."""
+    assert asked(capsys, "--jobs", "1") == asked(capsys, "--jobs", "2")
+
+
+def test_the_first_bearings_are_those_of_a_smaller_question(capsys):
+    """The last point of the convergence is the answer; its first that of 64 bearings."""
+    few, more = asked(capsys), asked(capsys, "--samples", "128")
+    for one, other in zip(few["convergence"], more["convergence"], strict=True):
+        assert (one["name"], one["environment"], one["size"]) == (other["name"], other["environment"], [64])
+        assert other["probability_stable"][0] == one["probability_stable"][0]
+        assert other["size"] in ([64], [64, 128])
+
+
+def test_certain_inputs_and_frictions_alone_are_answered(capsys):
+    """A study without a distribution: the frictions scatter, eta does not, and nothing decides it."""
+    Path("small.toml").write_text(SMALL.replace('thickness = { between = ["0.4 um", "0.6 um"] }', ""))
+    found = asked(capsys)
+    known = row(found, "air", "A")
+    assert known["restitution_factor_low"] == known["restitution_factor_high"]
+    assert found["shares"] == []
+
+
+def test_text_and_files(capsys):
+    """Sections in their order; document, dataset and pictures in the folder, and each drawn again from it."""
+    assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    heads = ("With the uncertain", "\nAir\n", "\nVacuum\n", "\nOver all", "\nUncertain inputs", "\nMain sources",
+             "\nWhich test", "\nWhich friction", "\nWhich film", "\nWhat this holds")  # fmt: skip
+    places = [text.index(head) for head in heads]
+    assert places == sorted(places)
+    assert "0.150 (" in text
+    assert max(len(line) for line in text.splitlines()) <= 104
+    pictures = {path.stem for path in Path("here").glob("*.png")}
+    assert {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-1-air",
+            "sensitivity-2-vacuum", "sensitivity-film"} <= pictures  # fmt: skip
+    data = results.load(Path("here") / "sensitivity.nc")
+    assert {name for name, _ in figures("sensitivity", data)} == pictures
+    assert data["material_probability_stable"].attrs["units"] == "-"
+    assert data["cloud_friction"].dims == ("environment", "material", "sample")
+    assert data["film_allowed"].dims == ("material", "race_friction", "film_thickness")
+    assert data["film_thickness"].attrs["units"] == "m"
+
+
+def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
+    """Status 130, complete: false; what was left out is null with its reason."""
+
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(uncertain, "allowed_friction", interrupt)
+    assert main(["sensitivity", "small.toml", "--json", "--samples", "64", "--jobs", "1"]) == 130
+    found = json.loads(capsys.readouterr().out)
+    assert found["complete"] is False
+    assert found["allowed_friction"] == []
+    assert row(found, "air", "A")["probability_stable"] is not None
+
+
+@pytest.mark.parametrize("samples", ["0", "63", "100"])
+def test_a_number_of_bearings_that_is_no_power_of_two_is_refused(samples, capsys):
+    """One line with the rule, the value and what to write."""
+    assert main(["sensitivity", "small.toml", "--samples", samples]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "must be a power of two from 64" in err
+    assert f"got {samples}. Try {128 if samples == '100' else 64}." in err
+
+
+def test_the_lowest_friction_of_the_paper(capsys):
+    """Armalon's is the lowest with 0.667 on Chromex 40 in gas, and with 0.99 or more elsewhere."""
+    study = read_study("cryogenic-turbopump")
+    assert study.ranking is not None
+    Path("paper.toml").write_text(
+        'extends = "cryogenic-turbopump"\n[stability]\nkicks = ["0.5 m/s"]\nduration = "10 ms"\n'
+    )
+    assert main(["sensitivity", "paper.toml", "--json", "--samples", "64", "--quiet"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    lowest = {one["name"]: row(found, one["name"], "Armalon")["probability_lowest_friction"]
+              for one in found["environments"]}  # fmt: skip
+    assert lowest.pop("gaseous nitrogen, Chromex 40") == pytest.approx(0.667, abs=0.001)  # three digits
+    assert min(lowest.values()) > 0.99

@@ -1,0 +1,224 @@
+"""Drawn bearings counted, compared and searched: closed forms, calibration, early ends."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.special import expit, ndtr
+
+from separatrix.cage import KickCount, RunOutcome, Verdict
+from separatrix.distribution import LogNormal, Normal
+from separatrix.draws import UncertainInput
+from separatrix.explore import counting
+from separatrix.explore.counting import is_plain, settles_more
+from separatrix.explore.drivers import CHANCE, drivers, fitted
+from separatrix.explore.next_test import next_tests, reducible_shares
+from separatrix.explore.shares import sobol_shares
+from separatrix.ranking.drawn import Case
+from separatrix.study import Candidate, Friction
+from separatrix.study_file import read_study
+
+CASE = Case("A", "air")
+NAMES = ["x", "y", "z"]
+
+
+def simulated(coefficients, count, seed=0):
+    """Scores, and outcomes that a logistic law with these coefficients draws."""
+    random = np.random.default_rng(seed)
+    scores = random.standard_normal((count, len(coefficients) - 1))
+    p = expit(coefficients[0] + scores @ np.array(coefficients[1:]))
+    return scores, (random.random(count) < p).astype(float)
+
+
+def test_the_regression_finds_the_law_that_drew_the_outcomes():
+    """Standard errors of the coefficients are below 0.05 with 16 384 bearings: within 4 of them."""
+    b = fitted(*simulated((0.5, 1.5, -0.7, 0.0), 16_384))
+    assert b == pytest.approx([0.5, 1.5, -0.7, 0.0], abs=0.2)
+
+
+def test_shares_are_squares_of_coefficients_beside_chance():
+    """X 2, y 1: 4 and 1 against pi^2/3 of the chance of a single run; the interval holds it."""
+    found = drivers(CASE, NAMES, *simulated((0.0, 2.0, 1.0, 0.0), 4096))
+    total = 4.0 + 1.0 + np.pi**2 / 3.0
+    shares = {one.name: one for one in found.shares}
+    assert list(shares) == ["x", "y", "z", CHANCE]
+    for name, true in (("x", 4.0), ("y", 1.0), ("z", 0.0), (CHANCE, np.pi**2 / 3.0)):
+        assert shares[name].share == pytest.approx(true / total, abs=0.06)
+        assert shares[name].share_low <= shares[name].share <= shares[name].share_high
+    assert sum(one.share for one in found.shares) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_predictions_for_bearings_left_out_are_calibrated():
+    """Five bins of 819 bearings: the counted share within 4 standard errors of the predicted."""
+    found = drivers(CASE, NAMES, *simulated((0.3, 1.2, -0.8, 0.4), 4096, seed=3))
+    error = np.sqrt(found.predicted * (1.0 - found.predicted) / found.bearings)
+    assert np.all(np.abs(found.counted - found.predicted) < 4.0 * error)
+    assert np.all(np.diff(found.predicted) > 0.0)
+    assert found.skill > 0.15
+
+
+def test_an_interval_holds_the_true_share_about_as_often_as_it_says():
+    """100 repeats of 512 bearings; of 95 % at least 85 (binomial: 85 or fewer in 1 of 10 000)."""
+    true = 2.25 / (2.25 + 0.49 + np.pi**2 / 3.0)
+    inside = 0
+    for seed in range(100):
+        (share,) = [
+            one for one in drivers(CASE, NAMES, *simulated((0.0, 1.5, 0.7, 0.0), 512, seed)).shares
+            if one.name == "x"
+        ]  # fmt: skip
+        inside += share.share_low <= true <= share.share_high
+    assert inside >= 85
+
+
+def test_what_the_runs_cannot_tell_is_said():
+    """Too few of the rarer outcome; and inputs that explain nothing."""
+    scores, settled = simulated((4.5, 0.5, 0.0, 0.0), 512)
+    rare = drivers(CASE, NAMES, scores, settled)
+    assert (rare.shares, rare.skill) == ((), None)
+    assert "too few to compare" in rare.reason
+    idle = drivers(CASE, NAMES, *simulated((0.0, 0.0, 0.0, 0.0), 512))
+    assert idle.shares == ()
+    assert "explain" in idle.reason
+
+
+def test_a_separation_by_one_input_stays_finite():
+    """Every bearing with x above 0 settles: the prior keeps the coefficient from growing without end."""
+    scores = np.random.default_rng(1).standard_normal((512, 2))
+    b = fitted(scores, (scores[:, 0] > 0.0).astype(float))
+    assert np.all(np.isfinite(b))
+    assert b[1] > 5.0
+    assert abs(b[2]) < 2.0
+
+
+def known_input(key, friction=0.1):
+    """An input with a log-normal law."""
+    law = LogNormal(mean=friction, standard_deviation=0.1 * friction)
+    return UncertainInput(key=key, unit="-", distribution=law, central=friction)
+
+
+def test_a_test_settles_with_the_probability_that_its_result_is_clear():
+    """One input, no other: P(settles | z) passes 0.95 and 0.05 at known z: the chance is a normal's tails."""
+    b, steep = np.array([0.0, 6.0]), 6.0
+    scores = np.zeros((1, 1))
+    (found,) = next_tests([known_input("x")], {}, {"A in air": (b, scores)})
+    at = np.log(0.95 / 0.05) / steep
+    # 64 equally likely results: to half a step on either side
+    assert found.settled == pytest.approx(2.0 * ndtr(-at), abs=1.0 / 64.0)
+    assert (found.name, found.cases) == ("x", ("A in air",))
+
+
+def test_a_test_that_removes_nothing_or_an_idle_input_settles_nothing():
+    """A share of 0 that can be learned, and a coefficient of 0."""
+    case = {"A in air": (np.array([0.0, 6.0]), np.zeros((1, 1)))}
+    assert next_tests([known_input("x")], {"x": 0.0}, case) == ()
+    idle = {"A in air": (np.zeros(2), np.zeros((1, 1)))}
+    assert next_tests([known_input("x")], {}, idle) == ()
+
+
+def test_of_a_friction_only_the_error_of_its_mean_can_be_learned():
+    """After n tests with a known scatter 1/(n + 1) of the variance of a new cage's friction."""
+    study = read_study("cryogenic-turbopump")
+    friction = Friction(mean=0.1, standard_deviation=0.02, count=4)
+    candidate = Candidate(name="A", friction={"air": friction})
+    asked = SimpleNamespace(ranking=SimpleNamespace(candidates=(candidate,), friction_scatter=0.09))
+    assert study.ranking is not None
+    one = UncertainInput(
+        key="ranking.A.air", unit="-", distribution=Normal(mean=0.1, standard_deviation=0.022),
+        central=0.1, source="measured",
+    )  # fmt: skip
+    assert reducible_shares(asked, [one]) == {"ranking.A.air": pytest.approx(1.0 / 5.0)}
+
+
+def test_sobol_indices_of_a_product_are_the_closed_form():
+    """F = (1 + a(x - 1/2)) (1 + b(y - 1/2)): variances a^2/12, b^2/12 and their product; z enters nothing."""
+    a, b = 2.0, 1.0
+
+    def model(points):
+        return ((1.0 + a * (points[:, 0] - 0.5)) * (1.0 + b * (points[:, 1] - 0.5)))[:, None]
+
+    ((first, total),) = sobol_shares(model, NAMES, seed=5)
+    va, vb = a * a / 12.0, b * b / 12.0
+    variance = va + vb + va * vb
+    for found, x, y in ((first, va, vb), (total, va + va * vb, vb + va * vb)):
+        known = {one.name: one for one in found}
+        assert known["x"].share == pytest.approx(x / variance, abs=0.05)  # 256 draws: 0.02 seen
+        assert known["y"].share == pytest.approx(y / variance, abs=0.05)
+        assert known["z"].share == pytest.approx(0.0, abs=0.02)
+        assert all(one.share_low <= one.share <= one.share_high for one in found)
+
+
+def counts(*settles, runs=64):
+    """Counts by kick, the rest whirling."""
+    return tuple(
+        KickCount(
+            kick=0.1 * (1 + i), settles=n, whirls=runs - n, drifts=0, unresolved=0, kept_by_land=0,
+            probability_stable=n / runs, probability_low=0.0, probability_high=1.0,
+        )
+        for i, n in enumerate(settles)
+    )  # fmt: skip
+
+
+def judged(verdict, *settles, runs=64):
+    """As a judgement: its verdict, counts and worst kick."""
+    found = counts(*settles, runs=runs)
+    worst = min(found, key=lambda one: one.settles)
+    return SimpleNamespace(verdict=verdict, by_kick=found, worst_kick=worst.kick)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "settles", "runs", "plain"),
+    [
+        (Verdict.STABLE, (64, 64), 64, False),  # 64 of 64 leave 0.85 open at 99.9 %
+        (Verdict.STABLE, (128, 128), 128, True),
+        (Verdict.UNSTABLE, (0,), 64, True),
+        (Verdict.UNSTABLE, (22,), 64, False),
+        (Verdict.UNDECIDED, (45,), 64, False),
+    ],
+)
+def test_a_case_ends_early_only_where_all_bearings_would_hardly_decide_otherwise(
+    verdict, settles, runs, plain
+):
+    """By Wilson's interval at the risk of 1e-3."""
+    assert is_plain(judged(verdict, *settles, runs=runs)) is plain
+
+
+def test_a_kick_that_plainly_settles_more_is_not_run_further():
+    """60 of 64 against 20; not 45 against 40."""
+    far, near = judged(Verdict.UNDECIDED, 60, 20), judged(Verdict.UNDECIDED, 45, 40)
+    assert [settles_more(one, far) for one in far.by_kick] == [True, False]
+    assert [settles_more(one, near) for one in near.by_kick] == [False, False]
+
+
+def test_early_ends_decide_as_all_bearings_would(monkeypatch):
+    """1000 cases of random true shares: a stopped one has the verdict of its 512 runs, all but a few."""
+    random = np.random.default_rng(7)
+    other = 0
+    for p in random.random(1000):
+        runs = random.random(512) < p
+        ends = [_verdict(int(runs[:n].sum()), n) for n in range(counting.BLOCK, 513, counting.BLOCK)]
+        stopped = next((end for end, plain in ends if plain), ends[-1][0])
+        other += stopped is not ends[-1][0]
+    assert other <= 5  # 7 looks at 1e-3 each, of the tenth of the cases that lie near a limit: 1 expected
+
+
+def _verdict(settled, runs):
+    """Verdict of a count from one kick, and whether it is plain."""
+    from separatrix.cage import wilson_interval
+    from separatrix.cage.verdict import CLEAR, FEW
+
+    low = wilson_interval(settled, runs)[0]
+    verdict = Verdict.UNDECIDED
+    if wilson_interval(runs - settled, runs)[0] > FEW:
+        verdict = Verdict.UNSTABLE
+    elif low > FEW and settled / runs >= CLEAR:
+        verdict = Verdict.STABLE
+    return verdict, is_plain(judged(verdict, settled, runs=runs))
+
+
+def test_outcomes_are_counted_where_they_settle():
+    """From the worst kick alone."""
+    found = SimpleNamespace(
+        kicks=np.array([0.1, 0.5]),
+        outcome=np.array([[0, 0, 0], [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.WHIRLS]]),
+    )
+    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)) == [False, True, False]
