@@ -17,7 +17,6 @@ from separatrix.pocket_contact import PocketConditions
 from separatrix.ranking.friction import cage_seen, friction_seen, frictions_seen
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
-from separatrix.uncertainty import training
 
 SMALL = """
 [[test]]
@@ -165,7 +164,6 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
 def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsys, monkeypatch, verb):
     """That at 5 m/s, as above, in the cage that stands in its answer."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(training, "RUNS", 64)
     first, second = (f'0.08\nslip_speed = "{v} m/s"' for v in (1, 5))
     one = SMALL.split("[[test]]")[1]
     text = f"[[test]]{one.replace('0.08', first)}" + 2 * f"[[test]]{one.replace('0.08', second)}".replace(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from separatrix.report import ranking, report, whereabouts
+from separatrix.report import ranking, ranking_full, report, whereabouts
 from separatrix.report.sensitivity import _marks
 
 
@@ -20,6 +20,7 @@ def row(name: str, rank: int | None, friction: float | None = 0.1, **other: obje
         "probability_low": 0.98,
         "probability_high": 1.0,
         "verdict": "STABLE",
+        "uncertain_verdict": None,
         "restitution_factor": 0.3,
         "cage_motion": "ON THE LAND",
         "growth_rate": -20.41,
@@ -63,20 +64,20 @@ def document(*rows: dict) -> dict:
 
 def test_tied_ranks_are_marked():
     """Two candidates within the scatter share a rank, and each says so."""
-    lines = ranking._table([row("A", 1), row("B", 1), row("C", 3)]).splitlines()[-3:]
+    lines = ranking.verdicts([row("A", 1), row("B", 1), row("C", 3)]).splitlines()[-3:]
     assert [line.split()[0] for line in lines] == ["1=", "1=", "3"]
 
 
 def test_a_missing_measurement_has_dashes_not_numbers():
     """No friction, threshold, margin or probability, and the words instead of a verdict."""
-    line = ranking._table([row("A", None, None)]).splitlines()[-1]
+    line = ranking.verdicts([row("A", None, None)]).splitlines()[-1]
     assert line.split() == ["-", "A", "-", "-", "-", "-", "not", "measured"]
 
 
 def test_frictions_that_were_not_tested_are_marked_and_explained_once():
     """A mark in the row; below, each sentence once, with names where it is not said of all."""
     rows = [row("A", 1, extrapolation=["too fast", "too hot"]), row("B", 2, extrapolation=["too fast"])]
-    text = ranking._table([*rows, row("C", 3)])
+    text = ranking.verdicts([*rows, row("C", 3)])
     assert [line.split()[2][-1] for line in text.splitlines()[-3:]] == ["*", "*", "0"]
     (note,) = ranking.footnotes(rows)
     assert note == "  * extrapolated beyond the tests: too fast. too hot (A)."
@@ -103,7 +104,7 @@ def test_the_mark_of_an_assumed_scatter_says_what_the_cell_shows():
 
 def test_the_evidence_stands_beside_each_candidate():
     """Motion, growth rate with its interval, offset in mm, drift, both forces, whirl, whirl ratio."""
-    lines = ranking._evidence([row("A", 1), row("B", None, None)]).splitlines()[-2:]
+    lines = ranking_full._evidence([row("A", 1), row("B", None, None)]).splitlines()[-2:]
     assert (
         " ".join(lines[0].split()) == "A ON THE LAND -20.4 (-21 to -20) 0.500 0.01 275 31 1445 forward 12.99"
     )
@@ -113,35 +114,37 @@ def test_the_evidence_stands_beside_each_candidate():
 def test_one_run_has_a_growth_rate_without_an_interval():
     """No interval, no brackets."""
     one = row("A", 1, growth_rate_low=None, growth_rate_high=None)
-    assert ranking._evidence([one]).splitlines()[-1].split()[4:6] == ["-20.4", "0.500"]
+    assert ranking_full._evidence([one]).splitlines()[-1].split()[4:6] == ["-20.4", "0.500"]
 
 
 def test_no_verdict_is_shown_without_its_evidence():
     """In each environment: a table of verdicts, then runs, their length, kicks, and the evidence."""
     asked = document(row("A", 1))
-    there = ranking._environment(asked, asked["environments"][0])
+    there = ranking_full._environment(asked, asked["environments"][0])
     assert "  Evidence: 64 runs of 300 ms from each kick, 0.1, 2 m/s" in there
     assert there.index("verdict") < there.index("Evidence") < there.index("ON THE LAND")
 
 
 def test_the_first_is_shown_in_detail_if_it_has_a_verdict():
     """All the facts of the one at the top; none of one that was not measured."""
-    (text,) = ranking._first([row("A", 1), row("B", 2)])
+    (text,) = ranking_full._first([row("A", 1), row("B", 2)])
     assert text.startswith("A in detail")
     assert "64 from each kick, of up to 600 ms" in text
-    assert ranking._first([row("A", None, None)]) == []
+    assert ranking_full._first([row("A", None, None)]) == []
 
 
 def test_gaps_in_the_measurements_are_said():
     """Who was measured in fewer than all environments; nothing where all were in all."""
-    assert ranking._gaps(document(row("A", 1), row("B", None, None)))[1].endswith("1 environments: B in 0.")
-    assert ranking._gaps(document(row("A", 1))) == []
+    assert ranking_full._gaps(document(row("A", 1), row("B", None, None)))[1].endswith(
+        "1 environments: B in 0."
+    )
+    assert ranking_full._gaps(document(row("A", 1))) == []
 
 
 def test_the_bearings_restitution_factor_is_shown_where_candidates_differ_in_it():
     """One column more, as soon as the pockets differ."""
-    alike = ranking._evidence([row("A", 1), row("B", 2)])
-    differ = ranking._evidence([row("A", 1), row("B", 2, restitution_factor=0.5)])
+    alike = ranking_full._evidence([row("A", 1), row("B", 2)])
+    differ = ranking_full._evidence([row("A", 1), row("B", 2, restitution_factor=0.5)])
     assert "bearing's" not in alike
     assert "bearing's" in differ
     assert "0.50" in differ.splitlines()[-1]
@@ -149,7 +152,7 @@ def test_the_bearings_restitution_factor_is_shown_where_candidates_differ_in_it(
 
 def test_candidates_with_one_reason_share_it():
     """Equal frictions have equal reasons: said once."""
-    assert ranking._reasons([row("A", 1), row("B", 1)]) == ["  A, B: So it is."]
+    assert ranking.reasons([row("A", 1), row("B", 1)]) == ["  A, B: So it is."]
 
 
 @pytest.mark.parametrize(
@@ -170,7 +173,7 @@ def test_candidates_with_one_reason_share_it():
 )
 def test_the_answer_in_short(rows, said):
     """Who is first, with the verdict and the margin, and what the others are; nobody if none was measured."""
-    assert ranking._in_short(document(*rows)) == said
+    assert ranking.in_short(document(*rows)) == said
 
 
 def test_a_ranking_fits_a_screen():
@@ -214,7 +217,7 @@ def test_a_verdict_without_a_threshold_is_shown():
     """An interrupt before the curve was traced: verdict and evidence stand, rank and margin are dashes."""
     lacks = ("restitution_threshold", "restitution_threshold_low", "restitution_threshold_high", "margin")
     cut = row("A", None, **dict.fromkeys(lacks))
-    line = ranking._table([cut]).splitlines()[-1].split()
+    line = ranking.verdicts([cut]).splitlines()[-1].split()
     assert line[:5] == ["-", "A", "0.100", "-", "-"]
     assert line[-1] == "STABLE"
     assert "ON THE LAND" in report("rank", document(cut) | {"title": "A bearing", "warnings": []})

@@ -54,15 +54,17 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     from separatrix.cage_choice import reference_candidate, reference_friction, required_environment
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_uncertain
+    from separatrix.draws import uncertain_inputs
     from separatrix.explore import uncertain_study
     from separatrix.ranking import ranking_question
-    from separatrix.ranking.friction import cage_seen
+    from separatrix.ranking.friction import as_pockets_see, cage_seen
 
     asked = ranking_question(study)
     required_environment(study, asked)
     seen = cage_seen(study, marked=True)
     own = reference_candidate(study, asked)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, asked))
+    uncertain_inputs(as_pockets_see(study))  # refused before anything is timed
     work.progress.expect(lambda: expected_uncertain(study, samples, jobs=work.jobs))
     found = uncertain_study(study, samples, jobs=work.jobs, progress=work.progress)
     return SensitivityAnswer(cage=state, uncertain=found)

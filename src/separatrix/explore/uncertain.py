@@ -314,7 +314,7 @@ def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
         rows = []
         for row in values.tolist():
             found = central
-            with suppress(SeparatrixError):  # such draws are left out, and counted among the bearings
+            with suppress(SeparatrixError):  # a draw that makes no bearing counts as the central one
                 changed = put(row)
                 every = {one.name: one.material for one in ranking_question(changed).candidates}
                 found = restitution_state(changed, material=every[own.name]).restitution

@@ -11,30 +11,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withTickedStroke
-from matplotlib.ticker import NullLocator
 
+from separatrix.figures import style
 from separatrix.figures.ranking import file_name, own_environment, untested
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
-from separatrix.figures.style import (
-    BLACK,
-    CYCLE,
-    GREY,
-    MARK,
-    MARKERS,
-    PAGE,
-    VERDICT_COLOURS,
-    VERDICT_MARKERS,
-    canvas,
-    label_lines,
-    legend_below,
-)
+from separatrix.figures.style import BLACK, CYCLE, GREY, MARK, MARKERS, PAGE, canvas, legend_below
 from separatrix.units import Array
 
 OVERALL = "over all environments"
-OWN = "its own "
-FRICTION = "pocket friction"
 LEAST, MOST = 0.02, 7
 """Smallest share of an input that is drawn, and the most inputs and cases."""
+
+ENDS = ("", "_low", "_high")
+CLOUD = ("restitution_factor", "friction", "settles")
+SETTLES: Any = {"ls": "", "marker": ".", "ms": 3.5, "mew": 0.0}
+WHIRLS: Any = {"ls": "", "marker": "x", "ms": 2.8, "mew": 0.6}
+BESIDE: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.5, "color": GREY}
 
 
 def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -46,105 +38,95 @@ def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield "sensitivity-film", film(data)
 
 
-def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield a figure for each environment: every candidate's bearings, on the same axes."""
-    top = 1.08 * float(np.nanmax(_floats(data, "cloud_friction"), initial=0.01))
-    eta = _floats(data, "cloud_restitution_factor")
-    eta = eta[np.isfinite(eta)] if np.isfinite(eta).any() else np.array([0.0, 1.0])
-    space = max(0.05 * float(np.ptp(eta)), 0.02)
-    limits = max(float(eta.min()) - space, 0.0), min(float(eta.max()) + space, 1.0)
-    for i, name in enumerate(data["environment"].values.astype(str)):
-        figure, axes = canvas(PAGE, 4.3)
-        axes.set(xlim=limits, ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
-        _bearings(axes, data.isel(environment=i))
-        legend_below(figure, columns=3)
-        yield f"sensitivity-{i + 1}-{file_name(name)}", figure
-
-
 def _floats(data: xr.Dataset, name: str, *dims: str) -> Array:
     """Return numbers with NaN where they are absent; the dimensions in this order if given."""
     return data[name].transpose(*dims).values.astype(float)
 
 
+def _chance(data: xr.Dataset, start: str, *dims: str) -> tuple[Array, Array]:
+    """Return a probability, and how far its interval reaches below and above it."""
+    names = (f"{start}_probability_{end}" for end in ("stable", "low", "high"))
+    value, low, high = (_floats(data, name, *dims) for name in names)
+    return value, np.maximum([value - low, high - value], 0.0)
+
+
 def _headed(axes: Axes, title: str, lines: list[str]) -> None:
     """Write a title, and below it further lines in grey, all above the axes."""
-    rows = [row for line in lines for row in textwrap.wrap(line, 100)]
-    axes.set_title(_capital(title), pad=6 + 9 * len(rows))
-    beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
-    axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), fontsize=6.5, color=GREY, **beside)
+    rows = [row for line in lines for row in textwrap.wrap(line, 85)]
+    axes.set_title(title[:1].upper() + title[1:], pad=6 + 9 * len(rows))
+    axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), **BESIDE)
 
 
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
+def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield a figure for each environment: friction and restitution factor of every drawn bearing."""
+    for i, name in enumerate(data["environment"].values.astype(str)):
+        figure, axes = canvas(PAGE, 4.3)
+        _bearings(axes, data.isel(environment=i))
+        legend_below(figure, columns=3)
+        yield f"sensitivity-{i + 1}-{file_name(name)}", figure
 
 
 def _bearings(axes: Axes, data: xr.Dataset) -> None:
     """Draw the bearings of the candidates in one environment, and write the names at the right."""
-    central, right, labels = _floats(data, "material_friction"), axes.get_xlim()[1], []
+    every, central = _floats(data, "cloud_restitution_factor"), _floats(data, "material_friction")
+    right, labels = min(float(np.nanmax(every, initial=0.0)) + 0.02, 1.0), []
     for i in np.flatnonzero(np.isfinite(central)):
         at, colour = data.isel(material=i), CYCLE[i % len(CYCLE)]
-        eta, friction, settles = (
-            _floats(at, f"cloud_{name}") for name in ("restitution_factor", "friction", "settles")
-        )
-        look: Any = {"color": colour, "ls": ""}
-        axes.plot(eta[settles == 1], friction[settles == 1], ".", ms=3.0, mew=0, alpha=0.6, **look)
-        axes.plot(eta[settles == 0], friction[settles == 0], "x", ms=2.8, mew=0.6, alpha=0.8, **look)
-        known = np.isfinite(eta) & np.isfinite(friction)
-        middle = float(np.median(friction[known])) if known.any() else float(central[i])
-        if known.any():
-            axes.plot([np.median(eta[known]), right], [middle] * 2, color=colour, lw=0.3, alpha=0.6, zorder=1)
+        eta, friction, settles = (_floats(at, f"cloud_{name}") for name in CLOUD)
+        for kind, look in ((1, SETTLES), (0, WHIRLS)):
+            axes.plot(eta[settles == kind], friction[settles == kind], color=colour, alpha=0.7, **look)
+        known = friction[np.isfinite(friction)]
+        middle = float(np.median(known)) if known.size else float(central[i])
+        axes.axhline(middle, color=colour, lw=0.3, alpha=0.6, zorder=1)
         mark = MARK if str(at["material_extrapolation"].values) else ""
         share = float(_floats(at, "material_probability_stable"))
         chance = f"  P(stable) {share:.2f}" if np.isfinite(share) else ""
         labels.append((right, middle, f"{at['material'].values}  {middle:.3f}{mark}{chance}", colour))
-    label_lines(axes, labels, gap=0.04)
-    beside: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
-    head = "candidate  median friction"
-    axes.annotate(head, (1, 1), xytext=(12, 5), fontsize=6.5, color=GREY, **beside)
-    absent = ", ".join(data["material"].values.astype(str)[~np.isfinite(central)])
-    title = f"{data['environment'].values}: drawn bearings"
-    _headed(axes, title, [f"not measured: {absent}"] if absent else [])
-    axes.plot([], [], ".", color=GREY, ms=3.0, mew=0, label="a bearing whose cage settles")
-    axes.plot([], [], "x", color=GREY, ms=2.8, mew=0.6, label="a bearing whose cage does not settle")
+    axes.plot([], [], color=GREY, label="a bearing whose cage settles", **SETTLES)
+    axes.plot([], [], color=GREY, label="a bearing whose cage does not settle", **WHIRLS)
     untested(axes, data["material_extrapolation"])
+    left = max(min(float(np.nanmin(every, initial=1.0)), right) - 0.04, 0.0)
+    top = 1.08 * max(0.01, *np.nan_to_num([*_floats(data, "cloud_friction").ravel(), *central]))
+    axes.set(xlim=(left, right), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
+    style.label_lines(axes, labels, gap=0.04)
+    axes.annotate("candidate  median friction", (1, 1), xytext=(12, 5), **BESIDE)
+    absent = ", ".join(data["material"].values.astype(str)[~np.isfinite(central)])
+    lines = [f"not measured: {absent}"] if absent else []
+    _headed(axes, f"{data['environment'].values}: drawn bearings", lines)
 
 
 def probabilities(data: xr.Dataset) -> Figure:
     """Probability that a bearing's cage settles, of every candidate in every environment and overall."""
     places = [*data["environment"].values.astype(str), OVERALL]
     rows = -(-len(places) // 2)
-    shape: Any = {"nrows": rows, "ncols": 2, "sharex": True, "squeeze": False}
-    figure, panels = canvas(PAGE, 0.9 + rows * (0.4 + 0.17 * data.sizes["material"]), **shape)
-    for row, axes in enumerate(panels.flat):
-        axes.set_visible(row < len(places))
-        if row < len(places):
-            inside = row < data.sizes["environment"]
-            part = data.isel(environment=row) if inside else data
-            _chances(axes, part, "material" if inside else "overall")
-            axes.set_title(_capital(places[row]))
+    height = 0.9 + rows * (0.4 + 0.17 * data.sizes["material"])
+    figure, panels = canvas(PAGE, height, nrows=rows, ncols=2, sharex=True, squeeze=False)
+    for row, (axes, place) in enumerate(zip(panels.flat, places, strict=False)):
+        inside = row < len(places) - 1
+        _probabilities(axes, *((data.isel(environment=row), "material") if inside else (data, "overall")))
+        _headed(axes, place, [])
         if row >= len(places) - 2:
-            axes.set_xlabel("probability that a bearing's cage settles [-]")
+            axes.set_xlabel("probability that a bearing's cage settles [-]", loc="right")
             axes.tick_params(labelbottom=True)
-    for verdict, marker in VERDICT_MARKERS.items():
+    panels.flat[-1].set_visible(len(places) % 2 == 0)
+    first = panels[0, 0]
+    for verdict, marker in style.VERDICT_MARKERS.items():
         label = f"{verdict}, with the 95 % interval"
-        panels[0, 0].plot([], [], marker, color=VERDICT_COLOURS[verdict], ms=4.5, label=label)
-    panels[0, 0].plot([], [], color=GREY, lw=0.6, ls=":", label="probabilities of 0.5 and 0.9")
-    untested(panels[0, 0], xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any"))
+        first.plot([], [], marker, color=style.VERDICT_COLOURS[verdict], ms=4.5, label=label)
+    first.plot([], [], color=GREY, lw=0.6, ls=":", label="probabilities of 0.5 and 0.9")
+    untested(first, xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any"))
     legend_below(figure, columns=3)
     return figure
 
 
-def _chances(axes: Axes, data: xr.Dataset, prefix: str) -> None:
+def _probabilities(axes: Axes, data: xr.Dataset, prefix: str) -> None:
     """Draw one environment, or all of them: the best at the top, those not measured at the bottom."""
-    value, low, high = (
-        _floats(data, f"{prefix}_probability_{end}", "material") for end in ("stable", "low", "high")
-    )
-    names = []
-    for place, i in enumerate(np.argsort(np.where(np.isfinite(value), value, -1.0), kind="stable")):
+    (value, reach), names = _chance(data, prefix), []
+    for place, i in enumerate(np.argsort(np.nan_to_num(value, nan=-1.0), kind="stable")):
         verdict = str(data[f"{prefix}_verdict"].values[i])
-        look: Any = {"color": VERDICT_COLOURS.get(verdict, GREY), "marker": VERDICT_MARKERS.get(verdict, ".")}
-        ends = [[max(value[i] - low[i], 0.0)], [max(high[i] - value[i], 0.0)]]
-        axes.errorbar(value[i], place, xerr=ends, ms=4.5, elinewidth=1.2, capsize=1.5, **look)
+        look: Any = {"color": style.VERDICT_COLOURS.get(verdict, GREY), "elinewidth": 1.2, "capsize": 1.5}
+        sign = style.VERDICT_MARKERS.get(verdict, ".")
+        axes.errorbar(value[i], place, xerr=reach[:, [i]], fmt=sign, ms=4.5, **look)
         mark = MARK if str(data[f"{prefix}_extrapolation"].values[i]) else ""
         absent = "" if np.isfinite(value[i]) else ": not measured"
         names.append(f"{data['material'].values[i]}{mark}{absent}")
@@ -158,63 +140,52 @@ def _chances(axes: Axes, data: xr.Dataset, prefix: str) -> None:
 def convergence(data: xr.Dataset) -> Figure:
     """P(stable) of the least decided candidate of each place against the number of bearings."""
     figure, axes = canvas(PAGE, 3.4)
-    size, drawn = data["size"].values.astype(float), []
-    places = data["place"].values.astype(str)
+    size, places = _floats(data, "size"), data["place"].values.astype(str)
+    ticks: list[float] = []
     for row, place in enumerate(places):
-        value, low, high = (
-            _floats(data.isel(place=row), f"convergence_probability_{end}", "material", "size")
-            for end in ("stable", "low", "high")
-        )
-        known = np.isfinite(value)
-        last = [one[there][-1] if there.any() else np.nan for one, there in zip(value, known, strict=True)]
-        if not known.any():
+        value, reach = _chance(data.isel(place=row), "convergence", "material", "size")
+        known = {i: np.flatnonzero(np.isfinite(one)) for i, one in enumerate(value) if np.isfinite(one).any()}
+        if not known:
             continue
-        i = int(np.nanargmin(np.abs(np.array(last) - 0.5)))
-        there, shift = known[i], 1.0 + 0.03 * (row - (len(places) - 1) / 2)
-        middle = value[i, there]
-        ends = np.maximum([middle - low[i, there], high[i, there] - middle], 0.0)
+        i = min(known, key=lambda i: abs(value[i, known[i][-1]] - 0.5))
+        at, shift = known[i], 1.0 + 0.03 * (row - (len(places) - 1) / 2)
         label = f"{data['material'].values[i]}, {place or OVERALL}"
         look: Any = {"color": CYCLE[row % len(CYCLE)], "marker": MARKERS[row % len(MARKERS)], "label": label}
-        axes.errorbar(size[there] * shift, middle, yerr=ends, ms=3.5, lw=0.8, elinewidth=0.8, **look)
-        drawn += [*size[there]]
-    ticks: list[float] = []
-    for one in sorted(set(drawn)):
-        ticks += [one] if not ticks or one > 1.15 * ticks[-1] else []
+        axes.errorbar(size[at] * shift, value[i, at], yerr=reach[:, i, at], ms=3.5, lw=0.8, **look)
+        ticks = sorted({*ticks, *size[at]})
+    apart = [one for k, one in enumerate(ticks) if k == 0 or one > 1.15 * ticks[k - 1]]
     axes.set(xscale="log", ylim=(-0.02, 1.02), xlabel="number of bearings [-]", ylabel="P(stable) [-]")
-    axes.set_xticks(ticks, [f"{one:g}" for one in ticks])
-    axes.xaxis.set_minor_locator(NullLocator())
-    title = "P(stable) of the least decided candidate of each environment, with its 95 % interval"
-    axes.set_title(title)
+    axes.set_xticks(apart, [f"{one:g}" for one in apart])
+    axes.minorticks_off()
+    axes.set_title("P(stable) of the least decided candidate of each environment, with its 95 % interval")
     legend_below(figure)
     return figure
 
 
 def drivers(data: xr.Dataset) -> Figure:
     """Show which inputs decide whether a cage settles, and whether the fit behind it predicts the counts."""
-    share = _floats(data, "driver_share", "environment", "material", "driver")
+    known = np.isfinite(_floats(data, "driver_share", "environment", "material", "driver")).any(axis=2)
     stable = _floats(data, "material_probability_stable", "environment", "material")
-    rows = sorted(np.argwhere(np.isfinite(share).any(axis=2)).tolist(), key=lambda c: abs(stable[*c] - 0.5))
-    cases = sorted(rows[:MOST])
-    groups = _groups(data, cases)
-    height = 1.7 + len(groups) * (0.1 + 0.06 * len(cases))
-    figure, (left, right) = canvas(PAGE, max(height, 3.4), ncols=2, width_ratios=(1.35, 1.0))
-    for k, (e, m) in enumerate(cases):
-        at = data.isel(environment=e, material=m)
-        name = f"{at['material'].values}, {at['environment'].values}"
-        look: Any = {"color": CYCLE[k % len(CYCLE)], "marker": MARKERS[k % len(MARKERS)], "ms": 3.5}
-        ends = np.array([_largest(at, columns) for columns in groups.values()])
-        value, errors = ends[:, 0], np.maximum([ends[:, 0] - ends[:, 1], ends[:, 2] - ends[:, 0]], 0.0)
-        y = np.arange(len(groups)) + 0.7 * ((k + 0.5) / len(cases) - 0.5)
-        left.errorbar(value, y, xerr=errors, ls="", elinewidth=0.8, label=name, **look)
-        counts = (_floats(at, f"calibration_{kind}") for kind in ("predicted", "counted"))
+    cases = sorted(sorted(np.argwhere(known).tolist(), key=lambda case: abs(stable[*case] - 0.5))[:MOST])
+    parts = [data.isel(environment=e, material=m) for e, m in cases]
+    shares = _shares(parts)
+    height = max(1.7 + len(shares) * (0.1 + 0.055 * len(cases)), 3.4)
+    figure, (left, right) = canvas(PAGE, height, ncols=2, width_ratios=(1.35, 1.0))
+    for k, part in enumerate(parts):
+        look: Any = {"color": CYCLE[k], "marker": MARKERS[k], "ms": 3.5}
+        value, low, high = np.array([rows[:, k] for rows in shares.values()]).T
+        y = np.arange(len(shares)) + 0.7 * ((k + 0.5) / len(cases) - 0.5)
+        reach = np.maximum([value - low, high - value], 0.0)
+        label = f"{part['material'].values}, {part['environment'].values}"
+        left.errorbar(value, y, xerr=reach, ls="", elinewidth=0.8, label=label, **look)
+        counts = (_floats(part, f"calibration_{kind}") for kind in ("predicted", "counted"))
         right.plot(*counts, lw=0.8, **look)
-    for place in range(0, len(groups), 2):
+    for place in range(0, len(shares), 2):
         left.axhspan(place - 0.5, place + 0.5, color=GREY, alpha=0.08, lw=0)
-    left.set_yticks(range(len(groups)), [textwrap.fill(name, 26) for name in groups], fontsize=6.5)
-    left.set(ylim=(len(groups) - 0.5, -0.5), xlabel="share of the variance of the logit\nof P(settles) [-]")
-    left.set_xlim(min(left.get_xlim()[0], -0.02), 1.02)
+    left.set_yticks(range(len(shares)), [textwrap.fill(name, 26) for name in shares], fontsize=6.5)
     left.tick_params(axis="y", length=0)
-    left.set_title("a  Inputs that matter most, 95 % intervals")
+    left.set(ylim=(len(shares) - 0.5, -0.5), xlabel="share of the variance of the logit\nof P(settles) [-]")
+    left.set(xlim=(min(left.get_xlim()[0], -0.02), 1.02), title="a  Inputs that matter most, 95 % intervals")
     right.plot([0, 1], [0, 1], color=BLACK, lw=0.6, ls="--", label="counted as predicted")
     right.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02), aspect="equal", anchor="N")
     right.set(xlabel="predicted P(settles) [-]", ylabel="counted share that settles [-]")
@@ -223,28 +194,19 @@ def drivers(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _groups(data: xr.Dataset, cases: list[list[int]]) -> dict[str, list[int]]:
-    """Return the inputs to draw, each with its columns: a candidate's own are one; chance comes last."""
-    share = _floats(data, "driver_share", "environment", "material", "driver")
-    found: dict[str, list[int]] = {}
-    for column, key in enumerate(data["driver"].values.astype(str)):
-        part = key.partition(".material.")[2]
-        own = key.startswith("ranking.")
-        found.setdefault(OWN + (part or FRICTION) if own else key, []).append(column)
-    largest = {
-        name: max(np.nan_to_num(share[e, m, columns]).max() for e, m in cases)
-        for name, columns in found.items()
-    }
-    chance = list(found)[-1]
-    chosen = sorted((name for name in found if name != chance), key=lambda name: -largest[name])
-    return {name: found[name] for name in [*[n for n in chosen if largest[n] >= LEAST][:MOST], chance]}
-
-
-def _largest(data: xr.Dataset, columns: list[int]) -> list[float]:
-    """Return the largest share among these columns of one case, and its interval; NaN without one."""
-    share = _floats(data, "driver_share")[columns]
-    chosen = columns[int(np.argmax(np.where(np.isfinite(share), share, -np.inf)))]
-    return [float(_floats(data, f"driver_share{end}")[chosen]) for end in ("", "_low", "_high")]
+def _shares(parts: list[xr.Dataset]) -> dict[str, Array]:
+    """Return the inputs to draw, each with share, low and high end of every case; chance comes last."""
+    found: dict[str, list[Array]] = {}
+    for column, key in enumerate(parts[0]["driver"].values.astype(str)):
+        name = f"its own {key.partition('.material.')[2] or 'pocket friction'}"
+        rows = found.setdefault(name if key.startswith("ranking.") else key, [])
+        ends = [[_floats(part, f"driver_share{end}")[column] for part in parts] for end in ENDS]
+        rows.append(np.array(ends))  # of candidates' own inputs each case has but one
+    joined = {name: np.fmax.reduce(rows) for name, rows in found.items()}
+    largest = {name: np.nan_to_num(rows[0]).max() for name, rows in joined.items()}
+    *others, chance = joined
+    chosen = sorted((name for name in others if largest[name] >= LEAST), key=lambda name: -largest[name])
+    return {name: joined[name] for name in [*chosen[:MOST], chance]}
 
 
 def film(data: xr.Dataset) -> Figure:
@@ -257,29 +219,25 @@ def film(data: xr.Dataset) -> Figure:
     for axis, ends in ((axes.xaxis, thickness), (axes.yaxis, friction)):
         ticks = steps[(steps >= 0.999 * ends[0]) & (steps <= 1.001 * ends[-1])]
         axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
-        axis.set_minor_locator(NullLocator())
+    axes.minorticks_off()
     allowed = _floats(data, "film_allowed", "material", "race_friction", "film_thickness")[:, :, 1:]
     names = data["material"].values.astype(str)
-    known = [i for i in range(names.size) if np.isfinite(allowed[i]).all()]
-    lined = [i for i in known if np.ptp(allowed[i]) > 0]
-    for i, level in zip(lined, np.linspace(0.4, 0.6, len(lined)), strict=True):  # else equal lines hide
-        look: Any = {"levels": [level], "colors": [CYCLE[i % len(CYCLE)]], "linewidths": 1.2}
-        lines = axes.contour(thickness, friction, allowed[i], **look)
+    lined = np.flatnonzero([np.ptp(one) > 0 for one in allowed])
+    for i, level in zip(lined, np.linspace(0.4, 0.6, lined.size), strict=True):  # equal lines would hide
+        colour = CYCLE[i % len(CYCLE)]
+        lines = axes.contour(thickness, friction, allowed[i], levels=[level], colors=[colour], linewidths=1.2)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
-        axes.plot([], [], color=CYCLE[i % len(CYCLE)], label=names[i])
-    chance = f"P(stable) of {float(data['film_probability']):.2f} or more"
-    ticked: Any = {"color": GREY, "lw": 1.2, "path_effects": [withTickedStroke(angle=90, length=0.5)]}
-    axes.plot([], [], label=f"ticks: the side of the films with {chance}", **ticked)
+        axes.plot([], [], color=colour, label=names[i])
+    label = f"ticks: the side of the films with P(stable) of {float(data['film_probability']):.2f} or more"
+    axes.plot([], [], color=GREY, lw=1.2, label=label, path_effects=[withTickedStroke(angle=90, length=0.5)])
     here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
-    axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study", ls="")
-    said = (("every film here is thin enough", 1), ("no film here is enough", 0))
+    axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study")
+    said = []
+    for value, words in ((1, "stable with every film"), (0, "stable with no film")):
+        same = names[(allowed == value).all(axis=(1, 2))]
+        said += [f"{words}: {', '.join(same)}"] if same.size else []
     own = own_environment(data)
     where = "" if own is None else f" in {data['environment'].values[own]}"
-    parts = {head: [names[i] for i in known if i not in lined and allowed[i, 0, 0] == v] for head, v in said}
-    _headed(
-        axes,
-        f"Films that keep the cage stable{where}",
-        [f"{a}: {', '.join(b)}" for a, b in parts.items() if b],
-    )
+    _headed(axes, f"Films that keep the cage stable{where}", said)
     legend_below(figure)
     return figure

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
+from separatrix.ranking.lowest import may_be_lower
 from separatrix.units import Ratio
+
+if TYPE_CHECKING:
+    from separatrix.ranking.friction import MeanFriction
+    from separatrix.ranking.records import RankedMaterial
 
 Interval = tuple[Ratio, Ratio, Ratio]
 """A margin with the low and the high end of its scatter."""
@@ -46,3 +52,24 @@ def _best_first(margins: Sequence[Interval | None], i: int) -> tuple[float, floa
 def meet(other: Interval | None, leader: Interval | None) -> bool:
     """Whether the interval of the smaller margin reaches that of its leader."""
     return other is not None and leader is not None and other[2] >= leader[1]
+
+
+def same_rank(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanFriction]) -> bool:
+    """Whether a row cannot be told from the leader of its group.
+
+    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
+    with another pocket stiffness there are another curve and eta, and the intervals of the margins tell.
+    """
+    if row.margin == leader.margin:
+        return True
+    if row.ball_cage_stiffness == leader.ball_cage_stiffness:
+        return may_be_lower(known[row.name], known[leader.name])
+    return meet(margin_interval(row), margin_interval(leader))
+
+
+def margin_interval(row: RankedMaterial) -> Interval | None:
+    """Margin with the ends of its interval, those of the threshold less the restitution factor."""
+    low, high, eta = row.restitution_threshold_low, row.restitution_threshold_high, row.restitution_factor
+    if row.margin is None or low is None or high is None or eta is None:
+        return None
+    return row.margin, low - eta, high - eta

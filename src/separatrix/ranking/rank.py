@@ -15,8 +15,8 @@ from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
-from separatrix.ranking.lowest import lowest_among, may_be_lower
-from separatrix.ranking.order import Interval, meet, ranks
+from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.order import margin_interval, ranks, same_rank
 from separatrix.ranking.plausible import beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
@@ -319,7 +319,9 @@ def _ranked(
     """Rows of one environment, best first; the order of the study within a rank."""
     rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
     known = {name: friction for name, friction in table.items() if friction is not None}
-    places = ranks([_margin(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
+    places = ranks(
+        [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
+    )
     lowest = lowest_among(known)
     chances = [lowest.probabilities.get(row.name) for row in rows]
     ranked = [
@@ -336,27 +338,6 @@ def _best_first(row: RankedMaterial) -> tuple[int, float, float]:
         0.0 if last else -(row.margin or 0.0),
         row.friction or 0.0,
     )
-
-
-def _tied(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanFriction]) -> bool:
-    """Whether a row cannot be told from the leader of its group.
-
-    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
-    with another pocket stiffness there are another curve and eta, and the intervals of the margins tell.
-    """
-    if row.margin == leader.margin:
-        return True
-    if row.ball_cage_stiffness == leader.ball_cage_stiffness:
-        return may_be_lower(known[row.name], known[leader.name])
-    return meet(_margin(row), _margin(leader))
-
-
-def _margin(row: RankedMaterial) -> Interval | None:
-    """Margin with the ends of its interval, those of the threshold less the restitution factor."""
-    low, high, eta = row.restitution_threshold_low, row.restitution_threshold_high, row.restitution_factor
-    if row.margin is None or low is None or high is None or eta is None:
-        return None
-    return row.margin, low - eta, high - eta
 
 
 def _row(

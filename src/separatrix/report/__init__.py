@@ -8,7 +8,8 @@ from typing import Any
 from separatrix.report.cage import simulate, stability
 from separatrix.report.chain import bearing, restitution, traction
 from separatrix.report.map import stability_map
-from separatrix.report.ranking import every_environment, only_table, rank
+from separatrix.report.ranking import only_table, rank
+from separatrix.report.ranking_full import every_environment
 from separatrix.report.sensitivity import sensitivity
 from separatrix.report.study import at_their_means, check, every_input
 from separatrix.report.tables import heading, paragraph

@@ -92,7 +92,8 @@ def _marks(document: Document) -> Iterator[str]:
         share = f"{100.0 * document['default_scatter']:.3g} % of the mean"
         yield paragraph(
             f"{GUESS} its scatter from sample to sample was not measured: {share} is assumed, a guess "
-            "([ranking] friction_scatter)."
+            "([ranking] friction_scatter). The per cent beside a friction is the whole scatter of a new "
+            "cage: this, how well the mean is known, and what was not tested."
         )
     words = dict.fromkeys(text for row in rows for text in row["extrapolation"])
     if words:
