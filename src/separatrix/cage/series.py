@@ -166,10 +166,13 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
         g = lead + sign * g * t
         if g <= tiny:
             return t
-        reach = np.sqrt(d * d + 2.0 * bend * g) - d
-        if reach <= 0.0:
+        root = np.sqrt(d * d + 2.0 * bend * g)
+        if d < 0.0:
+            t += 2.0 * g / (root - d)
+        elif bend > 0.0:  # the same, without the difference of root and slope: rounding where g is small
+            t += (root + d) / bend
+        else:
             return NEVER
-        t += 2.0 * g / reach
         if t > end:
             return NEVER
     return t

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withTickedStroke
+from matplotlib.ticker import LogLocator
 
 from separatrix.figures import style
 from separatrix.figures.ranking import file_name, own_environment, untested
@@ -19,10 +21,7 @@ from separatrix.figures.style import BLACK, CYCLE, GREY, MARK, MARKERS, PAGE, ca
 from separatrix.units import Array
 
 OVERALL = "over all environments"
-LEAST, MOST = 0.02, 7
-"""Smallest share of an input that is drawn, and the most inputs and cases."""
-
-ENDS = ("", "_low", "_high")
+LEAST, MOST = 0.02, 7  # smallest share of an input that is drawn; most inputs, and most cases
 CLOUD = ("restitution_factor", "friction", "settles")
 SETTLES: Any = {"ls": "", "marker": ".", "ms": 3.5, "mew": 0.0}
 WHIRLS: Any = {"ls": "", "marker": "x", "ms": 2.8, "mew": 0.6}
@@ -43,16 +42,15 @@ def _floats(data: xr.Dataset, name: str, *dims: str) -> Array:
     return data[name].transpose(*dims).values.astype(float)
 
 
-def _chance(data: xr.Dataset, start: str, *dims: str) -> tuple[Array, Array]:
+def _chance(data: xr.Dataset, of: str, *dims: str) -> tuple[Array, Array]:
     """Return a probability, and how far its interval reaches below and above it."""
-    names = (f"{start}_probability_{end}" for end in ("stable", "low", "high"))
-    value, low, high = (_floats(data, name, *dims) for name in names)
+    value, low, high = (_floats(data, f"{of}_probability_{end}", *dims) for end in ("stable", "low", "high"))
     return value, np.maximum([value - low, high - value], 0.0)
 
 
-def _headed(axes: Axes, title: str, lines: list[str]) -> None:
-    """Write a title, and below it further lines in grey, all above the axes."""
-    rows = [row for line in lines for row in textwrap.wrap(line, 85)]
+def _headed(axes: Axes, title: str, text: str = "") -> None:
+    """Write a title, and below it a text in grey, all above the axes."""
+    rows = [row for line in text.splitlines() for row in textwrap.wrap(line, 85)]
     axes.set_title(title[:1].upper() + title[1:], pad=6 + 9 * len(rows))
     axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), **BESIDE)
 
@@ -69,50 +67,47 @@ def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def _bearings(axes: Axes, data: xr.Dataset) -> None:
     """Draw the bearings of the candidates in one environment, and write the names at the right."""
     every, central = _floats(data, "cloud_restitution_factor"), _floats(data, "material_friction")
-    right, labels = min(float(np.nanmax(every, initial=0.0)) + 0.02, 1.0), []
+    shares, names = _floats(data, "material_probability_stable"), data["material"].values.astype(str)
+    labels, right = [], min(float(np.nanmax(every, initial=0.0)) + 0.02, 1.0)
     for i in np.flatnonzero(np.isfinite(central)):
         at, colour = data.isel(material=i), CYCLE[i % len(CYCLE)]
         eta, friction, settles = (_floats(at, f"cloud_{name}") for name in CLOUD)
         for kind, look in ((1, SETTLES), (0, WHIRLS)):
             axes.plot(eta[settles == kind], friction[settles == kind], color=colour, alpha=0.7, **look)
-        known = friction[np.isfinite(friction)]
-        middle = float(np.median(known)) if known.size else float(central[i])
+        middle = float(np.median([*friction[np.isfinite(friction)]] or central[i]))
         axes.axhline(middle, color=colour, lw=0.3, alpha=0.6, zorder=1)
         mark = MARK if str(at["material_extrapolation"].values) else ""
-        share = float(_floats(at, "material_probability_stable"))
-        chance = f"  P(stable) {share:.2f}" if np.isfinite(share) else ""
-        labels.append((right, middle, f"{at['material'].values}  {middle:.3f}{mark}{chance}", colour))
+        share = f"{shares[i]:.2f}".replace("nan", "-")
+        labels.append((right, middle, f"{names[i]}  {middle:.3f}{mark}  P(stable) {share}", colour))
     axes.plot([], [], color=GREY, label="a bearing whose cage settles", **SETTLES)
     axes.plot([], [], color=GREY, label="a bearing whose cage does not settle", **WHIRLS)
     untested(axes, data["material_extrapolation"])
-    left = max(min(float(np.nanmin(every, initial=1.0)), right) - 0.04, 0.0)
+    left = max(float(np.nanmin(every, initial=right - 0.02)) - 0.02, 0.0)
     top = 1.08 * max(0.01, *np.nan_to_num([*_floats(data, "cloud_friction").ravel(), *central]))
     axes.set(xlim=(left, right), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
     style.label_lines(axes, labels, gap=0.04)
     axes.annotate("candidate  median friction", (1, 1), xytext=(12, 5), **BESIDE)
-    absent = ", ".join(data["material"].values.astype(str)[~np.isfinite(central)])
-    lines = [f"not measured: {absent}"] if absent else []
-    _headed(axes, f"{data['environment'].values}: drawn bearings", lines)
+    absent = ", ".join(names[~np.isfinite(central)])
+    _headed(axes, f"{data['environment'].values}: drawn bearings", absent and f"not measured: {absent}")
 
 
 def probabilities(data: xr.Dataset) -> Figure:
     """Probability that a bearing's cage settles, of every candidate in every environment and overall."""
     places = [*data["environment"].values.astype(str), OVERALL]
-    rows = -(-len(places) // 2)
-    height = 0.9 + rows * (0.4 + 0.17 * data.sizes["material"])
-    figure, panels = canvas(PAGE, height, nrows=rows, ncols=2, sharex=True, squeeze=False)
+    rows, height = -(-len(places) // 2), 0.4 + 0.17 * data.sizes["material"]
+    figure, panels = canvas(PAGE, 0.9 + rows * height, nrows=rows, ncols=2, sharex=True, squeeze=False)
     for row, (axes, place) in enumerate(zip(panels.flat, places, strict=False)):
-        inside = row < len(places) - 1
-        _probabilities(axes, *((data.isel(environment=row), "material") if inside else (data, "overall")))
-        _headed(axes, place, [])
+        over = place == OVERALL
+        _probabilities(axes, data if over else data.isel(environment=row), "overall" if over else "material")
+        _headed(axes, place)
         if row >= len(places) - 2:
             axes.set_xlabel("probability that a bearing's cage settles [-]", loc="right")
             axes.tick_params(labelbottom=True)
     panels.flat[-1].set_visible(len(places) % 2 == 0)
     first = panels[0, 0]
     for verdict, marker in style.VERDICT_MARKERS.items():
-        label = f"{verdict}, with the 95 % interval"
-        first.plot([], [], marker, color=style.VERDICT_COLOURS[verdict], ms=4.5, label=label)
+        first.plot([], [], marker, color=style.VERDICT_COLOURS[verdict], ms=4.5, label=verdict)
+    first.plot([], [], color=GREY, lw=1.2, label="95 % interval")
     first.plot([], [], color=GREY, lw=0.6, ls=":", label="probabilities of 0.5 and 0.9")
     untested(first, xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any"))
     legend_below(figure, columns=3)
@@ -124,14 +119,11 @@ def _probabilities(axes: Axes, data: xr.Dataset, prefix: str) -> None:
     (value, reach), names = _chance(data, prefix), []
     for place, i in enumerate(np.argsort(np.nan_to_num(value, nan=-1.0), kind="stable")):
         verdict = str(data[f"{prefix}_verdict"].values[i])
-        look: Any = {"color": style.VERDICT_COLOURS.get(verdict, GREY), "elinewidth": 1.2, "capsize": 1.5}
-        sign = style.VERDICT_MARKERS.get(verdict, ".")
-        axes.errorbar(value[i], place, xerr=reach[:, [i]], fmt=sign, ms=4.5, **look)
+        colour, sign = style.VERDICT_COLOURS.get(verdict, GREY), style.VERDICT_MARKERS.get(verdict, ".")
+        axes.errorbar(value[i], place, xerr=reach[:, [i]], fmt=sign, ms=4.5, color=colour, capsize=1.5)
         mark = MARK if str(data[f"{prefix}_extrapolation"].values[i]) else ""
-        absent = "" if np.isfinite(value[i]) else ": not measured"
-        names.append(f"{data['material'].values[i]}{mark}{absent}")
-    for line in (0.5, 0.9):
-        axes.axvline(line, color=GREY, lw=0.6, ls=":", zorder=0)
+        names.append(f"{data['material'].values[i]}{mark}{'' if value[i] >= 0 else ': not measured'}")
+    axes.vlines([0.5, 0.9], -1, len(names), color=GREY, lw=0.6, ls=":", zorder=0)
     axes.set_yticks(range(len(names)), names, fontsize=6.5)
     axes.set(xlim=(-0.02, 1.02), ylim=(-0.6, len(names) - 0.4))
     axes.tick_params(axis="y", length=0)
@@ -142,17 +134,14 @@ def convergence(data: xr.Dataset) -> Figure:
     figure, axes = canvas(PAGE, 3.4)
     size, places = _floats(data, "size"), data["place"].values.astype(str)
     ticks: list[float] = []
-    for row, place in enumerate(places):
+    for row, (place, colour, marker) in enumerate(zip(places, cycle(CYCLE), cycle(MARKERS), strict=False)):
         value, reach = _chance(data.isel(place=row), "convergence", "material", "size")
         known = {i: np.flatnonzero(np.isfinite(one)) for i, one in enumerate(value) if np.isfinite(one).any()}
-        if not known:
-            continue
-        i = min(known, key=lambda i: abs(value[i, known[i][-1]] - 0.5))
-        at, shift = known[i], 1.0 + 0.03 * (row - (len(places) - 1) / 2)
-        label = f"{data['material'].values[i]}, {place or OVERALL}"
-        look: Any = {"color": CYCLE[row % len(CYCLE)], "marker": MARKERS[row % len(MARKERS)], "label": label}
-        axes.errorbar(size[at] * shift, value[i, at], yerr=reach[:, i, at], ms=3.5, lw=0.8, **look)
-        ticks = sorted({*ticks, *size[at]})
+        for i in sorted(known, key=lambda i: abs(value[i, known[i][-1]] - 0.5))[:1]:
+            x, label = size[known[i]], f"{data['material'].values[i]}, {place or OVERALL}"
+            y, ends, shift = value[i, known[i]], reach[:, i, known[i]], 1.0 + 0.03 * (row - len(places) / 2)
+            axes.errorbar(x * shift, y, yerr=ends, marker=marker, color=colour, ms=3.5, lw=0.8, label=label)
+            ticks = sorted({*ticks, *x})
     apart = [one for k, one in enumerate(ticks) if k == 0 or one > 1.15 * ticks[k - 1]]
     axes.set(xscale="log", ylim=(-0.02, 1.02), xlabel="number of bearings [-]", ylabel="P(stable) [-]")
     axes.set_xticks(apart, [f"{one:g}" for one in apart])
@@ -178,8 +167,8 @@ def drivers(data: xr.Dataset) -> Figure:
         reach = np.maximum([value - low, high - value], 0.0)
         label = f"{part['material'].values}, {part['environment'].values}"
         left.errorbar(value, y, xerr=reach, ls="", elinewidth=0.8, label=label, **look)
-        counts = (_floats(part, f"calibration_{kind}") for kind in ("predicted", "counted"))
-        right.plot(*counts, lw=0.8, **look)
+        predicted, counted = (_floats(part, f"calibration_{kind}") for kind in ("predicted", "counted"))
+        right.plot(predicted, counted, lw=0.8, **look)
     for place in range(0, len(shares), 2):
         left.axhspan(place - 0.5, place + 0.5, color=GREY, alpha=0.08, lw=0)
     left.set_yticks(range(len(shares)), [textwrap.fill(name, 26) for name in shares], fontsize=6.5)
@@ -187,21 +176,20 @@ def drivers(data: xr.Dataset) -> Figure:
     left.set(ylim=(len(shares) - 0.5, -0.5), xlabel="share of the variance of the logit\nof P(settles) [-]")
     left.set(xlim=(min(left.get_xlim()[0], -0.02), 1.02), title="a  Inputs that matter most, 95 % intervals")
     right.plot([0, 1], [0, 1], color=BLACK, lw=0.6, ls="--", label="counted as predicted")
-    right.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02), aspect="equal", anchor="N")
-    right.set(xlabel="predicted P(settles) [-]", ylabel="counted share that settles [-]")
-    right.set_title("b  Bearings left out of the fit")
+    right.set(xlim=(-0.02, 1.02), xlabel="predicted P(settles) [-]", title="b  Bearings left out of the fit")
+    right.set(ylim=(-0.02, 1.02), ylabel="counted share that settles [-]", aspect="equal", anchor="N")
     legend_below(figure)
     return figure
 
 
 def _shares(parts: list[xr.Dataset]) -> dict[str, Array]:
     """Return the inputs to draw, each with share, low and high end of every case; chance comes last."""
+    table = [[_floats(part, f"driver_share{end}") for part in parts] for end in ("", "_low", "_high")]
     found: dict[str, list[Array]] = {}
     for column, key in enumerate(parts[0]["driver"].values.astype(str)):
         name = f"its own {key.partition('.material.')[2] or 'pocket friction'}"
         rows = found.setdefault(name if key.startswith("ranking.") else key, [])
-        ends = [[_floats(part, f"driver_share{end}")[column] for part in parts] for end in ENDS]
-        rows.append(np.array(ends))  # of candidates' own inputs each case has but one
+        rows.append(np.array(table)[:, :, column])  # of candidates' own inputs each case has but one
     joined = {name: np.fmax.reduce(rows) for name, rows in found.items()}
     largest = {name: np.nan_to_num(rows[0]).max() for name, rows in joined.items()}
     *others, chance = joined
@@ -215,10 +203,9 @@ def film(data: xr.Dataset) -> Figure:
     thickness, friction = 1e6 * _floats(data, "film_thickness")[1:], _floats(data, "race_friction")
     axes.set(xscale="log", yscale="log", xlim=thickness[[0, -1]], ylim=friction[[0, -1]])
     axes.set(xlabel="film thickness [um]", ylabel="friction of ball on race [-]")
-    steps = np.outer(10.0 ** np.arange(-4, 3), [1, 2, 5]).ravel()
-    for axis, ends in ((axes.xaxis, thickness), (axes.yaxis, friction)):
-        ticks = steps[(steps >= 0.999 * ends[0]) & (steps <= 1.001 * ends[-1])]
-        axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
+        axis.set_major_formatter("{x:g}")
     axes.minorticks_off()
     allowed = _floats(data, "film_allowed", "material", "race_friction", "film_thickness")[:, :, 1:]
     names = data["material"].values.astype(str)
@@ -232,12 +219,11 @@ def film(data: xr.Dataset) -> Figure:
     axes.plot([], [], color=GREY, lw=1.2, label=label, path_effects=[withTickedStroke(angle=90, length=0.5)])
     here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
     axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study")
-    said = []
-    for value, words in ((1, "stable with every film"), (0, "stable with no film")):
+    text, own = "", own_environment(data)
+    for value, words in ((1, "every film here is allowed"), (0, "no film here is allowed")):
         same = names[(allowed == value).all(axis=(1, 2))]
-        said += [f"{words}: {', '.join(same)}"] if same.size else []
-    own = own_environment(data)
+        text += f"{words}: {', '.join(same)}\n" if same.size else ""
     where = "" if own is None else f" in {data['environment'].values[own]}"
-    _headed(axes, f"Films that keep the cage stable{where}", said)
+    _headed(axes, f"Films that keep the cage stable{where}", text)
     legend_below(figure)
     return figure

@@ -13,7 +13,7 @@ from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
-from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
+from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings, over_inputs
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.order import margin_interval, ranks, same_rank
@@ -373,14 +373,7 @@ def _row(
         **{name: getattr(judgement, name) for name in EVIDENCE},
     )
     if drawn := found.drawn.get(Case(name, environment)):
-        judged = replace(
-            judged,
-            uncertain_verdict=drawn.verdict.name,
-            uncertain_probability_stable=drawn.probability_stable,
-            uncertain_probability_low=drawn.probability_low,
-            uncertain_probability_high=drawn.probability_high,
-            uncertain_runs=drawn.runs,
-        )
+        judged = replace(judged, **over_inputs(drawn))
     threshold = _threshold(found, stiffness, friction)
     if threshold is None:
         return judged
