@@ -33,8 +33,8 @@ PICTURES = 5.0
 """Time of a ranking's figures and files [s]."""
 
 CURVE_POINTS = 14.0
-"""Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average; those that bend
-take longer at each point, too."""
+"""Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
+it bends more, its points take longer, too."""
 
 
 def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
