@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
 from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
-from separatrix.ranking.rank import _margin, _tied
+from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
 from separatrix.stability import RestitutionThreshold
@@ -59,7 +59,7 @@ def test_equal_thresholds_without_scatter_tie():
     assert ranks([(0.5, 0.5, 0.5), (0.5, 0.5, 0.5), (0.4, 0.4, 0.4)]) == [1, 1, 3]
 
 
-def test_on_one_curve_frictions_tell_who_is_tied():
+def test_on_one_curve_frictions_tell_who_issame_rank():
     """Wide thresholds of one curve do not tie what friction tells apart; those of two curves do."""
     known = {name: MeanFriction(f, 0.09 * f) for name, f in (("A", 0.08), ("B", 0.09), ("C", 0.11))}
     a, b, c = (
@@ -69,10 +69,10 @@ def test_on_one_curve_frictions_tell_who_is_tied():
         )
         for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6))
     )  # fmt: skip
-    assert _tied(b, a, known)
-    assert not _tied(c, a, known)  # 2.5 standard deviations; the intervals meet
-    assert _tied(replace(c, ball_cage_stiffness=4e6), a, known)
-    assert _tied(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
+    assert same_rank(b, a, known)
+    assert not same_rank(c, a, known)  # 2.5 standard deviations; the intervals meet
+    assert same_rank(replace(c, ball_cage_stiffness=4e6), a, known)
+    assert same_rank(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
 
 
 def test_where_eta_differs_the_margin_ranks():
@@ -85,7 +85,9 @@ def test_where_eta_differs_the_margin_ranks():
         for name, k, eta, t in (("A", 1e6, 0.5, 0.9), ("B", 3e6, 0.1, 0.8), ("C", 2e6, 0.3, 0.9))
     ]  # fmt: skip
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
-    places = ranks([_margin(row) for row in rows], lambda i, leader: _tied(rows[i], rows[leader], known))
+    places = ranks(
+        [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
+    )
     assert places == [3, 1, 2]
 
 

@@ -58,8 +58,7 @@ def _convergence(rows: Sequence[Document], places: Sequence[str], materials: Seq
             (row["environment"], row["name"]): dict(zip(row["size"], row[key], strict=True)) for row in rows
         }
         table = [[[values.get((p, m), {}).get(n) for n in sizes] for m in materials] for p in places]
-        name = key.replace("probability_", "probability_stable_") if key != "probability_stable" else key
-        found[f"convergence_{name}"] = (("place", "material", "size"), table, NUMBER)
+        found[f"convergence_{key}"] = (("place", "material", "size"), table, NUMBER)
     return found
 
 
