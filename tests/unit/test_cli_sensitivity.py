@@ -156,7 +156,7 @@ def test_text_and_files(capsys):
     assert {name for name, _ in figures("sensitivity", data)} == pictures
     assert data["material_probability_stable"].attrs["units"] == "-"
     assert data["cloud_friction"].dims == ("environment", "material", "sample")
-    assert data["film_allowed"].dims == ("material", "race_friction", "film_thickness")
+    assert data["film_restitution_factor"].dims == ("material", "race_friction", "film_thickness")
     assert data["film_thickness"].attrs["units"] == "m"
 
 

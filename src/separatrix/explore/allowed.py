@@ -94,10 +94,6 @@ def allowed_film(
 
     found = _worst([_crossing(bearings, case, kick, at, max(own, 0.05), stop) for kick in kicks])
     empty = np.zeros(0)
-    limit = found.value if isinstance(found, Crossing) else 0.0 if found is Side.ABOVE else 1.0
-    allowed = np.zeros((0, 0))
-    if films is not None:
-        allowed = np.asarray(films.restitution_factor <= limit, dtype=np.float64) * (found is not Side.ABOVE)
     return AllowedFilm(
         name=case.candidate,
         probability=PROBABILITY,
@@ -107,7 +103,7 @@ def allowed_film(
         reason="" if isinstance(found, Crossing) else NO_ETA if found is Side.ABOVE else EVERY_ETA,
         film_thickness=empty if films is None else films.film_thickness,
         race_friction=empty if films is None else films.race_friction,
-        allowed=allowed,
+        film_restitution_factor=np.zeros((0, 0)) if films is None else films.restitution_factor,
     )
 
 

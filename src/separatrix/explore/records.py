@@ -213,8 +213,8 @@ class AllowedFilm:
         Shape (thickness,) [m].
     race_friction : ndarray
         Shape (friction,) [-].
-    allowed : ndarray
-        1 where the film keeps below it, shape (friction, thickness); empty without a film.
+    film_restitution_factor : ndarray
+        Of the central bearing with each film, shape (friction, thickness); empty without a film [-].
     """
 
     name: str
@@ -225,7 +225,7 @@ class AllowedFilm:
     reason: str
     film_thickness: Array
     race_friction: Array
-    allowed: Array
+    film_restitution_factor: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -33,7 +33,7 @@ def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     yield from environments(data)
     if "driver_share" in data and np.isfinite(_floats(data, "driver_share")).any():
         yield "sensitivity-drivers", drivers(data)
-    if "film_allowed" in data:
+    if "film_limit" in data:
         yield "sensitivity-film", film(data)
 
 
@@ -207,12 +207,12 @@ def film(data: xr.Dataset) -> Figure:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
         axis.set_major_formatter("{x:g}")
     axes.minorticks_off()
-    allowed = _floats(data, "film_allowed", "material", "race_friction", "film_thickness")[:, :, 1:]
+    factor = _floats(data, "film_restitution_factor", "material", "race_friction", "film_thickness")
+    below = _floats(data, "film_limit")[:, None, None] - factor[:, :, 1:]  # 0 on the line, allowed above
     names = data["material"].values.astype(str)
-    lined = np.flatnonzero([np.ptp(one) > 0 for one in allowed])
-    for i, level in zip(lined, np.linspace(0.4, 0.6, lined.size), strict=True):  # equal lines would hide
+    for i in np.flatnonzero([one.min() < 0.0 <= one.max() for one in below]):
         colour = CYCLE[i % len(CYCLE)]
-        lines = axes.contour(thickness, friction, allowed[i], levels=[level], colors=[colour], linewidths=1.2)
+        lines = axes.contour(thickness, friction, below[i], levels=[0.0], colors=[colour], linewidths=1.2)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
         axes.plot([], [], color=colour, label=names[i])
     label = f"ticks: the side of the films with P(stable) of {float(data['film_probability']):.2f} or more"
@@ -220,8 +220,12 @@ def film(data: xr.Dataset) -> Figure:
     here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
     axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study")
     text, own = "", own_environment(data)
-    for value, words in ((1, "every film here is allowed"), (0, "no film here is allowed")):
-        same = names[(allowed == value).all(axis=(1, 2))]
+    least, most = below.min(axis=(1, 2)), below.max(axis=(1, 2))
+    for same_side, words in (
+        (least >= 0.0, "every film here is allowed"),
+        (most < 0.0, "no film here is allowed"),
+    ):
+        same = names[same_side]
         text += f"{words}: {', '.join(same)}\n" if same.size else ""
     where = "" if own is None else f" in {data['environment'].values[own]}"
     _headed(axes, f"Films that keep the cage stable{where}", text)

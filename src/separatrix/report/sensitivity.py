@@ -243,7 +243,8 @@ def _limit(row: Document) -> str:
 
 def _thicknesses(row: Document, i: int) -> str:
     """Return which film thicknesses are allowed at one race friction."""
-    allowed = [bool(one) for one in row["allowed"][i]]
+    limit = 1.0 if row["reason"].startswith("more") else row["restitution_factor"]
+    allowed = [limit is not None and eta <= limit for eta in row["film_restitution_factor"][i]]
     if all(allowed) or not any(allowed):
         return "any" if allowed[0] else "none"
     edges = [k for k in range(1, len(allowed)) if allowed[k] != allowed[k - 1]]

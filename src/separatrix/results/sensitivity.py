@@ -131,14 +131,21 @@ def _films(document: Mapping[str, Any], materials: Sequence[str]) -> Arrays:
     if first is None or not first["film_thickness"]:
         return {}
     none = [[None] * len(first["film_thickness"])] * len(first["race_friction"])
-    allowed = [films[name]["allowed"] if name in films else none for name in materials]
-    limits = [films[name]["restitution_factor"] if name in films else None for name in materials]
+    factors = [films[name]["film_restitution_factor"] if name in films else none for name in materials]
+    limits = [_limit(films[name]) if name in films else None for name in materials]
     return {
         "race_friction": (("race_friction",), first["race_friction"], NUMBER),
         "film_thickness": (("film_thickness",), first["film_thickness"], {"units": "m"}),
-        "film_allowed": (("material", "race_friction", "film_thickness"), allowed, NUMBER),
-        "film_restitution_factor": (("material",), limits, NUMBER),
+        "film_restitution_factor": (("material", "race_friction", "film_thickness"), factors, NUMBER),
+        "film_limit": (("material",), limits, NUMBER),
         "film_probability": ((), first["probability"], NUMBER),
         "film_thickness_here": ((), own["thickness"]["value"], {"units": "m"}),
         "race_friction_here": ((), own["race_friction"]["value"], NUMBER),
     }
+
+
+def _limit(film: Document) -> float:
+    """Return the largest restitution factor allowed: 1 where every one is, -1 where none is."""
+    if film["restitution_factor"] is not None:
+        return float(film["restitution_factor"])
+    return 1.0 if film["reason"].startswith("more") else -1.0
