@@ -234,7 +234,6 @@ def test_every_dimensional_variable_has_a_unit(folder):
         "whirl_direction",
         "within_reach",
         "friction_scatter_assumed",
-        "tie_group",
         *("settles", "whirls", "drifts", "unresolved", "kept_by_land"),
         "input_mean",  # each in the unit that stands beside it, in input_unit
         "input_standard_deviation",

@@ -30,7 +30,7 @@ OPTIONS = {
     "less than no samples": (["--samples", "-64"], "must be a power of two from 64"),
     "too few samples": (["--samples", "32"], "must be a power of two from 64"),
     "one short of a power": (["--samples", "4095"], "must be a power of two"),
-    "a round number": (["--samples", "1000"], "4096"),
+    "a round number": (["--samples", "1000"], "Try 1024."),
     "too many samples": (["--samples", "131072"], "to 65536"),
     "far too many samples": (["--samples", "9" * 30], "to 65536"),
     "half a sample": (["--samples", "64.5"], "--samples"),

@@ -98,7 +98,7 @@ VERBS: tuple[Verb, ...] = (
     ),
     Verb(
         name="sensitivity",
-        help="Verdicts over uncertain inputs, their sources, next test.",
+        help="Verdicts over uncertain inputs, and what to test next.",
         compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
     ),

@@ -20,14 +20,14 @@ HEADERS = (
     "offset\nmm",
     "pocket\nN",
     "land\nN",
-    "bearings",
+    "runs",
 )
 MARK, GUESS = "*", "?"
 
 LEGEND = paragraph(
     "friction of a new cage: mean, and standard deviation in per cent of it. P(stable): share of the "
     "bearings whose cage settles, from the worst kick. motion: what most of them end in. offset, forces: "
-    "largest in any run. bearings: run from the worst kick; fewer where the verdict was plain before."
+    "largest in any run. runs: bearings from the worst kick; fewer where the verdict was plain before."
 )
 
 

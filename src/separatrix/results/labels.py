@@ -109,7 +109,7 @@ RECORD_CLASSES = {
     "stability": "CriticalFriction StabilityCurve",
     "stability.map_records": "MapPoint Stopping Inference",
     "ranking": "RankedMaterial Ranking OwnCurve",
-    "explore.records": "UncertainMaterial",
+    "explore.records": "UncertainMaterial UncertainStudy",
     "pocket_contact": "PocketConditions",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""
