@@ -32,7 +32,7 @@ MAP_POINTS_NOT_TIMED = 30
 PICTURES = 5.0
 """Time of a ranking's figures and files [s]."""
 
-CURVE_POINTS = 14.0
+CURVE_POINTS = 16.0
 """Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
 it bends more, its points take longer, too."""
 

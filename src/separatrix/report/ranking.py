@@ -88,38 +88,21 @@ def _undecided(rows: Sequence[Document]) -> list[str]:
 def _elsewhere(document: Document) -> str:
     """Return which other answers there are, and who leads in them."""
     others = [one for one in document["environments"] if one["name"] != document["environment"]]
-    more = "`--full` prints all evidence and all reasons"
+    more = "`--full` prints all evidence"
     if not others:
         return f"{more}."
-    leads = [f"{one['name']}: {', '.join(_first_names(one['materials'])) or 'none'}" for one in others]
+    leads = [f"{one['name']}: {_first_names(one['materials']) or 'none'}" for one in others]
     return f"First elsewhere: {'; '.join(leads)}. {more}, for every environment."
 
 
-def _first_names(rows: Sequence[Document]) -> list[str]:
-    return [row["name"] for row in rows if row["rank"] == 1]
+def _first_names(rows: Sequence[Document]) -> str:
+    """Return the candidates of rank 1, at most three of them by name."""
+    names = [row["name"] for row in rows if row["rank"] == 1]
+    more = f" and {len(names) - LEADERS} more" if len(names) > LEADERS else ""
+    return ", ".join(names[:LEADERS]) + more
 
 
-def uncertain(document: Document, rows: Sequence[Document]) -> list[str]:
-    """Return the verdicts over the uncertain inputs; nothing if the study states none."""
-    known = [row for row in rows if row["uncertain_verdict"] is not None]
-    if not known:
-        return []
-    each: dict[str, list[str]] = {}
-    for row in known:
-        share = _with_interval(row, "uncertain_probability_stable", "uncertain_probability")
-        each.setdefault(row["uncertain_verdict"], []).append(f"{row['name']} {share}")
-    inputs = [one["name"] for one in document["study"]["uncertain_inputs"]]
-    names = ", ".join(inputs[:NAMED]) + (", ..." if len(inputs) > NAMED else "")
-    text = (
-        f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
-        f"{known[0]['uncertain_runs']} runs from each kick, P(stable) is: {_by_verdict(each)}."
-    )
-    return [paragraph(text, indent="")]
-
-
-NAMED = 6
-"""Uncertain inputs that are named; `check` lists them all."""
-
+LEADERS = 3
 
 LEGEND = (
     "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta. "
@@ -165,6 +148,10 @@ MARK = "*"
 """After a friction that was asked for where nothing was tested."""
 
 
+POCKET = " (pocket: "
+"""Before what the pocket has, at the end of a sentence on what was not tested."""
+
+
 def footnotes(rows: Sequence[Document]) -> list[str]:
     """Return what was not tested, once for all candidates of whom it is said; nothing if all was."""
     who: dict[str, list[str]] = {}
@@ -172,9 +159,16 @@ def footnotes(rows: Sequence[Document]) -> list[str]:
         for sentence in row["extrapolation"]:
             who.setdefault(sentence, []).append(row["name"])
     measured = sum(row["friction"] is not None for row in rows)
+    each: dict[str, list[str]] = {}
+    for sentence, names in who.items():
+        stem, pocket, value = sentence.partition(POCKET)
+        whose = "" if len(names) == measured else f" {', '.join(names)}"
+        each.setdefault(stem + pocket, []).append(f"{value.removesuffix(')')}{whose}" if pocket else whose)
     said = [
-        sentence + ("" if len(names) == measured else f" ({', '.join(names)})")
-        for sentence, names in who.items()
+        f"{stem}{'; '.join(values)})"
+        if stem.endswith(POCKET)
+        else stem + (f" ({values[0][1:]})" if values[0] else "")
+        for stem, values in each.items()
     ]
     text = f"extrapolated beyond the tests: {'. '.join(said)}."
     return [paragraph(text, first=f"  {MARK} ", indent="    ")] if said else []
