@@ -104,6 +104,29 @@ def _first_names(rows: Sequence[Document]) -> str:
 
 LEADERS = 3
 
+
+def uncertain(document: Document, rows: Sequence[Document]) -> list[str]:
+    """Return the verdicts over the uncertain inputs; nothing if the study states none."""
+    known = [row for row in rows if row["uncertain_verdict"] is not None]
+    if not known:
+        return []
+    each: dict[str, list[str]] = {}
+    for row in known:
+        share = _with_interval(row, "uncertain_probability_stable", "uncertain_probability")
+        each.setdefault(row["uncertain_verdict"], []).append(f"{row['name']} {share}")
+    inputs = [one["name"] for one in document["study"]["uncertain_inputs"]]
+    names = ", ".join(inputs[:NAMED]) + (", ..." if len(inputs) > NAMED else "")
+    text = (
+        f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
+        f"{known[0]['uncertain_runs']} runs from each kick, P(stable) is: {_by_verdict(each)}."
+    )
+    return [paragraph(text, indent="")]
+
+
+NAMED = 6
+"""Uncertain inputs that are named; `check` lists them all."""
+
+
 LEGEND = (
     "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta. "
     "margin: threshold less the bearing's eta. P(stable): share of runs that settle, worst kick."
