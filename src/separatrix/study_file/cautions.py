@@ -37,6 +37,15 @@ def _ramp(study: Study) -> Iterator[str]:
         )
 
 
+NAMED = 3
+"""Materials of which the same is said that are named; `check --full` shows all."""
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more
+
+
 def _materials(study: Study) -> Iterator[str]:
     """One sentence on the data of materials whose sources state another temperature, or none."""
     alike: dict[tuple[str, ...], dict[str, None]] = {}
@@ -44,7 +53,7 @@ def _materials(study: Study) -> Iterator[str]:
         if material.cautions:
             alike.setdefault(material.cautions, {})[material.name] = None
     if alike:
-        each = (f"{', '.join(names)} ({_short(cautions)})" for cautions, names in alike.items())
+        each = (f"{_some(list(names))} ({_short(cautions)})" for cautions, names in alike.items())
         yield f"Data of the library: {'; '.join(each)}. Consider your own."
 
 
