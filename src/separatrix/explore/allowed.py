@@ -107,8 +107,8 @@ def allowed_film(
     )
 
 
+# Cage of a bearing at a value that is searched, by its place.
 Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
-"""Cage of a bearing at a value that is searched, by its place."""
 
 
 def _crossing(

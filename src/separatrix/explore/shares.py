@@ -27,8 +27,8 @@ BLOCKS, EACH = 8, 32
 HALF_STEP = 2.0**-31
 """Half the step of the points: keeps them off 0 and 1."""
 
+# Answers rows of probabilities, shape (draw, input), with shape (draw, quantity).
 Model = Callable[[Array], Array]
-"""Answers rows of probabilities, shape (draw, input), with shape (draw, quantity)."""
 
 
 def sobol_shares(

@@ -35,11 +35,11 @@ class Case(NamedTuple):
     environment: str
 
 
+# Gives another cage for the one of a bearing, by its place.
 Change = Callable[[int, PlanarCage], PlanarCage]
-"""Gives another cage for the one of a bearing, by its place."""
 
+# Cage of each candidate, by its name.
 States = Mapping[str, CageState]
-"""Cage of each candidate, by its name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
