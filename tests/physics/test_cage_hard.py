@@ -62,6 +62,7 @@ def test_a_ring_that_may_turn_returns_more(nominal, free):
     """Its impact feels M/2; held against turning it has the nominal restitution."""
     cage = replace(CAGE, race_damping=damping_of(nominal))
     assert impact_restitution(cage) == pytest.approx(free, abs=5e-4)  # three digits given
+    # the same closed form there and back: rounding
     assert impact_restitution(cage, may_turn=False) == pytest.approx(nominal, rel=1e-12)
     assert impact_restitution(replace(cage, race_damping=1.0)) == 0.0
 

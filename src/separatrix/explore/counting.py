@@ -51,9 +51,8 @@ def counted(
             left_out += better
             kept = [i for i, one in enumerate(judged.by_kick) if one not in better]
             kicks = [kicks[i] for i in kept]
-            parts = [of_kicks(found, kept)]
-    found = joined(parts)
-    judged = judge(bearings.cage(case), found)
+            found = of_kicks(found, kept)
+            judged, parts = judge(bearings.cage(case), found), [found]
     counts = sorted((*left_out, *judged.by_kick), key=lambda one: one.kick)
     return replace(judged, by_kick=tuple(counts)), found
 

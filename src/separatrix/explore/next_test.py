@@ -26,6 +26,9 @@ NODES = 17
 SETTLED: Ratio = 0.95
 """A case is settled where P(settles) is at least this, or at most one less it."""
 
+LEAST_CHANCE: Ratio = 0.01
+"""Probability of settling a case below which the case is not listed."""
+
 LEAST_UNKNOWN: Ratio = 0.5
 """Share of a stated friction's variance that tests could take away at least: as after one test."""
 
@@ -50,15 +53,15 @@ def next_tests(
         chances = {
             case: _chance(b, scores, i, known.get(one.key, 1.0)) for case, (b, scores) in cases.items()
         }
-        told = {case: chance for case, chance in chances.items() if chance >= 0.01}
-        if told:
-            order = sorted(told, key=lambda case: -told[case])
+        likely = {case: chance for case, chance in chances.items() if chance >= LEAST_CHANCE}
+        if likely:
+            order = sorted(likely, key=lambda case: -likely[case])
             found.append(
                 TestGain(
                     name=one.key,
                     settled=float(sum(chances.values())),
                     cases=tuple(order),
-                    chances=tuple(told[case] for case in order),
+                    chances=tuple(likely[case] for case in order),
                 )
             )
     return tuple(sorted(found, key=lambda test: -test.settled))

@@ -93,7 +93,7 @@ class UncertainEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceRow:
-    """P(stable) of one case with the first so many bearings, from its worst kick; `environment` "": overall.
+    """P(stable) of one case against the number of bearings, from its worst kick; `environment` "": overall.
 
     `size` : shape (size,); `probability_stable` with its 95 % interval, shape (size,) [-].
     """

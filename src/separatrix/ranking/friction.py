@@ -97,7 +97,7 @@ def as_pockets_see(study: Study) -> Study:
     """Return the study with the frictions of its tests asked for at the conditions of the pockets.
 
     A friction that is stated without its tests keeps its scatter, that of an unrepeated test if none is
-    given: by how much it differs in the pocket nobody knows. What was not tested is said of both.
+    given: how much it differs in the pocket is not known. `extrapolation` says for both what was not tested.
     """
     asked = study.ranking
     if asked is None:

@@ -55,7 +55,7 @@ def meet(other: Interval | None, leader: Interval | None) -> bool:
 
 
 def same_rank(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanFriction]) -> bool:
-    """Whether a row cannot be told from the leader of its group.
+    """Whether a row and the leader of its group do not differ beyond their scatter.
 
     On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
     with another pocket stiffness there are another curve and eta, and the intervals of the margins tell.
