@@ -13,6 +13,9 @@ import numpy as np
 from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio
 
 HIGHEST = 4
+ENOUGH: Ratio = 0.9999
+"""Share of the variance of those waves at which the others are left out: speeds to 1 % of their spread."""
+
 ALIKE = 1e-9
 """Orbital speeds that differ by less than this share of their mean do not differ: an axial load."""
 
@@ -51,8 +54,8 @@ def orbital_waves(orbital_speed: Array, azimuth: Array, pitch_radius: Metre) -> 
 
     Notes
     -----
-    Harmonics up to 4, and below half the balls: what Z balls tell. With fewer waves than that some of the
-    variance is left; `share` says how much is kept.
+    Harmonics up to 4, and below half the balls: what Z balls tell; of these the first ones that hold
+    `ENOUGH` of their variance. `share` says how much of the whole is kept.
     """
     beyond = pitch_radius * (orbital_speed - mean_speed(orbital_speed))
     if np.max(np.abs(beyond)) <= ALIKE * abs(mean_speed(orbital_speed)) * pitch_radius:
@@ -61,5 +64,8 @@ def orbital_waves(orbital_speed: Array, azimuth: Array, pitch_radius: Metre) -> 
     angles = np.outer(orders, azimuth)
     cosines = 2.0 / azimuth.size * (np.cos(angles) @ beyond)
     sines = 2.0 / azimuth.size * (np.sin(angles) @ beyond)
-    share = 0.5 * float(np.sum(cosines**2 + sines**2)) / float(np.mean(beyond**2))
+    power = np.cumsum(cosines**2 + sines**2)
+    kept = 1 + int(np.searchsorted(power, ENOUGH * power[-1]))
+    cosines, sines = cosines[:kept], sines[:kept]
+    share = 0.5 * float(power[kept - 1]) / float(np.mean(beyond**2))
     return OrbitalWaves(cosines=tuple(cosines.tolist()), sines=tuple(sines.tolist()), share=min(1.0, share))

@@ -116,12 +116,11 @@ def test_an_axial_load_runs_its_balls_alike():
 @pytest.mark.parametrize("study", [STUDY, SHIPPED], ids=["controlled", "free"])
 @pytest.mark.parametrize("change", [{"radial_load": 400.0}, {"moment": 5.0}])
 def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change):
-    """R times each ball's speed beyond the mean; four of the six harmonics leave less than 1e-4 of it."""
+    """R times each ball's speed beyond the mean; the first harmonics leave less than 1e-4 of its variance."""
     state = cage_state(replace(study, operation=replace(study.operation, **change)))
     found = state.restitution.traction.bearing.equilibrium
     beyond = state.cage.pitch_radius * (found.orbital_speed - state.cage.cage_speed)
     left = waves_at(state.cage, found.azimuth) - beyond
-    assert len(state.cage.orbital_cosines) == 4
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     assert 1.0 - state.orbital_share == pytest.approx(
@@ -138,10 +137,22 @@ def test_the_ball_that_a_radial_load_presses_runs_slower():
 def test_as_many_harmonics_as_the_balls_can_tell(count):
     """Below half the balls, at most four; a wave among them is found to rounding."""
     azimuth = 2.0 * np.pi * np.arange(count) / count
-    waves = orbital_waves(500.0 + 3.0 * np.cos(azimuth) - 2.0 * np.sin(azimuth), azimuth, 0.1)
-    assert len(waves.cosines) == len(waves.sines) == min(4, (count - 1) // 2)
-    assert (waves.cosines[0], waves.sines[0]) == pytest.approx((0.3, -0.2), rel=1e-11)  # 3 out of 500
+    highest = min(4, (count - 1) // 2)
+    speeds = 500.0 + 3.0 * np.cos(highest * azimuth) - 2.0 * np.sin(highest * azimuth)
+    waves = orbital_waves(speeds, azimuth, 0.1)
+    assert len(waves.cosines) == len(waves.sines) == highest
+    assert (waves.cosines[-1], waves.sines[-1]) == pytest.approx((0.3, -0.2), rel=1e-11)  # 3 out of 500
     assert waves.share == pytest.approx(1.0, rel=1e-11)  # as above
+
+
+def test_waves_beyond_those_that_hold_nearly_all_are_left_out():
+    """A third wave of 1e-5 of the variance goes, one of 1e-3 stays."""
+    azimuth = 2.0 * np.pi * np.arange(13) / 13
+    for power, kept in ((1e-5, 1), (1e-3, 3)):
+        speeds = 500.0 + np.cos(azimuth) + np.sqrt(power) * np.cos(3.0 * azimuth)
+        waves = orbital_waves(speeds, azimuth, 0.1)
+        assert len(waves.cosines) == kept
+        assert waves.share == pytest.approx(1.0 if kept == 3 else 1.0 / (1.0 + power), rel=1e-11)
 
 
 def test_the_share_tells_what_the_harmonics_leave_out():

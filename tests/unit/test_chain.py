@@ -222,7 +222,7 @@ def test_results_and_report_say_how_far_balls_lead_and_lag():
     assert chain["half_play"] == 3e-4
     assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
     assert dict(chain_facts(chain))["Free balls lead and lag"] == (
-        "up to 63.58 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
+        "up to 63.57 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
     )
     alike = documents.cage(cage_state(STUDY))["chain"]
     assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -14,7 +15,8 @@ from separatrix.errors import InputError
 from separatrix.tribometer.clock import is_clock, seconds
 from separatrix.tribometer.column_map import column_map
 from separatrix.tribometer.reading import read_log
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.tribometer.reduction import reduce_log, reduction
+from separatrix.tribometer.siblings import with_outliers
 
 ROWS = 240
 RNG = np.random.default_rng(6)
@@ -265,6 +267,19 @@ def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
         [flag for flag in test["flags"] if "times the median of the other 4 tests" in flag] for test in tests
     ]
     assert [len(one) for one in told] == [0, 0, 0, 1, 0]
+
+
+def test_a_material_far_from_its_neighbours_is_flagged(tmp_path):
+    """One test each of five composites, four of 0.13 to 0.15 and one of 0.445, as in field data."""
+    reductions = []
+    for number, level in enumerate([0.13, 0.135, 0.445, 0.15, 0.14]):
+        rows = "".join(f"{i},{level + NOISE[i]:.5f}\n" for i in range(ROWS))
+        (log,) = read(tmp_path, f"time [s],COF\n{rows}")
+        one = reduction(log)
+        known = replace(one.test.conditions, material=f"composite {number}")
+        reductions.append(replace(one, test=replace(one.test, conditions=known)))
+    flags = [[f for f in one.test.flags if "of all materials" in f] for one in with_outliers(reductions)]
+    assert [len(told) for told in flags] == [0, 0, 1, 0, 0]
 
 
 def test_an_oscillation_of_few_rows_is_not_called_stick_slip(tmp_path):

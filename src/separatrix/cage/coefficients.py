@@ -46,6 +46,7 @@ class Coefficients(NamedTuple):
     lobes: int
     lobe_rows: int
     harmonics: int
+    driven: float  # bound on the free speed of any ball
     ramp_time: float
     ramp_start: float
     needs_rotation: bool
@@ -89,6 +90,7 @@ def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
         lobes=cage.land_lobes,
         lobe_rows=BALLS + 2 * cage.ball_count,
         harmonics=harmonics,
+        driven=float(np.sum(np.hypot(cage.orbital_cosines, cage.orbital_sines))) * T,
         ramp_time=cage.ramp_time / T,
         ramp_start=cage.ramp_start,
         needs_rotation=rotating,

@@ -239,29 +239,49 @@ def places_of(pockets, j, at, knot, waves):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def reach_balls(pockets, at, knot, waves, off, late_off, beyond):  # type: ignore[no-untyped-def]
+def farthest_way(p, w, gx, gy, h):  # type: ignore[no-untyped-def]
+    """Bound of the way of any pocket against its ball within a step of length `h`."""
+    way = p.driven * h
+    for n in range(1, ORDER + 1):
+        way += abs(w[n, gx]) + abs(w[n, gy]) + abs(w[n, S])
+    return way * (1.0 + 1e-9)
+
+
+@inlined_kernel
+def may_reach(pockets, at, way, beyond):  # type: ignore[no-untyped-def]
+    """By how much every pocket may pass its play at most, by its way; return whether any may."""
+    any_may = False
+    for j in range(pockets.shape[1]):
+        place = place_at(pockets[COSINE, j], pockets[SINE, j], at[0]) - pockets[LEAD, j]
+        beyond[j] = abs(place) + way - pockets[PLAY, j]
+        any_may |= beyond[j] >= 0.0
+    return any_may
+
+
+@inlined_kernel
+def reach_balls(pockets, at, knot, off, late_off, beyond):  # type: ignore[no-untyped-def]
     """By how much every pocket may pass its play at most, by its cubics and what lies off them."""
     for j in range(pockets.shape[1]):
-        start, rise, middle, turn, last, fall = places_of(pockets, j, at, knot, waves)
-        early, late = off, late_off
-        if waves > 0:
-            early += bends(pockets, knot, EARLY_BOUND, GONE, waves, j)
-            late += bends(pockets, knot, LATE_BOUND, GONE, waves, j)
+        start, rise, middle, turn, last, fall = places_of(pockets, j, at, knot, 0)
         one, two = start + THIRD * rise, middle - THIRD * turn
         three, four = middle + THIRD * turn, last - THIRD * fall
         high = larger(larger(larger(start, one), larger(two, three)), larger(four, last))
         low = smaller(smaller(smaller(start, one), smaller(two, three)), smaller(four, last))
-        beyond[j] = larger(high, -low) + larger(early, late) / 384.0 - pockets[PLAY, j]
+        beyond[j] = larger(high, -low) + larger(off, late_off) / 384.0 - pockets[PLAY, j]
 
 
 @inlined_kernel
-def meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled):  # type: ignore[no-untyped-def]
+def meet_balls(p, pockets, touch, w, h, gx, gy, alike, knot, off, late_off, beyond, queue, filled):  # type: ignore[no-untyped-def]
     """Queue the pockets that may meet their balls; return how many are queued."""
     at, waves = knots_of(w, gx, gy, knot), 2 * p.harmonics
     if not alike:
         off = late_off = np.inf
-    learn_ways(w, GONE, waves, knot)
-    reach_balls(pockets, at, knot, waves, off, late_off, beyond)
+    if waves == 0:
+        reach_balls(pockets, at, knot, off, late_off, beyond)
+    elif may_reach(pockets, at, farthest_way(p, w, gx, gy, h), beyond):
+        learn_ways(w, GONE, waves, knot)
+    else:
+        return filled
     size = abs(w[0, S]) + abs(w[0, gx]) + abs(w[0, gy])
     for j in range(pockets.shape[1]):
         if touch[SIDE, j] != 0 or beyond[j] < p.onset:
@@ -339,7 +359,7 @@ def first_change(p, pockets, touch, w, gx, gy, queue, filled, c, knot):  # type:
 
 
 @inlined_kernel
-def pocket_change(p, pockets, touch, w, count, knot, off, late_off, beyond, queue, c):  # type: ignore[no-untyped-def]
+def pocket_change(p, pockets, touch, w, h, count, knot, off, late_off, beyond, queue, c):  # type: ignore[no-untyped-def]
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
         return 1.0, NOTHING, -1, np.inf
@@ -349,7 +369,9 @@ def pocket_change(p, pockets, touch, w, count, knot, off, late_off, beyond, queu
     if count > 0:
         filled, deepest = leave_balls(p, pockets, touch, w, count, alike, knot, queue)
     if count < pockets.shape[1]:
-        filled = meet_balls(p, pockets, touch, w, gx, gy, alike, knot, off, late_off, beyond, queue, filled)
+        filled = meet_balls(
+            p, pockets, touch, w, h, gx, gy, alike, knot, off, late_off, beyond, queue, filled
+        )
     if filled == 0:
         return 1.0, NOTHING, -1, deepest
     end, kind, ball = first_change(p, pockets, touch, w, gx, gy, queue, filled, c, knot)

@@ -328,7 +328,7 @@ def advance(  # type: ignore[no-untyped-def]
             knots(w, GX, GY + 1, knot)
         off, late_off = fourths(w, gx, gy, S, 0.0)
         end, kind, ball, deepest = pocket_change(
-            p, pockets, touch, w, count, knot, off, late_off, beyond, queue, c
+            p, pockets, touch, w, h, count, knot, off, late_off, beyond, queue, c
         )
         if p.land_side != 0.0:
             end, kind = land_change(p, w, land, h, end, kind, knot, max(off, late_off), c)

@@ -20,8 +20,8 @@ UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
 )
 
-ALIKE = 24
-"""So many runs that all agree are enough: more would tell nothing."""
+ALIKE = 8
+"""So many runs that all agree are enough: at a crossing they do so once in 128 times."""
 
 
 @dataclass(frozen=True, slots=True)

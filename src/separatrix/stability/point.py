@@ -20,7 +20,8 @@ BAND_FEW, BAND_MOST = 0.1, 0.9
 
 MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
 """Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
-band, for kicks that may set it; on a first look at where each kick's crossings are."""
+band, for kicks that may set it, and on a critical friction without its band; on a first look at where each
+kick's crossings are."""
 
 APART = 1.4
 """A guess of the ratio between two crossings of one kick; it costs or saves time only."""
@@ -93,7 +94,7 @@ def critical_friction(
     counter : GrowthCounter, optional
         To share counts with other questions about the same cage and settings.
     band : bool
-        Whether the other kicks and the band are wanted.
+        Whether the other kicks and the band are wanted; without it half the runs do.
     guess : float, optional
         A friction near the critical one, to save time; by default from the linear law.
     """
@@ -105,7 +106,7 @@ def critical_friction(
     responses = {
         kick: Response(_look(counts, restitution_factor, kick), settings.runs) for kick in {*kicks, reference}
     }
-    most = max(1, round(MIDDLE_RUNS * settings.runs))
+    most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
     found = responses[reference].crossing(0.5, most, start)
     if not band:
         return _point(eta, settings, found, {})

@@ -1,4 +1,4 @@
-"""A test that differs from the others of the same material: a wrong column or a failed film, most likely."""
+"""A test that differs from the others: a wrong column or a failed film, most likely."""
 
 from __future__ import annotations
 
@@ -21,22 +21,34 @@ FAR = 5.0
 
 
 def with_outliers(reductions: Sequence[Reduction]) -> list[Reduction]:
-    """Return the reductions, with a flag on each test far from the others of its material and environment."""
-    groups: dict[tuple[str | None, str | None], list[int]] = {}
-    for i, one in enumerate(reductions):
-        known = one.test.conditions
-        groups.setdefault((known.material, known.environment), []).append(i)
+    """Return the reductions, with a flag on each test far from its siblings.
+
+    These are the other tests of its material and environment, or of all materials of its environment where
+    the call has too few of its own.
+    """
     found = list(reductions)
-    for places in groups.values():
-        for i in places:
-            others = [reductions[k].test.friction for k in places if k != i]
-            if flag := _flag(reductions[i].test.friction, others):
-                test = reductions[i].test
-                found[i] = replace(found[i], test=replace(test, flags=(*test.flags, flag)))
+    for i, one in enumerate(reductions):
+        friction, others, whose = one.test.friction, _others(reductions, i, same_material=True), ""
+        if len(others) + 1 < FEWEST:
+            others, whose = _others(reductions, i, same_material=False), " of all materials"
+        if flag := _flag(friction, others, whose):
+            found[i] = replace(one, test=replace(one.test, flags=(*one.test.flags, flag)))
     return found
 
 
-def _flag(friction: float, others: Sequence[float]) -> str:
+def _others(reductions: Sequence[Reduction], i: int, *, same_material: bool) -> list[float]:
+    """Friction of the other tests in the same environment."""
+    own = reductions[i].test.conditions
+    tests = [one.test for k, one in enumerate(reductions) if k != i]
+    return [
+        test.friction
+        for test in tests
+        if test.conditions.environment == own.environment
+        and (test.conditions.material == own.material or not same_material)
+    ]
+
+
+def _flag(friction: float, others: Sequence[float], whose: str) -> str:
     """Return a sentence on a friction far from the others; empty for one among them."""
     if len(others) + 1 < FEWEST or friction <= 0.0 or min(others) <= 0.0:
         return ""
@@ -50,5 +62,5 @@ def _flag(friction: float, others: Sequence[float]) -> str:
     times = format_number(friction / usual, 2)
     return (
         f"Friction {format_number(friction, 3)} is {times} times the median of the other {len(others)} "
-        f"tests, {format_number(usual, 3)}: check its material, its column and its plot."
+        f"tests{whose}, {format_number(usual, 3)}: check its material, its column and its plot."
     )
