@@ -269,11 +269,13 @@ def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
 
 
 def test_24_that_agree_are_unanimous():
-    """Of 8 that agree a tenth may still grow."""
-    assert Count(0, 24).unanimous
-    assert Count(24, 24).unanimous
-    assert not Count(0, 8).unanimous
-    assert not Count(1, 24).unanimous
+    """Of 8 that agree a tenth may still grow, but not one half."""
+    assert Count(0, 24).unanimous(0.1)
+    assert Count(24, 24).unanimous(0.9)
+    assert not Count(0, 8).unanimous(0.1)
+    assert Count(0, 8).unanimous(0.5)
+    assert not Count(1, 24).unanimous(0.5)
+    assert not Count(0, 0).unanimous(0.5)
 
 
 @pytest.mark.parametrize(("balls", "limit"), [(11, 0.1438), (12, 0.2679)])
@@ -530,4 +532,4 @@ def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
     limits.hard_limit(cage, 0.5, StabilitySettings(seed=7, runs=64))
     assert {seed for seed, *_ in taken} == {7}
     numbers = [(friction, run) for _, friction, runs in taken for run in runs]
-    assert len(numbers) == len(set(numbers)) > 64
+    assert len(numbers) == len(set(numbers)) > 40  # seven looks of 8 runs

@@ -20,8 +20,9 @@ UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
 )
 
-ALIKE = 8
-"""So many runs that all agree are enough: at a crossing they do so once in 128 times."""
+ALIKE: Ratio = 0.08
+"""Chance by which runs that all agree may hide a share at the target: 8 runs for one half (0.4 %), 24 for a
+tenth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +41,10 @@ class Count:
         """Wilson's 95 % interval of P(whirl)."""
         return wilson_interval(self.whirling, self.runs)
 
-    @property
-    def unanimous(self) -> bool:
-        """True if all of many runs agree."""
-        return self.runs >= ALIKE and self.whirling in (0, self.runs)
+    def unanimous(self, target: Ratio) -> bool:
+        """Whether all runs agree, more than would do so by chance where P is at a target."""
+        agree = self.runs > 0 and self.whirling in (0, self.runs)
+        return agree and max(target, 1.0 - target) ** self.runs < ALIKE
 
     def __add__(self, other: Count) -> Count:
         return Count(self.whirling + other.whirling, self.runs + other.runs)

@@ -147,7 +147,7 @@ class Response:
             place = centre + PLACES
             weight = posterior(near, place, target)
             centre = quantile(place, weight, 0.5)
-            jump = self._jump(centre)
+            jump = self._jump(centre, target)
             if jump is not None:
                 return jump
             if sum(count.runs for count in self._near(centre).values()) >= runs:
@@ -165,11 +165,12 @@ class Response:
             if cell > 0 and abs(math.log(LADDER[cell]) - centre) <= (NEAR + 0.01) * STEP
         }
 
-    def _jump(self, centre: float) -> Crossing | None:
+    def _jump(self, centre: float, target: Ratio) -> Crossing | None:
         """Return the whole cell if P jumps inside it from none to all: nothing more is known of it."""
         high = next((i for i in range(1, LAST) if math.log(LADDER[i]) > centre), LAST)
         below, above = (self.counts.get(i, Count(0, 0)) for i in (high - 1, high))
-        if high == 1 or not (below.unanimous and above.unanimous and below.whirling < above.whirling):
+        agree = below.unanimous(target) and above.unanimous(target)
+        if high == 1 or not agree or below.share >= above.share:
             return None
         low, top = LADDER[high - 1], LADDER[high]
         return Crossing(math.sqrt(low * top), low, top)
