@@ -12,19 +12,17 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from dataclasses import replace
-from threading import Event
 
 from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
 from separatrix.chain import cage_state
+from separatrix.runner import Runner
 from separatrix.stability import SEARCHED_FRICTION, cage_at, critical_friction
-from separatrix.stability.whole import whole_ensemble
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
 SEEDS = (101, 102)
 FACTORS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9)
 STEPS = 30
-NEVER = Event()
 
 Pairs = Counter[tuple[Verdict, ...]]
 
@@ -40,7 +38,7 @@ def pairs_at(cage: PlanarCage, settings: StabilitySettings, eta: float) -> Pairs
 
 def verdicts(cage: PlanarCage, settings: StabilitySettings) -> tuple[Verdict, ...]:
     """Verdict of each seed."""
-    return tuple(judge(cage, whole_ensemble(cage, replace(settings, seed=s), NEVER)).verdict for s in SEEDS)
+    return tuple(judge(cage, Runner().whole_ensemble(cage, replace(settings, seed=s))).verdict for s in SEEDS)
 
 
 def report(pairs: Pairs) -> str:

@@ -1,7 +1,6 @@
 """Runs that draw their own bearing: limits, a probability counted another way, frictions of each pocket."""
 
 from dataclasses import replace
-from threading import Event
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from separatrix.draws import sample
 from separatrix.ranking import rank
 from separatrix.ranking.drawn import Case, drawn_bearings
 from separatrix.ranking.friction import as_pockets_see, candidate_seen
+from separatrix.runner import Runner
 from separatrix.study import Candidate, Friction
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions
@@ -41,7 +41,7 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
     state = cage_state(study, friction=0.2)
     kicks = state.stability.kicks
     certain = judge(state.cage, run_ensemble(state.cage, state.stability, kicks=kicks, runs=8))
-    found = drawn.judge(CASE, kicks, Event())
+    found = drawn.judge(CASE, kicks, Runner())
     # settled and whirling runs alike: a change of 1e-12 is a different motion after some impacts
     assert [count.settles for count in found.by_kick] == [count.settles for count in certain.by_kick]
 
@@ -51,7 +51,7 @@ def test_the_probability_is_that_of_counting_over_the_distribution():
     study = with_distributions(study_of(0.2), {FRICTION: Uniform(low=0.1, high=0.3)})
     state = cage_state(study, friction=0.2)
     kick, runs = state.stability.kicks[1], 256
-    found = drawn_bearings(study, runs).judge(CASE, (kick,), Event())
+    found = drawn_bearings(study, runs).judge(CASE, (kick,), Runner())
     middles = np.linspace(0.1, 0.3, 33)[1::2]  # of 16 equal parts
     shares = [
         run_ensemble(

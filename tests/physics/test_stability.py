@@ -1,6 +1,5 @@
 """Stability curve and threshold: the linear limit, brute force at a point, threads, directions."""
 
-import threading
 from dataclasses import replace
 from itertools import pairwise
 
@@ -8,6 +7,7 @@ import pytest
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
 from separatrix.report.stability import drift_note
+from separatrix.runner import PART, Runner, Stopped
 from separatrix.stability import (
     GrowthCounter,
     cage_at,
@@ -19,8 +19,6 @@ from separatrix.stability import (
     stability_curve,
     threshold_points,
 )
-from separatrix.stability.pool import Stopped
-from separatrix.stability.whole import PART, whole_ensemble
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05
@@ -221,11 +219,10 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
 
 
 def test_an_interrupt_ends_a_point_between_its_batches():
-    """Once the flag is set no further batch is counted; what is known is still answered."""
+    """Once the flag is set no further batch is counted."""
     counter = GrowthCounter(CAGE, replace(SETTINGS, duration=0.01))
-    known = counter.count(0.5, 0.1, 0.5, first_run=0, runs=8)
-    counter.stop.set()
-    assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=8) == known
+    assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=8).runs == 8
+    counter.runner.stop.set()
     with pytest.raises(Stopped):
         counter.count(0.5, 0.1, 0.5, first_run=8, runs=8)
 
@@ -234,17 +231,17 @@ def test_an_ensemble_in_parts_is_the_whole_one():
     """Parts of 16 runs give, to the last bit, what all runs at once give."""
     settings = replace(SETTINGS, kicks=(0.2, 0.5), runs=PART + 5, duration=0.05)
     at_once = run_ensemble(CAGE, settings)
-    parts = whole_ensemble(CAGE, settings, threading.Event())
+    parts = Runner().whole_ensemble(CAGE, settings)
     assert repr(judge(CAGE, parts)) == repr(judge(CAGE, at_once))  # one field is an array
     assert (parts.end_energy == at_once.end_energy).all()
 
 
 def test_a_verdict_is_interrupted_between_its_parts():
     """Once the flag is set no further part is run."""
-    stop = threading.Event()
-    stop.set()
+    runner = Runner()
+    runner.stop.set()
     with pytest.raises(Stopped):
-        whole_ensemble(CAGE, SETTINGS, stop)
+        runner.whole_ensemble(CAGE, SETTINGS)
 
 
 def test_the_curve_of_a_landless_cage_says_that_it_drifts():

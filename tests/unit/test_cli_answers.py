@@ -13,6 +13,7 @@ from matplotlib import image
 from separatrix import figures, results
 from separatrix.cli import main
 from separatrix.cli.verbs import VERBS
+from separatrix.ledger import NAME
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -50,7 +51,8 @@ MATERIAL = "name friction restitution_threshold margin probability_stable verdic
 EXTRA = {"map": ("--points", "3", "--runs", "2")}
 """Options without which a verb would take long."""
 
-KEPT = {"map": {"map-points.sqlite"}, "rank": {"rank.xlsx"}}
+KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
+KEPT["rank"] = {NAME, "rank.xlsx"}
 """Files beside the answer."""
 
 pytestmark = pytest.mark.usefixtures("elsewhere")

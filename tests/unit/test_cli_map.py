@@ -18,7 +18,7 @@ from separatrix.chain import restitution_state
 from separatrix.cli import main
 from separatrix.cli.axes import read_axis
 from separatrix.errors import InputError
-from separatrix.results.ledger import NAME
+from separatrix.ledger import NAME
 from separatrix.study_file import read_study
 
 SMALL = """
@@ -210,50 +210,20 @@ def test_the_dataset_stands_on_x_and_y(capsys):
         assert str(there["decision"].values) == point["decision"]
 
 
-def test_a_second_call_takes_finished_points_and_says_so(capsys):
-    """The same document; a line on standard error; --fresh runs everything again."""
+def test_a_second_call_takes_finished_runs_and_says_so(capsys):
+    """The same document; a line on standard error."""
     first = mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
     assert main(["map", "small.toml", "--json", "--points", "3", "--runs", "2", "--out", "m"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out) == first
-    assert err.startswith("separatrix: 9 of 9 points were finished by an earlier call")
-    assert main(["map", "small.toml", "--points", "3", "--runs", "2", "--out", "m", "--fresh"]) == 0
-    assert capsys.readouterr().err == ""
+    assert err.startswith("separatrix: 18 runs were taken from m/finished-runs.sqlite")
 
 
 def test_a_finer_grid_goes_on_from_a_coarser_one(capsys):
-    """Points are found by their values: 9 of 25 are known."""
+    """Runs are found by what they depend on: those of 9 of 25 points are known."""
     mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
     assert main(["map", "small.toml", "--json", "--points", "5", "--runs", "2", "--out", "m"]) == 0
-    assert capsys.readouterr().err.startswith("separatrix: 9 of 25 points")
-
-
-def test_questions_do_not_mix_in_one_folder(capsys):
-    """Another study, other runs, another kick, other parameters: nothing is taken from the first."""
-    quick = ["--json", "--points", "2", "--out", "m"]
-    Path("other.toml").write_text(SMALL.replace('"2 ms"', '"1 ms"'))
-    for study, *options in (
-        ("small.toml", "--runs", "2"),
-        ("other.toml", "--runs", "2"),
-        ("small.toml", "--runs", "3"),
-        ("small.toml", "--runs", "2", "--kick", "1 m/s"),
-        ("small.toml", "--runs", "2", "--x", "cage.mass=10..20g"),
-    ):
-        assert main(["map", study, *options, *quick]) == 0
-        assert capsys.readouterr().err == ""
-    with sqlite3.connect(Path("m") / NAME) as connection:
-        kept = connection.execute("SELECT question, count(*) FROM point GROUP BY question").fetchall()
-    connection.close()
-    assert [count for _, count in kept] == [4] * 5
-
-
-def test_a_file_that_is_no_ledger_is_refused(capsys):
-    """One line that names the file; it is left as it was."""
-    Path("m").mkdir()
-    (Path("m") / NAME).write_text("mine" * 1000)
-    assert main(["map", "small.toml", "--points", "2", "--runs", "2", "--out", "m"]) == 2
-    assert f"m/{NAME} cannot be used to keep points" in capsys.readouterr().err
-    assert (Path("m") / NAME).read_text() == "mine" * 1000
+    assert capsys.readouterr().err.startswith("separatrix: 18 runs were taken")
 
 
 SLOW = ["map", "slow.toml", "--points", "16", "--jobs", "1", "--json"]
@@ -270,7 +240,7 @@ def kept(folder: str) -> int:
     try:
         connection = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
         with connection:
-            return connection.execute("SELECT count(*) FROM point").fetchone()[0]
+            return connection.execute("SELECT count(*) FROM piece").fetchone()[0]
     except sqlite3.OperationalError:
         return 0
 
@@ -301,7 +271,7 @@ def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     assert 0 < part["counts"]["not_run"] == len(left) < 256
     assert main([*SLOW, "--out", "m"]) == 0
     whole, said = capsys.readouterr()
-    assert f"{256 - len(left)} of 256 points were finished" in said
+    assert "runs were taken from" in said
     assert main(SLOW) == 0
     assert json.loads(whole) == json.loads(capsys.readouterr().out)
 

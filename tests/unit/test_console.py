@@ -151,7 +151,7 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert said.splitlines()[-1] == "separatrix: interrupted; no file was written."
+    assert said.splitlines()[-1] == "separatrix: interrupted; runs that were finished are kept."
     assert all(line.startswith("separatrix: ") for line in said.splitlines())
     assert not out.exists()
 

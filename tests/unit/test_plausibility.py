@@ -16,7 +16,7 @@ from separatrix.study_file.plausible import beyond_bearings, plausible_cage_mass
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage
 assert CAGE is not None
-WORK = answers.Work(jobs=1, progress=None, folder=None, quiet=True)
+WORK = answers.Work(jobs=1, progress=None)
 
 
 def operated(**changes: float) -> Study:

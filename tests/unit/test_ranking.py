@@ -3,7 +3,6 @@
 import math
 from dataclasses import fields, replace
 from enum import Enum
-from threading import Event
 
 import numpy as np
 import pytest
@@ -17,8 +16,8 @@ from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_
 from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import RankedMaterial
+from separatrix.runner import Runner
 from separatrix.stability import RestitutionThreshold
-from separatrix.stability.whole import whole_ensemble
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -185,7 +184,7 @@ def test_a_row_carries_all_the_evidence_of_its_verdict():
     a, b = rank(study).environments[0].materials
     assert a.margin == a.restitution_threshold - a.restitution_factor
     cage = cage_state(study, friction=0.1).cage
-    found = judge(cage, whole_ensemble(cage, QUICK, Event()))
+    found = judge(cage, Runner().whole_ensemble(cage, QUICK))
     names = {f.name for f in fields(Judgement)}
     assert names <= {f.name for f in fields(RankedMaterial)}
     for name in names - {"reason"}:
@@ -237,7 +236,8 @@ def test_an_interrupt_leaves_a_ranking_that_says_so():
             raise KeyboardInterrupt
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
-    found = rank(quick_study(ranking=two), progress=stop)
+    long = replace(QUICK, runs=512)  # the second verdict is under way when the first is told
+    found = rank(quick_study(ranking=two, stability=long), progress=stop)
     assert not found.complete
     a, b = sorted(found.overall, key=lambda row: row.name)
     assert (a.verdict is None, a.restitution_threshold) == (False, None)

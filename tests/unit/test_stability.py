@@ -1,18 +1,18 @@
 """Counting, crossing, tracing and inverting, without any cage: a counter that knows its probabilities."""
 
 import math
-import threading
-import time
 from itertools import accumulate, pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain import cage_state
 from separatrix.errors import ValidityWarning
 from separatrix.report.stability import curve
+from separatrix.runner import Runner
 from separatrix.stability import (
     Count,
     CriticalFriction,
@@ -22,14 +22,12 @@ from separatrix.stability import (
     cage_at,
     closed_hard_limit,
     critical_friction,
-    growth,
     limits,
     restitution_threshold,
     threshold_factors,
 )
 from separatrix.stability.curve import Tracer, bends
 from separatrix.stability.point import own_restitution_factor
-from separatrix.stability.pool import Stopped, work_out, work_through
 from separatrix.stability.response import LADDER, Crossing, cell_of
 from separatrix.stability.tracing import COARSE, FINEST, finer
 from separatrix.study import StabilitySettings
@@ -237,28 +235,10 @@ def test_unresolved_runs_are_told(monkeypatch):
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 3)
     found.cause[0] = (Cause.NONE, Cause.IMPACTS, Cause.NO_CONTACT, Cause.FALLING)
-    monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
+    monkeypatch.setattr(runner, "run_ensemble", lambda *_, **__: found)
     counter = GrowthCounter(cage, StabilitySettings())
     with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not whirling"):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
-
-
-def test_counts_are_those_of_their_kick_and_restitution_factor(monkeypatch):
-    """Parts at one point add up; other kicks and restitution factors have their own."""
-    cage = cage_state(read_study("cryogenic-turbopump")).cage
-    found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
-    found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.SETTLES] * 3)
-    monkeypatch.setattr(growth, "run_ensemble", lambda *_, **__: found)
-    counter = GrowthCounter(cage, StabilitySettings())
-    for eta, friction, kick, first in (
-        (0.5, 0.1, 0.5, 0),
-        (0.5, 0.1, 0.5, 4),
-        (0.5, 0.2, 1.0, 0),
-        (0.6, 0.2, 0.5, 0),
-    ):
-        counter.count(eta, friction, kick, first_run=first, runs=4)
-    assert counter.counts(0.5, 0.5) == {0.1: Count(2, 8)}
-    assert counter.counts(0.5, 1.0) == counter.counts(0.6, 0.5) == {0.2: Count(1, 4)}
 
 
 @pytest.mark.parametrize("eta", [0.05, 0.5, 0.95, 1.0])
@@ -292,7 +272,7 @@ def traced(height, spread=0.002):
         return point(node[0], height(node[0]), spread)
 
     tracer = Tracer(None, (), band=False)
-    found = work_out(compute, tracer.first, more=tracer.more)
+    found = Runner().work_out(compute, tracer.first, more=tracer.more)
     assert tracer.complete(found)
     return {node[0]: one for node, one in found.items()}
 
@@ -409,73 +389,6 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
     factors = threshold_factors(StabilitySettings(restitution_factors=(0.3, 0.5)))
     assert factors == [0.0, 0.3, 0.5, 0.98, 1.0]
     assert threshold_factors(StabilitySettings()) == []
-
-
-def test_work_comes_back_in_order():
-    """Results stand in the order of the items, however many threads."""
-    told = []
-    found = work_through(
-        lambda x: x * x, range(20), jobs=3, progress=lambda done, total: told.append((done, total))
-    )
-    assert found == [x * x for x in range(20)]
-    assert told == [(i, 20) for i in range(1, 21)]
-
-
-def test_an_interrupt_keeps_what_is_done():
-    """Ctrl-C after three items: those are returned, the rest is None, and no thread is left behind."""
-
-    def stop(done, total):
-        if done == 3:
-            raise KeyboardInterrupt
-
-    def work(item):
-        time.sleep(1e-3)
-        return item + 1
-
-    found = work_through(work, range(500), jobs=1, progress=stop)
-    assert found[:3] == [1, 2, 3]
-    assert None in found
-    assert not [thread for thread in threading.enumerate() if "ThreadPool" in thread.name]
-
-
-def test_a_fault_in_the_work_is_not_swallowed():
-    """An exception of one item is raised, not turned into a gap."""
-    with pytest.raises(ZeroDivisionError):
-        work_through(lambda x: 1 // x, [1, 0], jobs=2)
-
-
-def test_a_long_computation_is_stopped_by_an_interrupt():
-    """The thread inside a point looks at the flag and gives up; what was finished before is kept."""
-    stop, inside, stopped = threading.Event(), threading.Event(), []
-
-    def compute(place):
-        if place == 0:
-            inside.wait(timeout=5.0)
-            return "done"
-        inside.set()
-        stopped.append(stop.wait(timeout=5.0))
-        raise Stopped
-
-    def interrupt(done, total):
-        raise KeyboardInterrupt
-
-    assert work_out(compute, [0, 1], jobs=2, stop=stop, progress=interrupt) == {0: "done"}
-    assert stopped == [True]
-
-
-def test_places_that_follow_are_computed_once():
-    """A place that two others ask for is computed once, and progress counts it."""
-    computed, told = [], []
-
-    def compute(place):
-        computed.append(place)
-        return place
-
-    found = work_out(
-        compute, [1, 2], more=lambda place, _: [3] if place < 3 else [], progress=lambda *at: told.append(at)
-    )
-    assert sorted(computed) == sorted(found) == [1, 2, 3]
-    assert told[-1] == (3, 3)
 
 
 def test_the_report_says_between_which_frictions_the_kick_decides():

@@ -10,17 +10,18 @@ from separatrix.errors import SeparatrixError, ValidityWarning
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
     from separatrix.cage import History
     from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
     from separatrix.cli.console import Life
+    from separatrix.ledger import Ledger
     from separatrix.lubrication import LubricationCurve
     from separatrix.ranking import Ranking
     from separatrix.stability import StabilityCurve
     from separatrix.study import Study
     from separatrix.traction import ShearField, TractionCurve
-    from separatrix.units import Metre, MetrePerSecond, Ratio
+    from separatrix.units import Metre, MetrePerSecond, Ratio, Second
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
@@ -39,12 +40,15 @@ MOST_SAMPLES = 20_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Work:
-    """How the computing is to be done: threads, whom to tell how far it is, and where files may be."""
+    """How the computing is to be done: threads, whom to tell how far it is, where runs are kept."""
 
     jobs: int
     progress: Life
-    folder: Path | None = None
-    quiet: bool = False
+    ledger: Ledger | None = None
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Say what the work will take; less where an earlier call has kept runs."""
+        self.progress.expect(estimate, at_most=at_most or (self.ledger is not None and self.ledger.goes_on))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -267,8 +271,10 @@ def stability(study: Study, work: Work) -> StabilityAnswer:
 
     study = cage_seen(study)
     state = cage_state(study, friction=known_friction(study) or 0.0)  # the curve runs through all frictions
-    work.progress.expect(lambda: expected_curve(state.cage, state.stability, jobs=work.jobs, band=True))
-    curve = stability_curve(state.cage, state.stability, jobs=work.jobs, progress=work.progress)
+    work.expect(lambda: expected_curve(state.cage, state.stability, jobs=work.jobs, band=True))
+    curve = stability_curve(
+        state.cage, state.stability, jobs=work.jobs, progress=work.progress, ledger=work.ledger
+    )
     return StabilityAnswer(cage=state, curve=curve)
 
 
@@ -331,5 +337,6 @@ def rank(study: Study, work: Work) -> RankingAnswer:
     own = reference_candidate(study, question)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, question))
     _say_if_overdamped(state.restitution)
-    work.progress.expect(lambda: expected_ranking(study, jobs=work.jobs))
-    return RankingAnswer(cage=state, ranking=rank(study, jobs=work.jobs, progress=work.progress))
+    work.expect(lambda: expected_ranking(study, jobs=work.jobs))
+    found = rank(study, jobs=work.jobs, progress=work.progress, ledger=work.ledger)
+    return RankingAnswer(cage=state, ranking=found)

@@ -129,8 +129,8 @@ def _answer(
         with Interruptible():
             return run(verb, study, options)
     except KeyboardInterrupt:  # here, for typer would swallow it
-        kept = verb.keeps_points and not (json and out is None)
-        return interrupted("points that were finished are kept." if kept else "no file was written.")
+        kept = verb.keeps_runs and not (json and out is None)
+        return interrupted("runs that were finished are kept." if kept else "no file was written.")
 
 
 def _command(verb: Verb) -> Callable[..., int]:
@@ -172,15 +172,12 @@ def _map(
     runs: Annotated[int, typer.Option(**WHOLE, help="Most runs of a point.")] = 16,
     kick: Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)] = None,
     adaptive: Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)] = False,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="Run again what an earlier call has finished.")
-    ] = False,
     json: Json = False,
     out: Out = None,
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    asked = MapOptions(x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive, fresh=fresh)
+    asked = MapOptions(x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
     verb = replace(VERB["map"], compute=partial(whole_map, options=asked))
     return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
 

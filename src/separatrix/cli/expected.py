@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.cage import PlanarCage
-    from separatrix.stability.map_records import MapPoint, MapQuestion
+    from separatrix.stability.map_records import MapQuestion
     from separatrix.study import StabilitySettings, Study
     from separatrix.units import Ratio, Second
 
@@ -47,7 +47,7 @@ def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, 
     each = _mean(_time_of_a_run(one, settings) for one in some)
     points = float(len(settings.restitution_factors)) or CURVE_POINTS
     banded = points + 1.0 if band else 1.0
-    runs = points * _runs_of_a_point(settings) + banded * _runs_of_a_band(settings)
+    runs = points * _runs_of_a_point(settings, band=band) + banded * _runs_of_a_band(settings)
     return each * runs / jobs
 
 
@@ -104,28 +104,27 @@ SHARE_RUN = 0.7
 """Of the runs of all cases, those that are made, with what the inverse questions take."""
 
 
-def expected_map(
-    question: MapQuestion, known: Mapping[tuple[float, float], MapPoint], *, jobs: int
-) -> Second:
-    """Time of the points of a map that are not known, by some of them on an even lattice.
+def expected_map(question: MapQuestion, *, jobs: int) -> Second:
+    """Time of the points of a map, by some of them on an even lattice.
 
     Those of its first row and column are not timed: with them the links of the chain are made that others
     share.
     """
+    from separatrix.runner import Runner
     from separatrix.stability.map import PointFinder, require_friction
 
     require_friction(question)
     xs, ys = (_some(axis.values) for axis in (question.x, question.y))
-    left = sum((x, y) not in known for x in question.x.values for y in question.y.values)
-    if left <= MAP_POINTS_NOT_TIMED:
+    points = len(question.x.values) * len(question.y.values)
+    if points <= MAP_POINTS_NOT_TIMED:
         return 0.0
-    finder = PointFinder(question)
+    finder = PointFinder(question, Runner())
     for x in xs:
         finder((x, ys[0]))
     for y in ys[1:]:
         finder((xs[0], y))
     each = _mean(_time_of(finder, (x, y)) for x in xs[1:] for y in ys[1:])
-    return each * left / jobs
+    return each * points / jobs
 
 
 def _some(values: Sequence[float]) -> list[float]:
@@ -139,9 +138,9 @@ def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, flo
     return time.perf_counter() - begun
 
 
-def _runs_of_a_point(settings: StabilitySettings) -> float:
+def _runs_of_a_point(settings: StabilitySettings, *, band: bool) -> float:
     """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
-    return 32.0 + 1.5 * settings.runs
+    return 32.0 + (1.5 if band else 0.75) * settings.runs
 
 
 def _runs_of_a_band(settings: StabilitySettings) -> float:

@@ -1,22 +1,18 @@
-"""The verb `map`: its options, and the points that an earlier call has finished."""
+"""The verb `map` and its options."""
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
-from separatrix.cli.console import complain
 from separatrix.errors import InputError
 from separatrix.units import parse
 
 if TYPE_CHECKING:
     from separatrix.chain import CageState
     from separatrix.cli.answers import Work
-    from separatrix.results.ledger import Ledger
-    from separatrix.stability.map_records import MapAxis, MapPoint, MapQuestion, StabilityMap
+    from separatrix.stability.map_records import MapAxis, MapQuestion, StabilityMap
     from separatrix.study import Study
 
 MOST_RUNS = 1_000_000
@@ -32,7 +28,6 @@ class MapOptions:
     runs: int = 16
     kick: str | None = None
     adaptive: bool = False
-    fresh: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +39,7 @@ class MapAnswer:
 
 
 def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> MapAnswer:
-    """Run the points of a map that no earlier call has finished.
+    """Run the points of a map.
 
     Raises
     ------
@@ -62,16 +57,10 @@ def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> Ma
     question = replace(question, study=study)
     state = cage_state(study, friction=known_friction(study) or 0.0)
     x, y = (replace(axis, here=value_here(study, state, axis.parameter)) for axis in (question.x, question.y))
-    with _ledger(question, work, fresh=bool(options and options.fresh)) as ledger:
-        known = _known(ledger, question, work)
-        work.progress.expect(lambda: expected_map(question, known, jobs=work.jobs), at_most=question.adaptive)
-        found = stability_map(
-            replace(question, x=x, y=y),
-            jobs=work.jobs,
-            progress=work.progress,
-            known=known,
-            keep=ledger.keep if ledger else None,
-        )
+    work.expect(lambda: expected_map(question, jobs=work.jobs), at_most=question.adaptive)
+    found = stability_map(
+        replace(question, x=x, y=y), jobs=work.jobs, progress=work.progress, ledger=work.ledger
+    )
     return MapAnswer(cage=state, map=found)
 
 
@@ -127,32 +116,3 @@ def kick_speed(text: str) -> float:
         rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g}"
         raise InputError("--kick", rule, "m/s", f"{speed:g}", NO_KICK)
     return speed
-
-
-@contextlib.contextmanager
-def _ledger(question: MapQuestion, work: Work, *, fresh: bool) -> Iterator[Ledger | None]:
-    """Yield the ledger in the folder of the answer; None where no file is to be written."""
-    if work.folder is None:
-        yield None
-        return
-    from separatrix.results.ledger import NAME, Ledger
-
-    ledger = Ledger(work.folder / NAME, question)
-    try:
-        if fresh:
-            ledger.forget()
-        yield ledger
-    finally:
-        ledger.close()
-
-
-def _known(ledger: Ledger | None, question: MapQuestion, work: Work) -> dict[tuple[float, float], MapPoint]:
-    """Points of this map that were finished before; says on standard error how many."""
-    if ledger is None:
-        return {}
-    known = ledger.points()
-    total = len(question.x.values) * len(question.y.values)
-    here = sum((x, y) in known for x in question.x.values for y in question.y.values)
-    if here and not work.quiet:
-        complain(f"{here} of {total} points were finished by an earlier call; --fresh computes them again.")
-    return known

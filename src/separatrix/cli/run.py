@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.answers import Work
-from separatrix.cli.console import answer, harmless, interrupted, progress_bar
+from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
@@ -21,6 +21,7 @@ from separatrix.errors import InputError, ValidityWarning
 if TYPE_CHECKING:
     import xarray as xr
 
+    from separatrix.ledger import Ledger
     from separatrix.study import Study
 
 ANSWERED = 0
@@ -62,7 +63,7 @@ def run(verb: Verb, name: str, options: Options) -> int:
         with _folder(verb, study, options) as folder:
             document = _document(verb, study, options, notes, folder)
             _deliver(verb, document, folder, options)
-    return _status(document, goes_on=verb.keeps_points and folder is not None)
+    return _status(document, goes_on=verb.keeps_runs and folder is not None)
 
 
 def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
@@ -88,10 +89,29 @@ def _document(
     """Compute the answer and return it as plain data with its provenance."""
     from separatrix.results import document
 
-    with progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress:
-        work = Work(jobs=options.jobs, progress=progress, folder=folder, quiet=options.quiet)
-        record = verb.compute(study, work)
+    with (
+        progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress,
+        _ledger(folder if verb.keeps_runs else None) as ledger,
+    ):
+        record = verb.compute(study, Work(jobs=options.jobs, progress=progress, ledger=ledger))
+    if ledger is not None and ledger.taken and not options.quiet:
+        complain(f"{ledger.taken} runs were taken from {ledger.path}, where an earlier call had kept them.")
     return document(verb.name, record, study, grouped(notes))
+
+
+@contextlib.contextmanager
+def _ledger(folder: Path | None) -> Iterator[Ledger | None]:
+    """Yield the ledger in the folder of the answer; None where no file is to be written."""
+    if folder is None:
+        yield None
+        return
+    from separatrix.ledger import NAME, Ledger
+
+    ledger = Ledger(folder / NAME)
+    try:
+        yield ledger
+    finally:
+        ledger.close()
 
 
 def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options: Options) -> None:

@@ -65,6 +65,6 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     own = reference_candidate(study, asked)
     state = cage_state(seen, material=own.material, friction=reference_friction(seen, asked))
     uncertain_inputs(as_pockets_see(study))  # refused before anything is timed
-    work.progress.expect(lambda: expected_uncertain(study, samples, jobs=work.jobs))
-    found = uncertain_study(study, samples, jobs=work.jobs, progress=work.progress)
+    work.expect(lambda: expected_uncertain(study, samples, jobs=work.jobs))
+    found = uncertain_study(study, samples, jobs=work.jobs, progress=work.progress, ledger=work.ledger)
     return SensitivityAnswer(cage=state, uncertain=found)

@@ -29,7 +29,7 @@ class Verb:
 
     `needs` are the sections of a study that may be left out but not for this question. How the record is
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
-    `keeps_points` is for an answer whose parts are kept in its folder as they are finished; `draw` is for
+    `keeps_runs` is for an answer whose runs are kept in its folder as they are finished; `draw` is for
     pictures beside the figures; `has_workbook` for an answer that is also written as a workbook; `has_more`
     for one that is longer than a screen, and has an option for all of it.
     """
@@ -39,7 +39,7 @@ class Verb:
     compute: Callable[[Study, answers.Work], Any]
     needs: tuple[str, ...] = ()
     writes_files: bool = True
-    keeps_points: bool = False
+    keeps_runs: bool = False
     draw: Draw | None = None
     has_workbook: bool = False
     has_more: bool = False
@@ -74,13 +74,14 @@ VERBS: tuple[Verb, ...] = (
         help="Critical friction against restitution factor.",
         compute=answers.stability,
         needs=("cage",),
+        keeps_runs=True,
     ),
     Verb(
         name="map",
         help="Where the cage is stable in the plane of two parameters.",
         compute=mapping.whole_map,
         needs=("cage",),
-        keeps_points=True,
+        keeps_runs=True,
     ),
     Verb(
         name="simulate",
@@ -92,6 +93,7 @@ VERBS: tuple[Verb, ...] = (
         name="rank",
         help="Rank the cage materials: verdict, margin, reason.",
         compute=answers.rank,
+        keeps_runs=True,
         has_workbook=True,
         has_more=True,
         needs=("cage", "ranking"),
@@ -101,5 +103,6 @@ VERBS: tuple[Verb, ...] = (
         help="Verdicts over uncertain inputs, and what to test next.",
         compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
+        keeps_runs=True,
     ),
 )

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from threading import Event
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from separatrix.distribution import LogNormal
 from separatrix.explore.records import AllowedFilm, AllowedFriction
 from separatrix.lubrication import LubricationCurve
 from separatrix.ranking.drawn import Case, DrawnBearings
+from separatrix.runner import Runner
 from separatrix.stability.growth import Count, race_damping_at
 from separatrix.stability.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.units import MetrePerSecond, Ratio
@@ -38,14 +38,14 @@ def allowed_friction(
     names: Sequence[str],
     scatter: Ratio,
     kicks: Sequence[MetrePerSecond],
-    stop: Event,
+    runner: Runner,
 ) -> AllowedFriction:
     """Largest mean friction of a new material that scatters by `scatter`, in the pockets of some candidates.
 
     Raises
     ------
     Stopped
-        `stop` was set.
+        The work was interrupted.
     """
     own = next(case for case in bearings.friction if case.candidate == names[0])
     law = LogNormal(mean=1.0, standard_deviation=scatter) if scatter > 0.0 else None
@@ -56,7 +56,7 @@ def allowed_friction(
     def at(friction: Ratio, place: int, cage: PlanarCage) -> PlanarCage:
         return replace(cage, ball_cage_friction=friction * float(shares[place]))
 
-    found = _worst([_crossing(bearings, own, kick, at, 0.1, stop) for kick in kicks])
+    found = _worst([_crossing(bearings, own, kick, at, 0.1, runner) for kick in kicks])
     known = isinstance(found, Crossing)
     return AllowedFriction(
         names=tuple(names),
@@ -74,7 +74,7 @@ def allowed_film(
     case: Case,
     kicks: Sequence[MetrePerSecond],
     films: LubricationCurve | None,
-    stop: Event,
+    runner: Runner,
 ) -> AllowedFilm:
     """Largest restitution factor of the central bearing, the dampings of all bearings scaled with its own.
 
@@ -84,7 +84,7 @@ def allowed_film(
     Raises
     ------
     Stopped
-        `stop` was set.
+        The work was interrupted.
     """
     central = bearings.cage(case)
     own = bearings.central[case.candidate].restitution.restitution.restitution_factor
@@ -92,7 +92,7 @@ def allowed_film(
     def at(eta: Ratio, _place: int, cage: PlanarCage) -> PlanarCage:
         return replace(cage, race_damping=cage.race_damping * _ratio(central, eta))
 
-    found = _worst([_crossing(bearings, case, kick, at, max(own, 0.05), stop) for kick in kicks])
+    found = _worst([_crossing(bearings, case, kick, at, max(own, 0.05), runner) for kick in kicks])
     empty = np.zeros(0)
     return AllowedFilm(
         name=case.candidate,
@@ -112,14 +112,14 @@ Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
 
 
 def _crossing(
-    bearings: DrawnBearings, case: Case, kick: MetrePerSecond, at: Changed, guess: Ratio, stop: Event
+    bearings: DrawnBearings, case: Case, kick: MetrePerSecond, at: Changed, guess: Ratio, runner: Runner
 ) -> Crossing | Side:
     """Value at which the share of bearings that do not settle from a kick passes what may fail."""
     total = len(bearings.runs)
 
     def look(value: Ratio, first: int, runs: int) -> Count:
         places = [place % total for place in range(first, first + runs)]
-        found = bearings.ensemble(case, (kick,), places, stop, lambda place, cage: at(value, place, cage))
+        found = bearings.ensemble(case, (kick,), places, runner, lambda place, cage: at(value, place, cage))
         return Count(runs - int(found.count(RunOutcome.SETTLES)[0]), runs)
 
     return Response(look, RUNS).crossing(1.0 - PROBABILITY, RUNS, guess)

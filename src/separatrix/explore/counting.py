@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from threading import Event
 
 import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, KickCount, RunOutcome, Verdict, judge, wilson_interval
 from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.ranking.drawn import Case, DrawnBearings
-from separatrix.stability.whole import joined
+from separatrix.runner import Runner, joined
 from separatrix.units import MetrePerSecond, Ratio
 
 BLOCK = 64
@@ -25,7 +24,7 @@ NORMAL = 3.2905
 
 
 def counted(
-    bearings: DrawnBearings, case: Case, kicks: Sequence[MetrePerSecond], stop: Event
+    bearings: DrawnBearings, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner
 ) -> tuple[Judgement, Ensemble]:
     """Run the bearings of a case in blocks, until all have run or the verdict is plain.
 
@@ -35,13 +34,13 @@ def counted(
     Raises
     ------
     Stopped
-        `stop` was set before the end.
+        The work was interrupted.
     """
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
     total, kicks = len(bearings.runs), list(kicks)
     for first in range(0, total, BLOCK):
-        parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), stop))
+        parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), runner))
         found = joined(parts)
         judged = judge(bearings.cage(case), found)
         if is_plain(judged):

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, replace
 from functools import partial
-from threading import Event
 
 import numpy as np
 
@@ -35,13 +34,14 @@ from separatrix.explore.records import (
     UncertainStudy,
 )
 from separatrix.explore.shares import sobol_shares
+from separatrix.ledger import Ledger
 from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, overall, with_scatter
 from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.plausible import beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
-from separatrix.stability.pool import Progress, work_out
+from separatrix.runner import Progress, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array
@@ -61,7 +61,12 @@ Counted = tuple[Judgement, Ensemble]
 
 
 def uncertain_study(
-    study: Study, bearings: int, *, jobs: int = 1, progress: Progress | None = None
+    study: Study,
+    bearings: int,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    ledger: Ledger | None = None,
 ) -> UncertainStudy:
     """Draw bearings from the uncertain inputs of a study and judge the cages of every candidate.
 
@@ -75,6 +80,8 @@ def uncertain_study(
         Threads; the numbers do not depend on it.
     progress : callable, optional
         Called with (done, total) pieces of work.
+    ledger : Ledger, optional
+        Where finished runs are kept, and looked for.
 
     Raises
     ------
@@ -85,19 +92,13 @@ def uncertain_study(
     if bearings < FEWEST:
         cure = "Powers of two spread most evenly: 512."
         raise InputError("--samples", f"must be at least {FEWEST}", value=str(bearings), cure=cure)
-    drawn, stop = drawn_bearings(study, bearings), Event()
-    inverse = _inverse(drawn, stop)
+    drawn, runner = drawn_bearings(study, bearings), Runner(jobs=jobs, progress=progress, ledger=ledger)
+    inverse = _inverse(drawn, runner)
     pieces: dict[Case | str, Callable[[], object]] = {
-        case: partial(counted, drawn, case, drawn.kicks, stop) for case in drawn.friction
+        case: partial(counted, drawn, case, drawn.kicks, runner) for case in drawn.friction
     }
     pieces.update(inverse)
-    found = work_out(
-        lambda key: pieces[key](),
-        pieces,
-        jobs=jobs,
-        progress=progress,
-        stop=stop,
-    )
+    found = runner.work_out(lambda key: pieces[key](), pieces)
     judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
     answered = [found[key] for key in inverse if key in found]
     answer = _answer(study, drawn, judged, answered, bearings)
@@ -142,7 +143,7 @@ def _answer(
     )
 
 
-def _inverse(drawn: DrawnBearings, stop: Event) -> dict[str, Callable[[], object]]:
+def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], object]]:
     """Inverse questions: a friction for each pocket stiffness, a film for each candidate."""
     ranking = ranking_question(drawn.study)
     alike: dict[float, list[str]] = {}
@@ -150,7 +151,7 @@ def _inverse(drawn: DrawnBearings, stop: Event) -> dict[str, Callable[[], object
         alike.setdefault(drawn.central[name].cage.ball_cage_stiffness, []).append(name)
     pieces: dict[str, Callable[[], object]] = {
         f"friction {names[0]}": partial(
-            allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, stop
+            allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, runner
         )
         for names in alike.values()
     }
@@ -160,7 +161,7 @@ def _inverse(drawn: DrawnBearings, stop: Event) -> dict[str, Callable[[], object
         for name in names:
             case = Case(name, environment)
             if case in drawn.friction:
-                pieces[f"film {name}"] = partial(allowed_film, drawn, case, drawn.kicks, films, stop)
+                pieces[f"film {name}"] = partial(allowed_film, drawn, case, drawn.kicks, films, runner)
     return pieces
 
 

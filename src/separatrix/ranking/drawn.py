@@ -9,20 +9,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from threading import Event
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
-from separatrix.cage import Ensemble, Judgement, PlanarCage, judge, run_ensemble
+from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.draws import UncertainInput, sample
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction_fit import TestedFriction
 from separatrix.ranking.friction import as_pockets_see, conditions_of
-from separatrix.stability.pool import Stopped
-from separatrix.stability.whole import joined
+from separatrix.runner import Runner, joined
 from separatrix.study import Friction, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio
@@ -75,9 +73,9 @@ class DrawnBearings:
     friction: Mapping[Case, Array]
     failures: tuple[str, ...]
 
-    def judge(self, case: Case, kicks: Sequence[MetrePerSecond], stop: Event) -> Judgement:
+    def judge(self, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner) -> Judgement:
         """Judge all the runs of a case, offsets by the central cage: see `ensemble`."""
-        return judge(self.cage(case), self.ensemble(case, kicks, range(len(self.runs)), stop))
+        return judge(self.cage(case), self.ensemble(case, kicks, range(len(self.runs)), runner))
 
     @property
     def kicks(self) -> tuple[MetrePerSecond, ...]:
@@ -93,7 +91,7 @@ class DrawnBearings:
         case: Case,
         kicks: Sequence[MetrePerSecond],
         places: Iterable[int],
-        stop: Event,
+        runner: Runner,
         change: Change | None = None,
     ) -> Ensemble:
         """Run some of the bearings of a case once from each kick.
@@ -106,24 +104,24 @@ class DrawnBearings:
             From each of them [m/s].
         places : iterable of int
             Which bearings.
-        stop : Event
-            Ends the work.
+        runner : Runner
+            Runs them.
         change : callable, optional
             Gives another cage for the one of a place.
 
         Raises
         ------
         Stopped
-            `stop` was set before the last run.
+            The work was interrupted before the last run.
         """
         parts = []
         for place in places:
-            if stop.is_set():
-                raise Stopped
             state = self.states[place][case.candidate]
             cage = replace(state.cage, ball_cage_friction=float(self.friction[case][place]))
             cage = cage if change is None else change(place, cage)
-            parts.append(run_ensemble(cage, state.stability, kicks=kicks, runs=1, first_run=self.runs[place]))
+            parts.append(
+                runner.ensemble(cage, state.stability, kicks=kicks, runs=1, first_run=self.runs[place])
+            )
         return joined(parts)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from threading import Event
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
 from separatrix.chain import CageState, cage_state, traction_state
 from separatrix.errors import InputError
+from separatrix.ledger import Ledger
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings, over_inputs
 from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
 from separatrix.ranking.lowest import lowest_among
@@ -21,6 +21,7 @@ from separatrix.ranking.plausible import beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.runner import Progress, Runner
 from separatrix.stability import (
     CriticalFriction,
     GrowthCounter,
@@ -32,10 +33,8 @@ from separatrix.stability import (
     threshold_factors,
 )
 from separatrix.stability.curve import HERE, Node, height
-from separatrix.stability.pool import Progress, work_out
 from separatrix.stability.threshold import rising
-from separatrix.stability.whole import whole_ensemble
-from separatrix.study import Candidate, RankingQuestion, StabilitySettings, Study
+from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
 
 Key = tuple[NewtonPerMetre, Ratio]
@@ -60,7 +59,7 @@ class _Question:
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
     drawn: DrawnBearings | None
-    stop: Event
+    runner: Runner
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +74,9 @@ class _Findings:
     complete: bool
 
 
-def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ranking:
+def rank(
+    study: Study, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
+) -> Ranking:
     """Rank the candidate cage materials of a study.
 
     Parameters
@@ -86,6 +87,8 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         Threads; the numbers do not depend on it.
     progress : callable, optional
         Called with (done, total) pieces of work.
+    ledger : Ledger, optional
+        Where finished runs are kept, and looked for.
 
     Returns
     -------
@@ -105,11 +108,13 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
     """
     asked = ranking_question(study)
     environment = required_environment(study, asked)
-    question = _question(study, asked)
-    candidates = [candidate_seen(study, c, _state(question, c.name)) for c in asked.candidates]
+    question = _question(study, asked, Runner(jobs=jobs, progress=progress, ledger=ledger))
+    candidates = [
+        candidate_seen(study, c, question.cages[question.stiffness[c.name]]) for c in asked.candidates
+    ]
     frictions = {
-        environment: {c.name: _measured(c, environment) for c in candidates}
-        for environment in asked.environments
+        place: {c.name: measured(f) if (f := c.friction.get(place)) else None for c in candidates}
+        for place in asked.environments
     }
     means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in candidates}
     tables = (*frictions.values(), means)
@@ -117,7 +122,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
     question = replace(question, tracers=_tracers(question, study.stability, keys))
-    found = _compute(question, keys, jobs=jobs, progress=progress)
+    found = _compute(question, keys)
     ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
     return Ranking(
         environment=environment,
@@ -133,7 +138,7 @@ def rank(study: Study, *, jobs: int = 1, progress: Progress | None = None) -> Ra
         paper_statement=PAPER_STATEMENT,
         environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
         overall=_ranked(question, found, means, ""),
-        stability=_curve(question, found, jobs),
+        stability=_curve(question, found),
         **_own_curves(question, found),
         kicks=question.settings.kicks,
         runs=question.settings.runs,
@@ -168,12 +173,7 @@ def ranking_question(study: Study) -> RankingQuestion:
     return study.ranking
 
 
-def _measured(candidate: Candidate, environment: str) -> MeanFriction | None:
-    friction = candidate.friction.get(environment)
-    return None if friction is None else measured(friction)
-
-
-def _question(study: Study, asked: RankingQuestion) -> _Question:
+def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
     traction = traction_state(study)
     states = {
         c.name: cage_state(study, material=c.material, traction=traction, friction=0.0)
@@ -188,7 +188,7 @@ def _question(study: Study, asked: RankingQuestion) -> _Question:
         stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
-        stop=Event(),
+        runner=runner,
     )
 
 
@@ -199,7 +199,7 @@ def _tracers(
     factors = threshold_factors(settings)
     return {
         k: Tracer(
-            GrowthCounter(state.cage, settings, question.stop),
+            GrowthCounter(state.cage, settings, question.runner),
             factors,
             band=False,
             frictions=None if k == question.reference else [f for stiffness, f in keys if stiffness == k],
@@ -208,27 +208,19 @@ def _tracers(
     }
 
 
-def _state(question: _Question, name: str) -> CageState:
-    """Cage of one candidate."""
-    return question.cages[question.stiffness[name]]
-
-
 def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
     return question.cages[stiffness].restitution.restitution.restitution_factor
 
 
-def _compute(question: _Question, keys: Sequence[Key], *, jobs: int, progress: Progress | None) -> _Findings:
+def _compute(question: _Question, keys: Sequence[Key]) -> _Findings:
     """Critical frictions and verdicts, all in one row of work for the threads."""
     verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
     cases: list[Case] = list(question.drawn.friction) if question.drawn else []
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
-    results = work_out(
+    results = question.runner.work_out(
         lambda piece: _computed(question, piece),
         [*verdicts, *cases, (question.reference, (HERE, None)), *nodes],
         more=lambda piece, results: _more(question, piece, results),
-        jobs=jobs,
-        progress=progress,
-        stop=question.stop,
     )
     points = {k: _points_of(results, k) for k in question.cages}
     here = points[question.reference].pop((HERE, None), None)
@@ -251,12 +243,12 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
     if isinstance(piece, Case):
         if question.drawn is None:
             raise LookupError(piece)
-        return question.drawn.judge(piece, question.settings.kicks, question.stop)
+        return question.drawn.judge(piece, question.settings.kicks, question.runner)
     stiffness, what = piece
     if isinstance(what, tuple):
         return question.tracers[stiffness].point(what)
     cage = replace(question.cages[stiffness].cage, ball_cage_friction=what)
-    return judge(cage, whole_ensemble(cage, question.settings, question.stop))
+    return judge(cage, question.runner.whole_ensemble(cage, question.settings))
 
 
 def _more(
@@ -285,7 +277,7 @@ def _points_of(
     }
 
 
-def _curve(question: _Question, found: _Findings, jobs: int) -> StabilityCurve | None:
+def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     """Stability curve of the reference cage; None if an interrupt left no point of it."""
     points, shown = found.points[question.reference], question.settings.restitution_factors
     points = [point for point in points if not shown or point.restitution_factor in shown]
@@ -293,7 +285,13 @@ def _curve(question: _Question, found: _Findings, jobs: int) -> StabilityCurve |
         return None
     cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
     return curve_of_points(
-        cage, question.settings, points, band=False, here=found.here, complete=complete, jobs=jobs
+        cage,
+        question.settings,
+        points,
+        band=False,
+        here=found.here,
+        complete=complete,
+        jobs=question.runner.jobs,
     )
 
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.drive import drift_rate_law, drifts
+from separatrix.ledger import Ledger
+from separatrix.runner import Progress, Runner
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
-from separatrix.stability.pool import Progress, work_out, work_through
 from separatrix.stability.response import SEARCHED_FRICTION, Side
 from separatrix.stability.tracing import COARSE, finer
 from separatrix.study import StabilitySettings
@@ -85,7 +86,7 @@ def stability_curve(
     *,
     jobs: int = 1,
     progress: Progress | None = None,
-    counter: GrowthCounter | None = None,
+    ledger: Ledger | None = None,
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
@@ -99,24 +100,17 @@ def stability_curve(
         Threads; the numbers do not depend on it.
     progress : callable, optional
         Called with (done, total so far) points.
-    counter : GrowthCounter, optional
-        To share counts with other questions about the same cage and settings.
+    ledger : Ledger, optional
+        Where finished runs are kept, and looked for.
 
     Raises
     ------
     KeyboardInterrupt
         Interrupted before the first point was finished; later the finished points are returned.
     """
-    counts = counter or GrowthCounter(cage, settings)
-    tracer = Tracer(counts, settings.restitution_factors, band=True)
-    found = work_out(
-        lambda node: tracer.point(node),
-        [*tracer.first, (HERE, None)],
-        more=lambda node, results: tracer.more(node, results),
-        jobs=jobs,
-        progress=progress,
-        stop=counts.stop,
-    )
+    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
+    found = runner.work_out(tracer.point, [*tracer.first, (HERE, None)], more=tracer.more)
     if not found:
         raise KeyboardInterrupt
     here = found.pop((HERE, None), None)
@@ -258,7 +252,7 @@ def curve_of_points(
     settings = settings_for(settings, cage)
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
-    hard = work_through(lambda eta: hard_limit(cage, eta, settings), etas, jobs=jobs)
+    hard = Runner(jobs=jobs).each(lambda eta: hard_limit(cage, eta, settings), etas)
     return StabilityCurve(
         curve=tuple(rising),
         here=here,

@@ -5,14 +5,13 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, replace
 from math import inf
-from threading import Event
 
 import numpy as np
 
-from separatrix.cage import Cause, PlanarCage, RunOutcome, run_ensemble, settings_for, wilson_interval
+from separatrix.cage import Cause, PlanarCage, RunOutcome, settings_for, wilson_interval
 from separatrix.errors import ValidityWarning
 from separatrix.restitution import damping_for
-from separatrix.stability.pool import Stopped
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, NewtonSecondPerMetre, Ratio
 
@@ -64,15 +63,13 @@ def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecond
 
 
 class GrowthCounter:
-    """Counts whirling runs at points (eta, f, kick) and remembers them.
+    """Counts whirling runs at points (eta, f, kick).
 
-    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers). `stop`,
-    once set, lets the runs under way end and starts no others.
+    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers).
     """
 
-    def __init__(self, cage: PlanarCage, settings: StabilitySettings, stop: Event | None = None) -> None:
-        self.cage, self.settings, self.stop = cage, settings_for(settings, cage), stop or Event()
-        self._counts: dict[tuple[Ratio | None, Ratio, MetrePerSecond, int, int], Count] = {}
+    def __init__(self, cage: PlanarCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
+        self.cage, self.settings, self.runner = cage, settings_for(settings, cage), runner or Runner()
 
     def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> PlanarCage:
         """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
@@ -94,26 +91,13 @@ class GrowthCounter:
         Raises
         ------
         Stopped
-            `stop` was set.
+            The work was interrupted.
         """
-        key = (restitution_factor, friction, kick, first_run, runs)
-        if key not in self._counts:
-            if self.stop.is_set():
-                raise Stopped
-            cage = self.cage_at(restitution_factor, friction)
-            found = run_ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
-            unresolved = found.outcome == RunOutcome.UNRESOLVED
-            open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
-            if open_ends:  # a motion that still falls does not whirl
-                note = UNRESOLVED.format(open_ends, runs, kick, friction)
-                warnings.warn(note, ValidityWarning, stacklevel=2)
-            self._counts[key] = Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
-        return self._counts[key]
-
-    def counts(self, restitution_factor: Ratio | None, kick: MetrePerSecond) -> dict[Ratio, Count]:
-        """Everything that was counted at a restitution factor from a kick, by friction."""
-        found: dict[Ratio, Count] = {}
-        for (eta, friction, at, _, _), count in sorted(self._counts.items(), key=lambda item: item[0][1:]):
-            if (eta, at) == (restitution_factor, kick):
-                found[friction] = found.get(friction, Count(0, 0)) + count
-        return found
+        cage = self.cage_at(restitution_factor, friction)
+        found = self.runner.ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
+        unresolved = found.outcome == RunOutcome.UNRESOLVED
+        open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
+        if open_ends:  # a motion that still falls does not whirl
+            note = UNRESOLVED.format(open_ends, runs, kick, friction)
+            warnings.warn(note, ValidityWarning, stacklevel=2)
+        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, run_ensemble, wilson_interval
+from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, wilson_interval
 from separatrix.cage.verdict import decide
 from separatrix.chain import (
     CageState,
@@ -21,8 +21,10 @@ from separatrix.chain import (
     traction_state,
 )
 from separatrix.errors import ConvergenceError, InputError
+from separatrix.ledger import Ledger
+from separatrix.runner import Progress, Runner, joined
 from separatrix.stability.growth import cage_at
-from separatrix.stability.map_fill import Filled, Keep, Known, fill
+from separatrix.stability.map_fill import Filled, fill
 from separatrix.stability.map_grid import Place
 from separatrix.stability.map_parameters import (
     FRICTION,
@@ -51,8 +53,6 @@ from separatrix.stability.map_rule import (
     settled,
     wrong_side_probability,
 )
-from separatrix.stability.pool import Progress
-from separatrix.stability.whole import joined
 from separatrix.study import StabilitySettings, Study
 from separatrix.units import MetrePerSecond, Ratio
 
@@ -73,8 +73,7 @@ def stability_map(
     *,
     jobs: int = 1,
     progress: Progress | None = None,
-    known: Known | None = None,
-    keep: Keep | None = None,
+    ledger: Ledger | None = None,
 ) -> StabilityMap:
     """Decide every point of a map, coarse grid first, so that an interrupted map covers the whole plane.
 
@@ -89,10 +88,8 @@ def stability_map(
         Threads; the numbers do not depend on it.
     progress : callable, optional
         Called with (done, total) points.
-    known : mapping, optional
-        Points by (x, y) that were finished before.
-    keep : callable, optional
-        Called with the points that have just been finished, in this thread.
+    ledger : Ledger, optional
+        Where finished runs are kept, and looked for.
 
     Raises
     ------
@@ -102,7 +99,8 @@ def stability_map(
         Interrupted before the first point was finished; later the finished points are returned.
     """
     require_friction(question)
-    filled = fill(question, PointFinder(question), jobs=jobs, progress=progress, known=known or {}, keep=keep)
+    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    filled = fill(question, PointFinder(question, runner), runner)
     if not filled.found:
         raise KeyboardInterrupt
     _refuse_if_nothing_ran(question, filled.found)
@@ -127,8 +125,8 @@ def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint
 class PointFinder:
     """Runs the chain and the cage at points of a map; each link of the chain once for what changes it."""
 
-    def __init__(self, question: MapQuestion) -> None:
-        self.question = question
+    def __init__(self, question: MapQuestion, runner: Runner) -> None:
+        self.question, self.runner = question, runner
         self._names = (question.x.parameter, question.y.parameter)
         self._traction = functools.lru_cache(maxsize=MOST_LINKS)(self._find_traction)
         self._state = functools.lru_cache(maxsize=MOST_LINKS)(self._find_state)
@@ -146,7 +144,8 @@ class PointFinder:
         of_the_chain = tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE)
         state, settings = _found(self._state(of_the_chain))
         cage, eta = _cage_of(state, values)
-        ensemble = decided_ensemble(cage, settings, values.get(KICK, self.question.kick), self.question.runs)
+        kick = values.get(KICK, self.question.kick)
+        ensemble = decided_ensemble(cage, settings, kick, self.question.runs, self.runner)
         return _judged(x, y, cage, eta, ensemble)
 
     def _varied(self, values: Values) -> Study:
@@ -190,12 +189,12 @@ def _cage_of(state: CageState, values: Mapping[str, float]) -> tuple[PlanarCage,
 
 
 def decided_ensemble(
-    cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int
+    cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int, runner: Runner
 ) -> Ensemble:
     """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
 
     def run(first: int, count: int) -> Ensemble:
-        return run_ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
+        return runner.ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
 
     ensemble = run(0, first_look(runs))
     if _agree(ensemble):

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage
+from separatrix.ledger import Ledger
+from separatrix.runner import Progress, Runner
 from separatrix.stability.curve import Tracer, height
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.point import CriticalFriction
-from separatrix.stability.pool import Progress, work_out
 from separatrix.stability.response import Side
 from separatrix.study import StabilitySettings
 from separatrix.units import Ratio
@@ -76,7 +77,7 @@ def threshold_points(
     *,
     jobs: int = 1,
     progress: Progress | None = None,
-    counter: GrowthCounter | None = None,
+    ledger: Ledger | None = None,
 ) -> list[CriticalFriction]:
     """Critical friction, without its band, from a restitution factor of 0 to 1.
 
@@ -85,11 +86,9 @@ def threshold_points(
     KeyboardInterrupt
         Interrupted: a threshold needs all the points.
     """
-    counts = counter or GrowthCounter(cage, settings)
-    tracer = Tracer(counts, threshold_factors(settings), band=False)
-    found = work_out(
-        tracer.point, tracer.first, more=tracer.more, jobs=jobs, progress=progress, stop=counts.stop
-    )
+    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    tracer = Tracer(GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False)
+    found = runner.work_out(tracer.point, tracer.first, more=tracer.more)
     if not tracer.complete(found):
         raise KeyboardInterrupt
     return rising(found.values())

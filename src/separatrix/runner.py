@@ -1,0 +1,226 @@
+"""The one runner of long jobs: threads, progress, interrupts, and the runs that were finished before."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+import zlib
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import fields
+from queue import Empty, SimpleQueue
+from typing import Any, TypeVar
+
+import numpy as np
+
+from separatrix.cage import Ensemble, PlanarCage, run_ensemble
+from separatrix.ledger import Ledger, key_of
+from separatrix.study import StabilitySettings
+from separatrix.units import MetrePerSecond
+
+Item = TypeVar("Item")
+Place = TypeVar("Place", bound=Hashable)
+Result = TypeVar("Result")
+Progress = Callable[[int, int], None]
+
+LOOK = 0.1
+"""Time between two looks at whether the work was interrupted [s]."""
+
+PART = 16
+"""Runs from each kick between two looks at whether to stop."""
+
+WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
+
+
+class Stopped(Exception):  # noqa: N818 - not an error: an interrupt on its way out of a thread
+    """The work was interrupted while a thread was inside a point."""
+
+
+class Runner:
+    """How a long job runs; its numbers depend on nothing of it.
+
+    An interrupt (Ctrl-C or SIGTERM) lets the runs under way end and starts no others; a second one does not
+    wait for them.
+
+    Parameters
+    ----------
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Called with (done, total so far) after each point.
+    ledger : Ledger, optional
+        Where finished runs are kept, and looked for.
+    """
+
+    def __init__(
+        self, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
+    ) -> None:
+        self.jobs, self.progress, self.ledger = jobs, progress, ledger
+        self.stop = threading.Event()
+
+    def ensemble(
+        self,
+        cage: PlanarCage,
+        settings: StabilitySettings,
+        *,
+        kicks: Sequence[MetrePerSecond],
+        runs: int,
+        first_run: int = 0,
+    ) -> Ensemble:
+        """Run a cage as `run_ensemble` does, unless the ledger knows how that ends.
+
+        Raises
+        ------
+        Stopped
+            The work was interrupted.
+        """
+        if self.stop.is_set():
+            raise Stopped
+        if self.ledger is None:
+            return run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
+        drawn = settings.seed, settings.duration, settings.ball_scatter
+        key = key_of(cage, drawn, tuple(kicks), first_run, runs)
+        shape = len(kicks), runs, cage.ball_count
+        known = self.ledger.get(key)
+        if known is not None:
+            self.ledger.taken += len(kicks) * runs
+            return _unpacked(known, shape)
+        found = run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
+        self.ledger.put(key, _packed(found))
+        return found
+
+    def whole_ensemble(self, cage: PlanarCage, settings: StabilitySettings) -> Ensemble:
+        """Every run of the settings, whose kicks are numbers, from every kick.
+
+        Raises
+        ------
+        Stopped
+            The work was interrupted before the last part.
+        """
+        firsts = range(0, settings.runs, PART)
+        return joined(
+            [
+                self.ensemble(
+                    cage,
+                    settings,
+                    kicks=settings.kicks,
+                    runs=min(PART, settings.runs - first),
+                    first_run=first,
+                )
+                for first in firsts
+            ]
+        )
+
+    def each(self, compute: Callable[[Item], Result], items: Sequence[Item]) -> list[Result | None]:
+        """Results of `compute` for each item, in their order; None for what an interrupt left out."""
+        places = range(len(items))
+        found = self.work_out(lambda place: compute(items[place]), places)
+        return [found.get(place) for place in places]
+
+    def work_out(
+        self,
+        compute: Callable[[Place], Result],
+        places: Iterable[Place],
+        *,
+        more: Callable[[Place, Mapping[Place, Result]], Iterable[Place]] | None = None,
+        progress: Progress | None = None,
+    ) -> dict[Place, Result]:
+        """Results of `compute` at each place, and at the places that follow from them.
+
+        Threads, because the kernels below release the interpreter's lock. An interrupt leaves out the places
+        that were not finished, and sets `stop`.
+
+        Parameters
+        ----------
+        compute : callable
+            Called once with each place; must not depend on when it is called, so that `jobs` changes nothing.
+        places : iterable
+            Where to begin; put the longest first.
+        more : callable, optional
+            Given a place just finished and all results so far: which places it makes wanted. Those that are
+            known or under way are not computed again. What it answers must not depend on the order.
+        progress : callable, optional
+            Called instead of the runner's own.
+        """
+        tell = progress or self.progress
+        results: dict[Place, Result] = {}
+        done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
+        wanted: set[Place] = set()
+
+        def submit(new: Iterable[Place]) -> None:
+            for place in new:
+                if place not in wanted:
+                    wanted.add(place)
+                    future = pool.submit(compute, place)
+                    future.add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
+
+        with _noticed(self.stop), ThreadPoolExecutor(max_workers=self.jobs) as pool:
+            try:
+                submit(() if self.stop.is_set() else places)
+                while len(results) < len(wanted) and not self.stop.is_set():
+                    with contextlib.suppress(Empty, Stopped):
+                        place, future = done.get(timeout=LOOK)
+                        results[place] = future.result()
+                        submit(more(place, results) if more is not None else ())
+                        if tell is not None:
+                            tell(len(results), len(wanted))
+            except KeyboardInterrupt:
+                self.stop.set()
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
+            while self.stop.is_set() and not done.empty():
+                place, future = done.get()
+                if not future.cancelled() and future.exception() is None:
+                    results[place] = future.result()
+        return results
+
+
+@contextlib.contextmanager
+def _noticed(stop: threading.Event) -> Iterator[None]:
+    """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in."""
+
+    def note(number: int, frame: object) -> None:  # noqa: ARG001 - as signals call it
+        if stop.is_set():
+            raise KeyboardInterrupt
+        stop.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = [(number, signal.signal(number, note)) for number in (signal.SIGINT, signal.SIGTERM)]
+    try:
+        yield
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler or signal.SIG_DFL)
+
+
+def joined(parts: Sequence[Ensemble]) -> Ensemble:
+    """One ensemble of the runs of several, from the same kicks."""
+
+    def column(name: str) -> Any:
+        values = [getattr(part, name) for part in parts]
+        return np.concatenate(values, axis=1) if np.ndim(values[0]) > 1 else values[0]
+
+    return Ensemble(**{field.name: column(field.name) for field in fields(Ensemble)})
+
+
+def _packed(found: Ensemble) -> bytes:
+    """Bytes of an ensemble, exact."""
+    arrays = (np.asarray(getattr(found, field.name)) for field in fields(Ensemble))
+    return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
+
+
+def _unpacked(known: bytes, shape: tuple[int, int, int]) -> Ensemble:
+    """Ensemble of so many kicks, runs and balls from its bytes."""
+    data, at = zlib.decompress(known), 0
+    values: dict[str, Any] = {}
+    for field in fields(Ensemble):
+        name = field.name
+        size = {"kicks": shape[:1], "duration": (), "pocket_impacts": shape}.get(name, shape[:2])
+        kind = np.int64 if name in WHOLE_NUMBERS else np.float64
+        count = int(np.prod(size))
+        values[name] = np.frombuffer(data, kind, count, at).reshape(size)
+        at += 8 * count
+    return Ensemble(**values | {"duration": float(values["duration"])})

@@ -1,0 +1,265 @@
+"""The runner of long jobs: order, threads, interrupts, and what the ledger keeps of a killed one."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from separatrix.cage import Ensemble, run_ensemble
+from separatrix.chain import cage_state
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.ledger import NAME, Ledger, key_of
+from separatrix.ranking import rank
+from separatrix.runner import PART, Runner, Stopped
+from separatrix.stability import stability_curve
+from separatrix.study_file import read_study
+
+CAGE = cage_state(read_study("momentum-wheel"), friction=0.2)
+QUICK = replace(CAGE.stability, runs=PART + 5, duration=0.01)
+
+
+def test_work_comes_back_in_order():
+    """Results stand in the order of the items, however many threads."""
+    told = []
+    runner = Runner(jobs=3, progress=lambda done, total: told.append((done, total)))
+    found = runner.each(lambda x: x * x, range(20))
+    assert found == [x * x for x in range(20)]
+    assert told == [(i, 20) for i in range(1, 21)]
+
+
+def test_an_interrupt_keeps_what_is_done():
+    """Ctrl-C after three items: those are returned, the rest is None, and no thread is left behind."""
+
+    def stop(done, total):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    def work(item):
+        time.sleep(1e-3)
+        return item + 1
+
+    found = Runner(progress=stop).each(work, range(500))
+    assert found[:3] == [1, 2, 3]
+    assert None in found
+    assert not [thread for thread in threading.enumerate() if "ThreadPool" in thread.name]
+
+
+def test_a_fault_in_the_work_is_not_swallowed():
+    """An exception of one item is raised, not turned into a gap."""
+    with pytest.raises(ZeroDivisionError):
+        Runner(jobs=2).each(lambda x: 1 // x, [1, 0])
+
+
+def test_a_long_computation_is_stopped_by_an_interrupt():
+    """The thread inside a point looks at the flag and gives up; what was finished before is kept."""
+    inside, stopped = threading.Event(), []
+
+    def compute(place):
+        if place == 0:
+            inside.wait(timeout=5.0)
+            return "done"
+        inside.set()
+        stopped.append(runner.stop.wait(timeout=5.0))
+        raise Stopped
+
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    runner = Runner(jobs=2, progress=interrupt)
+    assert runner.work_out(compute, [0, 1]) == {0: "done"}
+    assert stopped == [True]
+
+
+def test_places_that_follow_are_computed_once():
+    """A place that two others ask for is computed once, and progress counts it."""
+    computed, told = [], []
+
+    def compute(place):
+        computed.append(place)
+        return place
+
+    runner = Runner(progress=lambda *at: told.append(at))
+    found = runner.work_out(compute, [1, 2], more=lambda place, _: [3] if place < 3 else [])
+    assert sorted(computed) == sorted(found) == [1, 2, 3]
+    assert told[-1] == (3, 3)
+
+
+def test_an_interrupt_is_noticed_and_breaks_in_nowhere():
+    """One signal lets the item under way end; what handled signals before does so again."""
+    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+
+    def work(item):
+        if item == 2:
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.05)
+        return item
+
+    runner = Runner()
+    found = runner.each(work, range(100))
+    assert found[:3] == [0, 1, 2]
+    assert None in found
+    assert runner.stop.is_set()
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
+    assert runner.each(work, [7]) == [None]  # and nothing is begun afterwards
+
+
+def test_a_second_interrupt_breaks_in():
+    """It is raised once the item under way has ended."""
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a test worker may ignore it
+
+    def work(item):
+        for _ in range(2):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.2)
+
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            Runner().each(work, range(50))
+    finally:
+        signal.signal(signal.SIGINT, usual)
+
+
+def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
+    """Once run and once read; every field, with its kind of number and shape."""
+    ledger = Ledger(tmp_path / NAME)
+    at_once = run_ensemble(CAGE.cage, QUICK)
+    runner = Runner(ledger=ledger)
+    first, second = (runner.whole_ensemble(CAGE.cage, QUICK) for _ in range(2))
+    assert ledger.taken == QUICK.runs * len(QUICK.kicks)
+    for field in fields(Ensemble):
+        values = [np.asarray(getattr(one, field.name)) for one in (at_once, first, second)]
+        assert len({(value.dtype, value.shape, value.tobytes()) for value in values}) == 1, field.name
+    ledger.close()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"settings": {"seed": 5}},
+        {"settings": {"duration": 0.02}},
+        {"settings": {"ball_scatter": 0.5}},
+        {"cage": {"mass": CAGE.cage.mass * (1.0 + 1e-15)}},
+        {"cage": {"ball_cage_friction": 0.3}},
+        {"asked": {"kicks": (0.7,)}},
+        {"asked": {"runs": 3}},
+        {"asked": {"first_run": 1}},
+    ],
+    ids=str,
+)
+def test_runs_are_taken_only_for_the_same_question(tmp_path, change):
+    """A change of anything that a run depends on: nothing is taken."""
+    ledger = Ledger(tmp_path / NAME)
+    asked = {"kicks": (0.5,), "runs": 2, "first_run": 0}
+    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    cage, settings = (
+        replace(CAGE.cage, **change.get("cage", {})),
+        replace(QUICK, **change.get("settings", {})),
+    )
+    Runner(ledger=ledger).ensemble(cage, settings, **asked | change.get("asked", {}))
+    assert ledger.taken == 0
+    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    assert ledger.taken == 2
+    ledger.close()
+
+
+def test_a_key_depends_on_the_last_bit():
+    """Of a number, and on its kind."""
+    assert len({key_of(0.1), key_of(np.nextafter(0.1, 1.0)), key_of("0.1"), key_of(0.1, 0.1)}) == 4
+
+
+def test_more_runs_go_on_from_fewer(tmp_path):
+    """A curve with as many runs again takes those of the first from the ledger."""
+    ledger, settings = Ledger(tmp_path / NAME), replace(QUICK, runs=8, restitution_factors=(0.5,))
+    stability_curve(CAGE.cage, settings, ledger=ledger)
+    assert ledger.taken == 0
+    stability_curve(CAGE.cage, replace(settings, restitution_factors=(0.5, 0.6)), ledger=ledger)
+    assert ledger.taken > 0
+    ledger.close()
+
+
+def test_a_file_that_is_no_ledger_is_refused(tmp_path):
+    """With its name; it is left as it was."""
+    path = tmp_path / NAME
+    path.write_text("mine" * 1000)
+    with pytest.raises(InputError, match="cannot be used to keep runs"):
+        Ledger(path)
+    assert path.read_text() == "mine" * 1000
+
+
+def test_an_interrupted_ranking_says_what_is_missing(tmp_path):
+    """What was finished is in the rows, the rest says so; going on gives the whole ranking."""
+    study = read_study("momentum-wheel")
+    study = replace(study, stability=replace(study.stability, runs=64, duration=0.01))
+    ledger = Ledger(tmp_path / NAME)
+
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    part = rank(study, progress=interrupt, ledger=ledger)
+    assert part.complete is False
+    assert None in {row.restitution_threshold for row in part.overall}
+    whole = rank(study, ledger=ledger)
+    assert ledger.taken > 0
+    assert repr(whole) == repr(rank(study))
+    ledger.close()
+
+
+STUDY = """
+extends = "momentum-wheel"
+[stability]
+duration = "20 ms"
+runs = 24
+[ranking]
+friction_scatter = 0.2
+"""
+LONG_VERBS = {
+    "rank": [],
+    "stability": [],
+    "map": ["--points", "8"],
+    "sensitivity": ["--samples", "64"],
+}
+
+
+def finished(folder: Path) -> int:
+    """Return how many pieces are in the ledger of a folder that another process may write."""
+    try:
+        with sqlite3.connect(f"file:{folder / NAME}?mode=ro", uri=True) as connection:
+            found: int = connection.execute("SELECT count(*) FROM piece").fetchone()[0]
+        return found
+    except sqlite3.OperationalError:
+        return 0
+
+
+@pytest.mark.parametrize("verb", LONG_VERBS)
+def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
+    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
+    monkeypatch.chdir(tmp_path)
+    Path("s.toml").write_text(STUDY)
+    call = [verb, "s.toml", *LONG_VERBS[verb], "--json", "--jobs", "1"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "separatrix", *call, "--out", "k"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    )
+    while finished(tmp_path / "k") < 3 and process.poll() is None:
+        time.sleep(0.02)
+    process.kill()
+    process.communicate()
+    assert {path.name.removesuffix("-wal").removesuffix("-shm") for path in Path("k").iterdir()} == {NAME}
+    assert main([*call, "--out", "k"]) == 0
+    resumed, said = capsys.readouterr()
+    assert "runs were taken from" in said
+    assert main(call) == 0
+    assert json.loads(resumed) == json.loads(capsys.readouterr().out)
