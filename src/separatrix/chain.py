@@ -1,13 +1,15 @@
 """The chain from a study to its cage: every stage once, every intermediate kept.
 
-Each verb asks for one link of it; a link holds the link before. The contacts of the most loaded ball set
-the race damping: load raises the restitution factor, so this is the unfavourable ball.
+Each verb asks for one link of it; a link holds the link before. What is dear to solve is remembered by the
+value of the records that it depends on, so that no verb solves it twice. The contacts of the most loaded
+ball set the race damping: load raises the restitution factor, so this is the unfavourable ball.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import Any
 
 from separatrix.cage import PlanarCage, settings_for
@@ -29,7 +31,18 @@ from separatrix.restitution import (
     hertz_coefficient_for,
     restitution,
 )
-from separatrix.study import CageDesign, Material, PocketContact, Race, StabilitySettings, Study
+from separatrix.study import (
+    BallBearing,
+    CageDesign,
+    Film,
+    KinematicModel,
+    Material,
+    Operation,
+    PocketContact,
+    Race,
+    StabilitySettings,
+    Study,
+)
 from separatrix.traction import TractionCurve, film_compliance, traction_curve
 from separatrix.units import (
     MetrePerSecond,
@@ -41,6 +54,9 @@ from separatrix.units import (
     Ratio,
     format_quantity,
 )
+
+REMEMBERED = 1024
+"""Solutions of a stage that are kept, by the records it takes."""
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 
@@ -60,11 +76,12 @@ class RaceContact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BearingState:
-    """Equilibrium of the bearing, and the contacts of its most loaded ball."""
+    """Equilibrium of the bearing, the contacts of its most loaded ball, and where they leave their model."""
 
     equilibrium: Equilibrium
     inner: RaceContact
     outer: RaceContact
+    notes: tuple[str, ...] = ()
 
     @property
     def cage_speed(self) -> RadianPerSecond:
@@ -113,17 +130,25 @@ def bearing_state(study: Study) -> BearingState:
     ValidityWarning
         A contact leaves what races bear or what the model holds: `contact_limits`.
     """
-    bearing, operation = study.bearing, study.operation
-    found = equilibrium(bearing, operation, study.kinematics, study.film.race_friction)
-    inner, outer = (_race_contact(study, found, race) for race in Race)
+    state = _bearing(study.bearing, study.operation, study.kinematics, study.film.race_friction)
+    for sentence in state.notes:
+        warnings.warn(sentence, ValidityWarning, stacklevel=2)
+    return state
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _bearing(
+    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, race_friction: Ratio
+) -> BearingState:
+    found = equilibrium(bearing, operation, kinematics, race_friction)
+    inner, outer = (_race_contact(bearing, found, race) for race in Race)
     ellipses = {Race.INNER: inner.ellipse, Race.OUTER: outer.ellipse}
     turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
-    for sentence in beyond_contacts(bearing, found, ellipses, turns=turns):
-        warnings.warn(sentence, ValidityWarning, stacklevel=2)
-    return BearingState(equilibrium=found, inner=inner, outer=outer)
+    notes = tuple(beyond_contacts(bearing, found, ellipses, turns=turns))
+    return BearingState(equilibrium=found, inner=inner, outer=outer, notes=notes)
 
 
-def _race_contact(study: Study, found: Equilibrium, race: Race) -> RaceContact:
+def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceContact:
     ball = found.most_loaded
 
     def of_ball(quantity: str) -> float:
@@ -134,8 +159,8 @@ def _race_contact(study: Study, found: Equilibrium, race: Race) -> RaceContact:
         ball=ball,
         contact_angle=angle,
         load=of_ball("load"),
-        ellipse=contact(found, study.bearing, race, ball),
-        creep=contact_creep(study.bearing, race, angle, ratio),
+        ellipse=contact(found, bearing, race, ball),
+        creep=contact_creep(bearing, race, angle, ratio),
         spin_roll_ratio=ratio,
         rolling_speed=of_ball("rolling_speed"),
     )
@@ -150,14 +175,22 @@ def traction_state(study: Study) -> TractionState:
         The bearing does not roll, or its races have no friction.
     """
     require_rolling(study)
-    state = bearing_state(study)
+    bearing_state(study)
+    return _traction(study.bearing, study.operation, study.kinematics, study.film)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _traction(
+    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, film: Film
+) -> TractionState:
+    state = _bearing(bearing, operation, kinematics, film.race_friction)
     curves = (
         traction_curve(
             at.ellipse,
             at.creep,
-            race_friction=study.film.race_friction,
-            film_compliance=film_compliance(study.film),
-            film_thickness=study.film.thickness or 0.0,
+            race_friction=film.race_friction,
+            film_compliance=film_compliance(film),
+            film_thickness=film.thickness or 0.0,
         )
         for at in (state.inner, state.outer)
     )
@@ -180,9 +213,7 @@ def require_rolling(study: Study) -> None:
         )
 
 
-def restitution_state(
-    study: Study, *, material: Material | None = None, traction: TractionState | None = None
-) -> RestitutionState:
+def restitution_state(study: Study, *, material: Material | None = None) -> RestitutionState:
     """Restitution factor of a study.
 
     Parameters
@@ -191,11 +222,9 @@ def restitution_state(
         With a [cage].
     material : Material, optional
         Of the cage, if not the study's: a candidate of a ranking.
-    traction : TractionState, optional
-        If it is known already.
     """
     design = cage_design(study)
-    links = traction or traction_state(study)
+    links = traction_state(study)
     stiffness, source = pocket_stiffness(study, links.bearing.cage_speed, material)
     damping = (
         contact_damping(curve.slope, at.load, at.rolling_speed)
@@ -285,7 +314,6 @@ def cage_state(
     study: Study,
     *,
     material: Material | None = None,
-    traction: TractionState | None = None,
     friction: Ratio | None = None,
 ) -> CageState:
     """Build the cage in the plane, with the chain's race damping and this pocket friction or the study's.
@@ -299,7 +327,7 @@ def cage_state(
         The balls lead and lag by more than half their play, so that the pockets push them round.
     """
     pocket = pocket_friction(study) if friction is None else friction  # refused before anything is computed
-    links = restitution_state(study, material=material, traction=traction)
+    links = restitution_state(study, material=material)
     design, found = cage_design(study), links.traction.bearing.equilibrium
     radius = study.bearing.pitch_diameter / 2.0
     waves = orbital_waves(found.orbital_speed, found.azimuth, radius)

@@ -134,10 +134,15 @@ def test_the_cage_has_the_numbers_of_the_chain():
     assert found.pitch_radius == STUDY.bearing.pitch_diameter / 2
 
 
-def test_the_traction_of_a_study_is_not_computed_twice():
-    """A known traction state is used as it is."""
+def test_the_chain_of_a_study_is_solved_once():
+    """What does not depend on the cage is the same object for every cage, and for another study like it."""
     known = traction_state(STUDY)
-    assert restitution_state(STUDY, traction=known).traction is known
+    assert known.bearing is bearing_state(STUDY)
+    heavier = replace(STUDY, cage=replace(STUDY.cage, mass=0.03))
+    assert restitution_state(heavier).traction is known
+    thicker = replace(STUDY, film=replace(STUDY.film, thickness=2.0 * STUDY.film.thickness))
+    assert traction_state(thicker) is not known
+    assert traction_state(thicker).bearing is known.bearing
 
 
 def test_pocket_friction_is_given_or_that_of_the_named_material():

@@ -48,11 +48,12 @@ DAMPING = "race_damping damping_ratio restitution_factor"
 CRITICAL = "restitution_factor critical_friction critical_friction_low critical_friction_high"
 MATERIAL = "name friction restitution_threshold margin probability_stable verdict rank reason"
 
-EXTRA = {"map": ("--points", "3", "--runs", "2")}
+EXTRA = {"map": ("--points", "3", "--runs", "2"), "sweep": ("--vary", "film.thickness=0.2..1um:3")}
 """Options without which a verb would take long."""
 
 KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
 KEPT["rank"] = {NAME, "rank.xlsx"}
+KEPT["sweep"] = {"sweep.csv", "sweep.xlsx"}
 """Files beside the answer."""
 
 pytestmark = pytest.mark.usefixtures("elsewhere")

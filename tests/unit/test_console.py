@@ -34,6 +34,7 @@ VERBS = [
     "simulate",
     "rank",
     "sensitivity",
+    "sweep",
     "tribometer",
     "compare",
     "materials",

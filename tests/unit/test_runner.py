@@ -229,6 +229,7 @@ LONG_VERBS = {
     "stability": [],
     "map": ["--points", "8"],
     "sensitivity": ["--samples", "64"],
+    "sweep": ["--vary", "ball_cage_friction=0.1..0.4:6", "--verdicts"],
 }
 
 

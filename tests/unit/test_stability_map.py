@@ -17,7 +17,6 @@ from separatrix.stability import cage_at
 from separatrix.stability.map import (
     AGREED,
     PointFinder,
-    changes_traction,
     decided_ensemble,
     inference,
     stability_map,
@@ -288,10 +287,13 @@ def test_bands_and_margins_of_a_column():
 
 def test_each_link_of_the_chain_is_run_once_for_what_changes_it(study, monkeypatch):
     """Cage keys leave the traction alone; a film key changes it."""
-    from separatrix.stability import map as module
+    from separatrix import chain
 
     calls = []
-    monkeypatch.setattr(module, "traction_state", lambda s: calls.append(s) or traction(s))
+    real = chain.equilibrium
+    monkeypatch.setattr(chain, "equilibrium", lambda *given: calls.append(given) or real(*given))
+    chain._bearing.cache_clear()
+    chain._traction.cache_clear()
     masses = MapAxis(parameter="cage.mass", unit="kg", values=(0.01, 0.02, 0.03))
     films = MapAxis(parameter="film.race_friction", unit="-", values=(0.05, 0.1))
     clearances = MapAxis(parameter="cage.pocket_clearance", unit="m", values=(2e-4, 4e-4))
@@ -299,14 +301,7 @@ def test_each_link_of_the_chain_is_run_once_for_what_changes_it(study, monkeypat
     stability_map(question(given, x=masses, y=films, runs=1))
     assert len(calls) == 2
     stability_map(question(given, x=masses, y=clearances, runs=1))
-    assert len(calls) == 3
-
-
-def traction(study):
-    """The real link."""
-    from separatrix.chain import traction_state
-
-    return traction_state(study)
+    assert len(calls) == 2  # the study's own film was among them
 
 
 @pytest.mark.parametrize("name", sorted(parameters()))
@@ -315,7 +310,7 @@ def test_every_parameter_reaches_the_study(name, study):
     slot = {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 2e-4}
     study = replace(study, cage=replace(study.cage, **slot))
     value = WHOLE.get(name, 3) if parameters()[name].is_whole else VALUES.get(name, 0.011)
-    assert (varied(study, name, value) == study) == (name in ("restitution_factor", "kick"))
+    assert (varied(study, {name: value}) == study) == (name in ("restitution_factor", "kick"))
 
 
 WHOLE = {"cage.land_count": 2}
@@ -339,13 +334,6 @@ VALUES = {
     "cage.unbalance": 1e-6,
 }
 """Values inside what a record takes, where 0.011 is not."""
-
-
-def test_what_changes_the_traction_is_known():
-    """Bearing, operation and film; not the cage, nor how it is kicked."""
-    assert changes_traction("operation.axial_load")
-    assert not changes_traction("cage.mass")
-    assert not changes_traction("kick")
 
 
 def test_a_refused_study_is_asked_for_once(study):

@@ -201,7 +201,7 @@ def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
 def test_a_map_over_an_uncertain_number_makes_it_certain(study_of):
     """What a map varies has the map's value and no distribution beside it."""
     study = study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    moved = varied(study, "film.thickness", 3e-7)
+    moved = varied(study, {"film.thickness": 3e-7})
     assert moved.film.thickness == 3e-7
     assert moved.distributions == {}
 

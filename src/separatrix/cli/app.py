@@ -19,6 +19,7 @@ from separatrix.cli.mapping import MapOptions, whole_map
 from separatrix.cli.run import Options, make_study, run
 from separatrix.cli.sensitivity import SAMPLES, SensitivityOptions
 from separatrix.cli.simulating import SimulateOptions
+from separatrix.cli.sweeping import SweepOptions
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
 from separatrix.units import shown
@@ -66,6 +67,9 @@ EPILOGS = {
     "With --json and no --out nothing is kept.",
     "sensitivity": "Every number that the study writes with a distribution is drawn, and the frictions with "
     "their scatter: 9 % of the mean where none was measured, a guess.",
+    "sweep": "Every value of one --vary goes with every value of the others. A case that is refused is a row "
+    "with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
+    '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
     "simulate": "An unresolved run says why. --animate mp4 needs the extra animation.",
     "tribometer": "What is read is shown before it is trusted: without --out nothing is written. A file that "
     "exists is never overwritten.",
@@ -211,6 +215,28 @@ def _sensitivity(
     return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
 
 
+def _sweep(
+    study: StudyArgument,
+    vary: Annotated[
+        list[str] | None, typer.Option("--vary", metavar="AXIS", help=f"PARAM={AXIS}; may be repeated.")
+    ] = None,
+    cases: Annotated[
+        str | None, typer.Option(metavar="FILE", help="CSV: parameters in its first row, then a case a row.")
+    ] = None,
+    verdicts: Annotated[
+        bool, typer.Option("--verdicts", help="Run the ensemble of every case, too.")
+    ] = False,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    table = None if cases is None else Path(named(cases, "--cases", "a file"))
+    asked = SweepOptions(vary=tuple(vary or ()), cases=table, verdicts=verdicts)
+    verb = replace(VERB["sweep"], compute=asked.compute)
+    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+
+
 def _compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of simulate or of rank.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
@@ -297,7 +323,12 @@ def _new(
     return make_study(path, excel=excel, as_json=json, quiet=quiet)
 
 
-OWN: dict[str, Callable[..., int]] = {"map": _map, "simulate": _simulate, "sensitivity": _sensitivity}
+OWN: dict[str, Callable[..., int]] = {
+    "map": _map,
+    "simulate": _simulate,
+    "sensitivity": _sensitivity,
+    "sweep": _sweep,
+}
 """Verbs with options of their own."""
 
 VERB = {verb.name: verb for verb in VERBS}

@@ -1,4 +1,4 @@
-"""The axes of a map as they are written on the command line: ``PARAM=LOW..HIGH[unit][:N][:log]``."""
+"""The axes of a map or a sweep on the command line: ``PARAM=LOW..HIGH[unit][:N][:log]``."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
     if not found or not low or not high or high.startswith("."):
         raise InputError(where, "needs a range LOW..HIGH", value=shown(text), cure=EXAMPLE)
     if parameter.unit in ("-", ""):
-        ends = _plain(low, where), _plain(high, where)
+        ends = plain_number(low, where), plain_number(high, where)
     else:
         unit = _NUMBER.sub("", high, count=1).strip()
         own = f"{low} {unit}" if _NUMBER.fullmatch(low) else low
@@ -127,8 +127,14 @@ def _refuse_no_share(parameter: Parameter, ends: tuple[float, float], text: str,
         raise InputError(where, f"must lie between 0 and {top:g}", "-", shown(text))
 
 
-def _plain(text: str, where: str) -> float:
-    """Value of a plain number, without a unit."""
+def plain_number(text: str, where: str) -> float:
+    """Value of a plain number, without a unit.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
     if _NUMBER.fullmatch(text) is None:
         cure = "Write a decimal point." if "," in text else ""
         raise InputError(where, "takes plain numbers, without a unit", value=shown(text), cure=cure)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -65,15 +65,15 @@ def expected_verdicts(
 
 def expected_ranking(study: Study, *, jobs: int) -> Second:
     """Time of a ranking: a curve for every pocket stiffness, and a verdict for every friction."""
-    from separatrix.chain import cage_state, traction_state
+    from separatrix.chain import cage_state
     from separatrix.ranking import ranking_question
 
-    asked, traction = ranking_question(study), traction_state(study)
+    asked = ranking_question(study)
     total = PICTURES
     frictions: dict[float, set[Ratio]] = {}
     cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
     for candidate in asked.candidates:
-        state = cage_state(study, material=candidate.material, traction=traction, friction=0.0)
+        state = cage_state(study, material=candidate.material, friction=0.0)
         stiffness = state.cage.ball_cage_stiffness
         cages[stiffness] = state.cage, state.stability
         known = {found.mean for found in candidate.friction.values() if found is not None}
@@ -87,17 +87,30 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    from separatrix.chain import cage_state, traction_state
+    from separatrix.chain import cage_state
     from separatrix.ranking import ranking_question
 
-    asked, traction = ranking_question(study), traction_state(study)
+    asked = ranking_question(study)
     total = PICTURES
     for candidate in asked.candidates:
-        state = cage_state(study, material=candidate.material, traction=traction, friction=0.0)
+        state = cage_state(study, material=candidate.material, friction=0.0)
         known = [found.mean for found in candidate.friction.values() if found is not None]
         whole = expected_verdicts(state.cage, replace(state.stability, runs=bearings), known, jobs=jobs)
         total += SHARE_RUN * whole
     return total
+
+
+def expected_cases(
+    study: Study, cases: Sequence[Mapping[str, float]], *, verdicts: bool, jobs: int
+) -> Second:
+    """Time of the cases of a sweep, by three of them after a first one that compiles."""
+    from separatrix.explore.sweep import sweep
+
+    sweep(study, cases[:1], verdicts=verdicts)
+    some = [cases[round(i * (len(cases) - 1) / 2)] for i in range(3)]
+    begun = time.perf_counter()
+    sweep(study, some, verdicts=verdicts)
+    return (time.perf_counter() - begun) / len(some) * len(cases) / jobs
 
 
 SHARE_RUN = 0.7

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from separatrix.cli import answers, mapping, sensitivity
+from separatrix.cli import answers, mapping, sensitivity, sweeping
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Draw(Protocol):
-    """Writes pictures of a dataset into a folder."""
+    """Writes further files of a dataset into a folder."""
 
     def __call__(self, data: xr.Dataset, folder: Path, *, quiet: bool) -> None:
         """Write them."""
@@ -30,8 +30,8 @@ class Verb:
     `needs` are the sections of a study that may be left out but not for this question. How the record is
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
     `keeps_runs` is for an answer whose runs are kept in its folder as they are finished; `draw` is for
-    pictures beside the figures; `has_workbook` for an answer that is also written as a workbook; `has_more`
-    for one that is longer than a screen, and has an option for all of it.
+    moving pictures and tables beside the figures; `has_workbook` for an answer that is also written as a
+    workbook; `has_more` for one that is longer than a screen, and has an option for all of it.
     """
 
     name: str
@@ -104,5 +104,12 @@ VERBS: tuple[Verb, ...] = (
         compute=sensitivity.sensitivity,
         needs=("cage", "ranking"),
         keeps_runs=True,
+    ),
+    Verb(
+        name="sweep",
+        help="Chain and verdict of many cases: one table.",
+        compute=sweeping.SweepOptions().compute,
+        keeps_runs=True,
+        draw=sweeping.write_tables,
     ),
 )

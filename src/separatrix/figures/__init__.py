@@ -15,6 +15,7 @@ from separatrix.figures import (
     sensitivity,
     simulation,
     stability,
+    sweep,
     traction,
 )
 from separatrix.figures import map as maps
@@ -38,6 +39,7 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
         "sensitivity-probabilities": sensitivity.probabilities,
         "sensitivity-convergence": sensitivity.convergence,
     },
+    "sweep": {"sweep": sweep.sweep},
 }
 """Verb -> name of the file -> what draws it."""
 
@@ -45,8 +47,8 @@ FIGURES: Mapping[str, Mapping[str, Draw]] = {
 EACH = {"rank": ranking.environments, "sensitivity": sensitivity.each}
 """Verb -> what yields its further pictures: one for each environment."""
 
-NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness"}
-"""Verb -> dimension without which nothing is drawn: an interrupted ranking, bare races without a film."""
+NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness", "sweep": "case"}
+"""Verb -> dimension without which nothing is drawn: an interrupted ranking or sweep, bare races."""
 
 
 def compared(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Figure:

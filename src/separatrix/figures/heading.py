@@ -18,7 +18,7 @@ WIDTH = 122
 LINE = 0.135
 """Height of a line [inch]."""
 
-RANDOM = ("stability", "map", "rank", "sensitivity")
+RANDOM = ("stability", "map", "rank", "sensitivity", "sweep")
 """Verbs whose answer depends on the seed, besides that of a single run."""
 
 

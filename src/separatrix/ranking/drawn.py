@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
-from separatrix.chain import CageState, cage_state, traction_state
+from separatrix.chain import CageState, cage_state
 from separatrix.draws import UncertainInput, sample
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction_fit import TestedFriction
@@ -173,9 +173,9 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
 
 def _states(study: Study) -> States:
     """Cage of each candidate, without friction."""
-    traction, ranking = traction_state(study), study.ranking
+    ranking = study.ranking
     return {
-        one.name: cage_state(study, material=one.material, traction=traction, friction=0.0)
+        one.name: cage_state(study, material=one.material, friction=0.0)
         for one in (ranking.candidates if ranking else ())
     }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
 from separatrix.cage_choice import cage_candidate, cage_friction, environment_of
-from separatrix.chain import CageState, cage_state, impact_speed, traction_state
+from separatrix.chain import CageState, cage_state, impact_speed
 from separatrix.errors import ValidityWarning
 from separatrix.friction_fit import TestedFriction
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
@@ -83,11 +83,8 @@ def frictions_seen(study: Study) -> Study:
     """
     if study.ranking is None:
         return study
-    traction = traction_state(study)
     seen = (
-        candidate_seen(
-            study, candidate, cage_state(study, material=candidate.material, traction=traction, friction=0.0)
-        )
+        candidate_seen(study, candidate, cage_state(study, material=candidate.material, friction=0.0))
         for candidate in study.ranking.candidates
     )
     return replace(study, ranking=replace(study.ranking, candidates=tuple(seen)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
-from separatrix.chain import CageState, cage_state, traction_state
+from separatrix.chain import CageState, cage_state
 from separatrix.errors import InputError
 from separatrix.ledger import Ledger
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings, over_inputs
@@ -174,11 +174,7 @@ def ranking_question(study: Study) -> RankingQuestion:
 
 
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
-    traction = traction_state(study)
-    states = {
-        c.name: cage_state(study, material=c.material, traction=traction, friction=0.0)
-        for c in asked.candidates
-    }
+    states = {c.name: cage_state(study, material=c.material, friction=0.0) for c in asked.candidates}
     cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
     reference = states[reference_candidate(study, asked).name].cage.ball_cage_stiffness
     return _Question(

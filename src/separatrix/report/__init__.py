@@ -12,6 +12,7 @@ from separatrix.report.ranking import only_table, rank
 from separatrix.report.ranking_full import every_environment
 from separatrix.report.sensitivity import sensitivity
 from separatrix.report.study import at_their_means, check, every_input
+from separatrix.report.sweep import sweep
 from separatrix.report.tables import heading, paragraph
 
 Parts = Callable[[Mapping[str, Any]], list[str]]
@@ -26,6 +27,7 @@ REPORTS: Mapping[str, Parts] = {
     "simulate": simulate,
     "rank": rank,
     "sensitivity": sensitivity,
+    "sweep": sweep,
 }
 
 FULL: Mapping[str, Callable[[Mapping[str, Any]], list[str]]] = {

@@ -9,6 +9,7 @@ import numpy as np
 
 from separatrix.results import maps, sensitivity
 from separatrix.results.plain import null_if_not_finite, plain, plain_record
+from separatrix.results.sweep import sweep
 
 if TYPE_CHECKING:
     from separatrix.study import Study
@@ -209,4 +210,5 @@ DOCUMENTS: Mapping[str, Callable[[Any], Document]] = {
     "simulate": simulation,
     "rank": ranking,
     "sensitivity": uncertain_ranking,
+    "sweep": sweep,
 }

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from separatrix.results import maps, sensitivity
+from separatrix.results import maps, sensitivity, sweep
 from separatrix.results.container import DAMAGE, check_container, damaged
 from separatrix.results.labels import GROUPS, JOINED, LISTS, PROVENANCE, RACES, RENAMED, Group, unit_of
 
-OWN: Mapping[str, Any] = {"map": maps, "sensitivity": sensitivity}
+OWN: Mapping[str, Any] = {"map": maps, "sensitivity": sensitivity, "sweep": sweep}
 """Verbs that arrange arrays by themselves: `grid` does, from the keys `ITS_OWN`."""
 
 Columns = dict[str, tuple[tuple[str, ...], Any]]

@@ -110,6 +110,7 @@ RECORD_CLASSES = {
     "stability.map_records": "MapPoint Stopping Inference",
     "ranking": "RankedMaterial Ranking OwnCurve",
     "explore.records": "UncertainMaterial UncertainStudy",
+    "explore.sweep": "SweptCase",
     "pocket_contact": "PocketConditions",
 }
 """Module: classes whose annotations say the unit of a name; one quantity has one name everywhere."""

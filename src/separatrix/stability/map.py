@@ -14,11 +14,9 @@ from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, wilson_in
 from separatrix.cage.verdict import decide
 from separatrix.chain import (
     CageState,
-    TractionState,
     cage_state,
     known_friction,
     pocket_friction,
-    traction_state,
 )
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.ledger import Ledger
@@ -30,7 +28,6 @@ from separatrix.stability.map_parameters import (
     FRICTION,
     KICK,
     RESTITUTION,
-    changes_traction,
     value_in,
     varied,
 )
@@ -128,7 +125,6 @@ class PointFinder:
     def __init__(self, question: MapQuestion, runner: Runner) -> None:
         self.question, self.runner = question, runner
         self._names = (question.x.parameter, question.y.parameter)
-        self._traction = functools.lru_cache(maxsize=MOST_LINKS)(self._find_traction)
         self._state = functools.lru_cache(maxsize=MOST_LINKS)(self._find_state)
 
     def __call__(self, at: tuple[float, float]) -> MapPoint:
@@ -150,21 +146,13 @@ class PointFinder:
 
     def _varied(self, values: Values) -> Study:
         """Study with these values; one without a pocket friction gets one, for it is an axis."""
-        study = functools.reduce(lambda found, item: varied(found, *item), values, self.question.study)
-        return study if FRICTION not in self._names else varied(study, FRICTION, 0.0)
+        pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
+        return varied(self.question.study, {**dict(values), **pocket})
 
     def _find_state(self, values: Values) -> tuple[CageState, StabilitySettings] | str:
         """Cage and ensemble of a study, or why there is none: a refusal is worth remembering too."""
-        of_traction = tuple(item for item in values if changes_traction(item[0]))
         try:
-            study = self._varied(values)
-            return (state := cage_state(study, traction=_found(self._traction(of_traction)))), state.stability
-        except (InputError, ConvergenceError) as error:
-            return str(error)
-
-    def _find_traction(self, values: Values) -> TractionState | str:
-        try:
-            return traction_state(self._varied(values))
+            return (state := cage_state(self._varied(values))), state.stability
         except (InputError, ConvergenceError) as error:
             return str(error)
 

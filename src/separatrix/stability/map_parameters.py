@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
 from separatrix.errors import InputError
@@ -10,6 +11,7 @@ from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
 
+RACE_FRICTION = "film.race_friction"
 THICKNESS = "film.thickness"
 """Of a film; a map may begin at 0, where the races are bare."""
 
@@ -51,8 +53,8 @@ def other_keys() -> list[str]:
     return [key for key in keys if key not in known and key not in SHORT] + ["kinematics.model"]
 
 
-def varied(study: Study, name: str, value: float) -> Study:
-    """Return the study with another value of one parameter.
+def varied(study: Study, values: Mapping[str, float]) -> Study:
+    """Return the study with other values of some parameters, all at once.
 
     Restitution factor and kick are no keys of a study; the map gives them to the cage and to its runs. A film
     of no thickness is bare races.
@@ -62,22 +64,19 @@ def varied(study: Study, name: str, value: float) -> Study:
     InputError
         The study is refused, in the words of a study file.
     """
-    if name in (RESTITUTION, KICK):
-        return study
-    key = LONG.get(name, name)
-    section = key.partition(".")[0]
-    if section == "film" and name in _MADE and study.film.material is None:
-        raise InputError("[film]", "has no material whose properties could vary")
-    if getattr(study, section, study) is None:
-        raise InputError(f"[{section}]", "is missing")
-    if name == THICKNESS and value == 0.0:
-        return replace(study, film=replace(study.film, material=None, thickness=None))
-    return with_values(study, {key: value})
-
-
-def changes_traction(name: str) -> bool:
-    """Whether the traction on the races depends on a parameter."""
-    return name.startswith(("bearing.", "operation.", "film."))
+    keys = {LONG.get(name, name): value for name, value in values.items() if name not in (RESTITUTION, KICK)}
+    for key in keys:
+        section = key.partition(".")[0]
+        if section == "film" and key in _MADE and study.film.material is None:
+            raise InputError("[film]", "has no material whose properties could vary")
+        if getattr(study, section, study) is None:
+            raise InputError(f"[{section}]", "is missing")
+    if keys.get(THICKNESS) == 0.0:
+        keys = {
+            key: value for key, value in keys.items() if not key.startswith("film.") or key == RACE_FRICTION
+        }
+        study = replace(study, film=replace(study.film, material=None, thickness=None))
+    return with_values(study, keys) if keys else study
 
 
 def value_in(study: Study, name: str) -> float | None:

@@ -1,0 +1,179 @@
+"""The verb `sweep` and its function: cases, tables, refusals, threads, and what it must agree with."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from separatrix.cage import judge
+from separatrix.chain import cage_state, restitution_state
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.explore.sweep import MOST_CASES, sweep
+from separatrix.runner import Runner
+from separatrix.study_file import read_study
+
+STUDY = read_study("momentum-wheel")
+QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
+CASES = [
+    {"bearing.contact_angle": angle, "cage.mass": mass} for angle in (0.25, 0.3) for mass in (0.003, 0.004)
+]
+
+pytestmark = pytest.mark.usefixtures("elsewhere")
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """An empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_case_is_the_study_with_those_values():
+    """The chain of each case to the last bit, in the order of the cases, for any number of threads."""
+    found = sweep(STUDY, CASES)
+    for case, one in zip(CASES, found.cases, strict=True):
+        study = replace(
+            STUDY,
+            bearing=replace(STUDY.bearing, contact_angle=case["bearing.contact_angle"]),
+            cage=replace(STUDY.cage, mass=case["cage.mass"]),
+        )
+        state = restitution_state(study)
+        assert one.restitution_factor == state.restitution.restitution_factor
+        assert one.max_pressure_outer == state.traction.bearing.outer.ellipse.max_pressure
+        assert one.slope_inner == state.traction.inner.slope
+        assert (one.verdict, one.reason) == (None, "")
+    assert found == sweep(STUDY, CASES, jobs=3)
+
+
+def test_a_verdict_is_that_of_the_whole_ensemble():
+    """With its evidence, as `judge` gives it."""
+    (one,) = sweep(QUICK, [{"ball_cage_friction": 0.3}], verdicts=True).cases
+    state = cage_state(QUICK, friction=0.3)
+    judged = judge(state.cage, Runner().whole_ensemble(state.cage, state.stability))
+    assert (one.verdict, one.reason) == (judged.verdict.name, judged.reason)
+    for name in ("probability_stable", "largest_offset", "drift_rate", "largest_contact_force", "runs"):
+        assert getattr(one, name) == getattr(judged, name)
+
+
+def test_a_refused_case_is_a_row_with_its_reason():
+    """The others are answered; what was known before the refusal stays."""
+    values = (0.0035, 5.0)
+    found = sweep(STUDY, [{"cage.mass": 0.0035, "bearing.ball_diameter": d} for d in (0.007144, 0.5)])
+    assert found.cases[0].reason == ""
+    assert found.cases[1].restitution_factor is None
+    assert "ball_diameter" in found.cases[1].reason
+    assert values[0] == found.cases[1].values[0]
+
+
+def test_a_bearing_without_a_cage_can_be_swept():
+    """Down to its traction."""
+    bare = replace(STUDY, cage=None, ranking=None)
+    (one,) = sweep(bare, [{"operation.axial_load": 50.0}]).cases
+    assert one.slope_outer > 0.0
+    assert (one.restitution_factor, one.reason) == (None, "")
+
+
+def test_a_table_of_rows():
+    """A row a case, indexed by its number, with the values in front."""
+    table = sweep(STUDY, CASES).to_dataframe()
+    assert list(table.columns[:3]) == ["bearing.contact_angle", "cage.mass", "cage_speed"]
+    assert table["cage.mass"].tolist() == [0.003, 0.004, 0.003, 0.004]
+    assert table.index.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("cases", "rule"),
+    [
+        ([], "must have between 1 and"),
+        ([{"cage.mass": 0.01}] * (MOST_CASES + 1), "must have between 1 and"),
+        ([{"kick": 0.5}], "kick is no number of a study that a sweep can vary"),
+        ([{"cage.colour": 0.5}], "cage.colour is no number"),
+        ([{"cage.mass": 0.01}, {"cage.pocket_clearance": 0.01}], "Case 1 must give cage.mass"),
+    ],
+    ids=["none", "too many", "kick", "unknown", "other names"],
+)
+def test_what_is_no_list_of_cases_is_refused(cases, rule):
+    """In the words of the mistake."""
+    with pytest.raises(InputError, match=rule):
+        sweep(STUDY, cases)
+
+
+def test_every_value_goes_with_every_other(capsys):
+    """Two axes of 2 and 3 values: six cases, the last axis first to change; the same in all three tables."""
+    axes = ["--vary", "cage.mass=3..4g:2", "--vary", "film.thickness=0.5..1um:3"]
+    assert main(["sweep", "momentum-wheel", *axes, "--out", "s", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [case["cage.mass"] for case in found["cases"]] == [0.003] * 3 + [0.004] * 3
+    assert [case["film.thickness"] for case in found["cases"]] == [5e-7, 7.5e-7, 1e-6] * 2
+    assert found["parameters"][0] == {"name": "cage.mass", "unit": "kg"}
+    with Path("s/sweep.csv").open(newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head[:3] == ["case", "cage.mass [kg]", "film.thickness [m]"]
+    at = head.index("restitution_factor [-]")
+    assert [float(row[at]) for row in rows] == [case["restitution_factor"] for case in found["cases"]]
+    sheet = openpyxl.load_workbook("s/sweep.xlsx")["Sweep"]
+    assert [cell.value for cell in sheet[1]] == head
+    assert sheet.cell(2, at + 1).value == found["cases"][0]["restitution_factor"]
+
+
+def test_cases_of_a_table_have_their_units(capsys):
+    """Text with a unit a cell; a byte order mark and blank lines are no matter."""
+    Path("c.csv").write_text("\ufeffcage.mass,ball_cage_friction\n3 g,0.1\n\n0.004 kg,0.2\n")
+    assert main(["sweep", "momentum-wheel", "--cases", "c.csv", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["cases"]
+    assert [(case["cage.mass"], case["ball_cage_friction"]) for case in found] == [(0.003, 0.1), (0.004, 0.2)]
+
+
+WRONG = {
+    "no unit": ("cage.mass\n10\n", "row 2, cage.mass needs a unit of mass"),
+    "another unit": ("cage.mass\n10 mm\n", "row 2, cage.mass needs a unit of mass"),
+    "not whole": ("cage.land_count\n1.5\n", "row 2, cage.land_count takes whole numbers"),
+    "a cell too few": ("cage.mass,cage.land_count\n1 g\n", "row 2 must have 2 cells; got 1"),
+    "no case": ("cage.mass\n", "needs a row of parameters and below it a row for each case"),
+    "a name": ("cage.mas\n1 g\n", "row 1 names no parameter of a study"),
+}
+
+
+@pytest.mark.parametrize("text", [text for text, _ in WRONG.values()], ids=list(WRONG))
+def test_a_wrong_table_is_refused_with_its_row(text, capsys):
+    """Status 2, one line with the place, nothing written."""
+    Path("c.csv").write_text(text)
+    assert main(["sweep", "momentum-wheel", "--cases", "c.csv"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert dict(WRONG.values())[text] in said
+    assert [path.name for path in Path().iterdir()] == ["c.csv"]
+
+
+def test_every_wrong_row_has_its_line(capsys):
+    """Two wrong rows of three."""
+    Path("c.csv").write_text("cage.mass\n10\n3 g\n3 m\n")
+    assert main(["sweep", "momentum-wheel", "--cases", "c.csv"]) == 2
+    assert [line.split(",")[0] for line in capsys.readouterr().err.splitlines()] == [
+        "separatrix: c.csv row 2",
+        "separatrix: c.csv row 4",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("options", "rule"),
+    [
+        ((), "--vary is missing"),
+        (("--vary", "cage.mass=1..2g", "--cases", "c.csv"), "exclude each other"),
+        (("--vary", "cage.mass=1..2g", "--vary", "cage.mass=1..2g"), "must name each parameter once"),
+        (("--vary", "kick=1..2m/s"), "no number of a study that a sweep can vary"),
+        (("--vary", "cage.mass=1..2g:1000", "--vary", "film.thickness=1..2um:1000"), "at most 100000 cases"),
+        (("--cases", "nope.csv"), "cannot be read"),
+    ],
+    ids=["nothing", "both", "twice", "kick", "too many", "no file"],
+)
+def test_wrong_options_are_refused_in_one_line(options, rule, capsys):
+    """Status 2, nothing written."""
+    assert main(["sweep", "momentum-wheel", *options]) == 2
+    said = capsys.readouterr().err
+    assert (rule in said, said.count("\n"), list(Path().iterdir())) == (True, 1, [])
