@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 
+# Values of some numbers of a study, by their names in a study file, in SI units.
 Case = Mapping[str, float]
-"""Values of some numbers of a study, by their names in a study file, in SI units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,0 +1,27 @@
+"""P(stable) over bearings whose pocket clearance and mass are not known exactly."""
+
+import tempfile
+from pathlib import Path
+
+from separatrix.ranking import rank
+from separatrix.study_file import read_study
+
+TEXT = """
+extends = "momentum-wheel"
+[cage]
+mass = "3.5 g +- 10 %"
+pocket_clearance = "0.3 mm +- 20 %"
+[stability]
+runs = 32
+duration = "20 ms"
+"""
+with tempfile.TemporaryDirectory() as folder:
+    path = Path(folder) / "uncertain.toml"
+    path.write_text(TEXT)
+    found = rank(read_study(path), jobs=2)
+
+for row in found.environments[0].materials:
+    low, high = row.uncertain_probability_low, row.uncertain_probability_high
+    print(f"{row.name}: P(stable) {row.uncertain_probability_stable:.2f} ({low:.2f} to {high:.2f})")
+
+probabilities = {row.name: row.uncertain_probability_stable for row in found.environments[0].materials}
