@@ -11,7 +11,7 @@ demo: .venv/ready ## rank the paper's seven cage materials
 test: .venv/ready ## every test
 	$(TESTS)
 
-check: .venv/ready ## what CI and reviewers run: lint, types, layers, tests
+check: .venv/ready docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

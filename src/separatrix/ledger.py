@@ -53,7 +53,7 @@ class Ledger:
             if key in self._new or self._connection is None:
                 return self._new.get(key)
             row = self._execute("SELECT found FROM piece WHERE key = ?", (key,)).fetchone()
-        return None if row is None else bytes(row[0])
+        return row[0] if row and isinstance(row[0], bytes) else None
 
     def put(self, key: bytes, found: bytes) -> None:
         """Keep a piece; it is written with others a little later."""

@@ -82,10 +82,10 @@ class Runner:
         drawn = settings.seed, settings.duration, settings.ball_scatter
         key = key_of(cage, drawn, tuple(kicks), first_run, runs)
         shape = len(kicks), runs, cage.ball_count
-        known = self.ledger.get(key)
+        known = _unpacked(self.ledger.get(key), shape)
         if known is not None:
             self.ledger.taken += len(kicks) * runs
-            return _unpacked(known, shape)
+            return known
         found = run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
         self.ledger.put(key, _packed(found))
         return found
@@ -212,15 +212,20 @@ def _packed(found: Ensemble) -> bytes:
     return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
 
 
-def _unpacked(known: bytes, shape: tuple[int, int, int]) -> Ensemble:
-    """Ensemble of so many kicks, runs and balls from its bytes."""
-    data, at = zlib.decompress(known), 0
+def _unpacked(known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:
+    """Ensemble of so many kicks, runs and balls from its bytes; None if they are damaged, or none."""
+    shapes: dict[str, tuple[int, ...]] = {field.name: shape[:2] for field in fields(Ensemble)}
+    shapes |= {"kicks": shape[:1], "duration": (), "pocket_impacts": shape}
+    sizes = {name: int(np.prod(size)) for name, size in shapes.items()}
+    whole, data = 8 * sum(sizes.values()), b""
+    with contextlib.suppress(zlib.error):
+        data = b"" if known is None else zlib.decompressobj().decompress(known, whole + 1)
+    if len(data) != whole:
+        return None
+    at = 0
     values: dict[str, Any] = {}
-    for field in fields(Ensemble):
-        name = field.name
-        size = {"kicks": shape[:1], "duration": (), "pocket_impacts": shape}.get(name, shape[:2])
+    for name, size in sizes.items():
         kind = np.int64 if name in WHOLE_NUMBERS else np.float64
-        count = int(np.prod(size))
-        values[name] = np.frombuffer(data, kind, count, at).reshape(size)
-        at += 8 * count
+        values[name] = np.frombuffer(data, kind, size, at).reshape(shapes[name])
+        at += 8 * size
     return Ensemble(**values | {"duration": float(values["duration"])})

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import zlib
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -169,6 +170,26 @@ def test_runs_are_taken_only_for_the_same_question(tmp_path, change):
     )
     Runner(ledger=ledger).ensemble(cage, settings, **asked | change.get("asked", {}))
     assert ledger.taken == 0
+    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    assert ledger.taken == 2
+    ledger.close()
+
+
+@pytest.mark.parametrize("damaged", [b"", b"nonsense", zlib.compress(bytes(10**7)), "text"], ids=len)
+def test_a_damaged_piece_is_run_again(tmp_path, damaged):
+    """Nothing, no compressed bytes, ten million of them, a text: the runs are made anew, and kept."""
+    asked = {"kicks": (0.5,), "runs": 2}
+    ledger = Ledger(tmp_path / NAME)
+    first = Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    ledger.close()
+    connection = sqlite3.connect(tmp_path / NAME)
+    with connection:
+        connection.execute("UPDATE piece SET found = ?", (damaged,))
+    connection.close()
+    ledger = Ledger(tmp_path / NAME)
+    again = Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    assert ledger.taken == 0
+    assert again.end_energy.tobytes() == first.end_energy.tobytes()
     Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
     assert ledger.taken == 2
     ledger.close()
