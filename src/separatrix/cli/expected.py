@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -100,19 +100,6 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
         whole = expected_verdicts(state.cage, replace(state.stability, runs=bearings), known, jobs=jobs)
         total += SHARE_RUN * whole
     return total
-
-
-def expected_cases(
-    study: Study, cases: Sequence[Mapping[str, float]], *, verdicts: bool, jobs: int
-) -> Second:
-    """Time of the cases of a sweep, by three of them after a first one that compiles."""
-    from separatrix.explore.sweep import sweep
-
-    sweep(study, cases[:1], verdicts=verdicts)
-    some = [cases[round(i * (len(cases) - 1) / 2)] for i in range(3)]
-    begun = time.perf_counter()
-    sweep(study, some, verdicts=verdicts)
-    return (time.perf_counter() - begun) / len(some) * len(cases) / jobs
 
 
 SHARE_RUN = 0.7

@@ -47,13 +47,15 @@ class SweepOptions:
         InputError
             An option or the table of cases is wrong.
         """
-        from separatrix.cli.expected import expected_cases
         from separatrix.explore.sweep import sweep
 
-        cases = self.asked()
-        work.expect(lambda: expected_cases(study, cases, verdicts=self.verdicts, jobs=work.jobs))
         return sweep(
-            study, cases, verdicts=self.verdicts, jobs=work.jobs, progress=work.progress, ledger=work.ledger
+            study,
+            self.asked(),
+            verdicts=self.verdicts,
+            jobs=work.jobs,
+            progress=work.progress,
+            ledger=work.ledger,
         )
 
     def asked(self) -> list[Case]:
