@@ -83,7 +83,7 @@ def main() -> None:
         (place / "s.toml").write_text(STUDY)
         for verb in CALLS:
             answers, wrong = tried(verb, kills, place)
-            print(f"{verb}: {kills} kills, {answers} answers on the way, {wrong} wrong", flush=True)
+            print(f"{verb}: {kills} kills, {answers} answers, {wrong} wrong", flush=True)
 
 
 if __name__ == "__main__":

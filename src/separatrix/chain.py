@@ -10,7 +10,9 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
@@ -57,6 +59,8 @@ from separatrix.units import (
 
 REMEMBERED = 1024
 """Solutions of a stage that are kept, by the records it takes."""
+
+Solved = TypeVar("Solved", Equilibrium, TractionCurve)
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 
@@ -140,7 +144,7 @@ def bearing_state(study: Study) -> BearingState:
 def _bearing(
     bearing: BallBearing, operation: Operation, kinematics: KinematicModel, race_friction: Ratio
 ) -> BearingState:
-    found = equilibrium(bearing, operation, kinematics, race_friction)
+    found = _unchangeable(equilibrium(bearing, operation, kinematics, race_friction))
     inner, outer = (_race_contact(bearing, found, race) for race in Race)
     ellipses = {Race.INNER: inner.ellipse, Race.OUTER: outer.ellipse}
     turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
@@ -185,17 +189,27 @@ def _traction(
 ) -> TractionState:
     state = _bearing(bearing, operation, kinematics, film.race_friction)
     curves = (
-        traction_curve(
-            at.ellipse,
-            at.creep,
-            race_friction=film.race_friction,
-            film_compliance=film_compliance(film),
-            film_thickness=film.thickness or 0.0,
+        _unchangeable(
+            traction_curve(
+                at.ellipse,
+                at.creep,
+                race_friction=film.race_friction,
+                film_compliance=film_compliance(film),
+                film_thickness=film.thickness or 0.0,
+            )
         )
         for at in (state.inner, state.outer)
     )
     inner, outer = curves
     return TractionState(bearing=state, inner=inner, outer=outer)
+
+
+def _unchangeable(solved: Solved) -> Solved:
+    """The same record, into whose arrays nobody can write: the next caller gets it, too."""
+    for value in (getattr(solved, field.name) for field in fields(solved)):
+        if isinstance(value, np.ndarray):
+            value.setflags(write=False)
+    return solved
 
 
 def require_rolling(study: Study) -> None:

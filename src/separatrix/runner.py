@@ -213,7 +213,7 @@ def _packed(found: Ensemble) -> bytes:
 
 
 def _unpacked(known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:
-    """Ensemble of so many kicks, runs and balls from its bytes; None if they are damaged, or none."""
+    """Ensemble of this shape (kicks, runs, balls) from its bytes; None if they are missing or damaged."""
     shapes: dict[str, tuple[int, ...]] = {field.name: shape[:2] for field in fields(Ensemble)}
     shapes |= {"kicks": shape[:1], "duration": (), "pocket_impacts": shape}
     sizes = {name: int(np.prod(size)) for name, size in shapes.items()}

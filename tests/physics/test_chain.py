@@ -141,7 +141,8 @@ def test_as_many_harmonics_as_the_balls_can_tell(count):
     speeds = 500.0 + 3.0 * np.cos(highest * azimuth) - 2.0 * np.sin(highest * azimuth)
     waves = orbital_waves(speeds, azimuth, 0.1)
     assert len(waves.cosines) == len(waves.sines) == highest
-    assert (waves.cosines[-1], waves.sines[-1]) == pytest.approx((0.3, -0.2), rel=1e-11)  # 3 out of 500
+    # 1e-11: rounding of the speeds, of which the waves are 3 out of 500
+    assert (waves.cosines[-1], waves.sines[-1]) == pytest.approx((0.3, -0.2), rel=1e-11)
     assert waves.share == pytest.approx(1.0, rel=1e-11)  # as above
 
 
@@ -152,6 +153,7 @@ def test_waves_beyond_those_that_hold_nearly_all_are_left_out():
         speeds = 500.0 + np.cos(azimuth) + np.sqrt(power) * np.cos(3.0 * azimuth)
         waves = orbital_waves(speeds, azimuth, 0.1)
         assert len(waves.cosines) == kept
+        # 1e-11: rounding of the speeds, of which the waves are 1 out of 500
         assert waves.share == pytest.approx(1.0 if kept == 3 else 1.0 / (1.0 + power), rel=1e-11)
 
 

@@ -143,6 +143,10 @@ def test_the_chain_of_a_study_is_solved_once():
     thicker = replace(STUDY, film=replace(STUDY.film, thickness=2.0 * STUDY.film.thickness))
     assert traction_state(thicker) is not known
     assert traction_state(thicker).bearing is known.bearing
+    with pytest.raises(ValueError, match="read-only"):  # or the next caller would get what was written
+        known.bearing.equilibrium.load_inner[0] = 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        known.inner.traction_coefficient[0] = 0.0
 
 
 def test_pocket_friction_is_given_or_that_of_the_named_material():

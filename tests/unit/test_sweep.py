@@ -62,12 +62,11 @@ def test_a_verdict_is_that_of_the_whole_ensemble():
 
 def test_a_refused_case_is_a_row_with_its_reason():
     """The others are answered; what was known before the refusal stays."""
-    values = (0.0035, 5.0)
     found = sweep(STUDY, [{"cage.mass": 0.0035, "bearing.ball_diameter": d} for d in (0.007144, 0.5)])
     assert found.cases[0].reason == ""
     assert found.cases[1].restitution_factor is None
     assert "ball_diameter" in found.cases[1].reason
-    assert values[0] == found.cases[1].values[0]
+    assert found.cases[1].values == (0.0035, 0.5)
 
 
 def test_a_bearing_without_a_cage_can_be_swept():
@@ -91,8 +90,8 @@ def test_a_table_of_rows():
     [
         ([], "must have between 1 and"),
         ([{"cage.mass": 0.01}] * (MOST_CASES + 1), "must have between 1 and"),
-        ([{"kick": 0.5}], "kick is no number of a study that a sweep can vary"),
-        ([{"cage.colour": 0.5}], "cage.colour is no number"),
+        ([{"kick": 0.5}], "kick is not a numeric input that a sweep can vary"),
+        ([{"cage.colour": 0.5}], "cage.colour is not a numeric input"),
         ([{"cage.mass": 0.01}, {"cage.pocket_clearance": 0.01}], "Case 1 must give cage.mass"),
     ],
     ids=["none", "too many", "kick", "unknown", "other names"],
@@ -166,7 +165,7 @@ def test_every_wrong_row_has_its_line(capsys):
         ((), "--vary is missing"),
         (("--vary", "cage.mass=1..2g", "--cases", "c.csv"), "exclude each other"),
         (("--vary", "cage.mass=1..2g", "--vary", "cage.mass=1..2g"), "must name each parameter once"),
-        (("--vary", "kick=1..2m/s"), "no number of a study that a sweep can vary"),
+        (("--vary", "kick=1..2m/s"), "not a numeric input that a sweep can vary"),
         (("--vary", "cage.mass=1..2g:1000", "--vary", "film.thickness=1..2um:1000"), "at most 100000 cases"),
         (("--cases", "nope.csv"), "cannot be read"),
     ],

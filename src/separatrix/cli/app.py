@@ -63,7 +63,7 @@ ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, 
 EPILOGS = {
     "map": "An axis is a numeric key of the study file with its section, or restitution_factor, "
     "ball_cage_friction, kick: --x cage.pocket_clearance=0.1..1mm --y film.race_friction=0.02..0.3:40:log. "
-    "Finished points are kept in the folder of the answer: after Ctrl-C the same call goes on from them. "
+    "Finished runs are kept in the folder of the answer: after Ctrl-C run the same command to resume. "
     "With --json and no --out nothing is kept.",
     "sensitivity": "Every number that the study writes with a distribution is drawn, and the frictions with "
     "their scatter: 9 % of the mean where none was measured, a guess.",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 POINTS = 10
-"""Values of an axis that says no number."""
+"""Values of an axis, unless it states a number."""
 
 TABLE = Kind(noun="a table of cases", most_bytes=50_000_000, empty="Write parameters in its first row.")
 
@@ -66,6 +66,8 @@ class SweepOptions:
         InputError
             Neither or both are given, or one of them is wrong.
         """
+        from separatrix.explore.sweep import MOST_CASES
+
         if (self.cases is None) == (not self.vary):
             rule = "and --cases exclude each other" if self.vary else "is missing"
             raise InputError("--vary", rule, cure=NOTHING)
@@ -76,16 +78,11 @@ class SweepOptions:
         for name in names:
             if names.count(name) > 1:
                 raise InputError("--vary", "must name each parameter once", value=name)
-        _refuse_too_many(math.prod(len(axis.values) for axis in axes))
+        cases = math.prod(len(axis.values) for axis in axes)
+        if cases > MOST_CASES:
+            raise InputError("A sweep", f"must have at most {MOST_CASES} cases", value=str(cases))
         values = itertools.product(*(axis.values for axis in axes))
         return [dict(zip(names, case, strict=True)) for case in values]
-
-
-def _refuse_too_many(cases: int) -> None:
-    from separatrix.explore.sweep import MOST_CASES
-
-    if cases > MOST_CASES:
-        raise InputError("A sweep", f"must have at most {MOST_CASES} cases", value=str(cases))
 
 
 def read_cases(path: Path) -> list[Case]:
@@ -94,14 +91,13 @@ def read_cases(path: Path) -> list[Case]:
     Raises
     ------
     InputError
-        It cannot be read, or is no such table: a line for each mistake.
+        It cannot be read, or is not such a table: a line for each mistake.
     """
     text = read_text(path, TABLE)
     rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
     where = path_text(path)
     if len(rows) < 2:
         raise InputError(where, "needs a row of parameters and below it a row for each case")
-    _refuse_too_many(len(rows) - 1)
     heads = [find_parameter(cell.strip(), f"{where} row 1") for cell in rows[0]]
     cases, wrong = [], []
     for number, row in enumerate(rows[1:], start=2):
@@ -118,7 +114,8 @@ def _case(heads: Sequence[Parameter], row: Sequence[str], where: str) -> Case:
     """Values of one row."""
     if len(row) != len(heads):
         raise InputError(where, f"must have {len(heads)} cells", value=str(len(row)))
-    return {head.name: _value(head, cell.strip(), f"{where}, {head.name}") for head, cell in zip(heads, row)}  # noqa: B905
+    cells = zip(heads, row, strict=True)
+    return {head.name: _value(head, cell.strip(), f"{where}, {head.name}") for head, cell in cells}
 
 
 def _value(parameter: Parameter, text: str, where: str) -> float:
@@ -139,7 +136,7 @@ def write_tables(data: xr.Dataset, folder: Path, *, quiet: bool) -> None:  # noq
         put,
         text_for_cell,
         workbook_bytes,
-    )  # fmt: skip
+    )
 
     names = [str(name) for name in data.variables if data[name].dims == ("case",)]
     heads = [f"{name} [{unit}]" if (unit := data[name].attrs.get("units")) else name for name in names]

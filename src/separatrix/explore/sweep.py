@@ -146,7 +146,7 @@ def sweep(
     Raises
     ------
     InputError
-        No case or too many, a name that is no number of a study, or cases with other names than the first.
+        No cases or too many, a name that a sweep cannot vary, or cases that differ in their names.
     """
     names = _names(cases)
     known = parameters()
@@ -170,9 +170,10 @@ def _names(cases: Sequence[Case]) -> list[str]:
     if not 1 <= len(cases) <= MOST_CASES:
         raise InputError("A sweep", f"must have between 1 and {MOST_CASES} cases", value=str(len(cases)))
     names = list(cases[0])
+    known = parameters()
     for name in names:
-        if name not in parameters() or name in (RESTITUTION, KICK):
-            raise InputError(name, "is no number of a study that a sweep can vary")
+        if name not in known or name in (RESTITUTION, KICK):
+            raise InputError(name, "is not a numeric input that a sweep can vary")
     for place, case in enumerate(cases):
         if list(case) != names:
             raise InputError(f"Case {place}", f"must give {', '.join(names)}", value=", ".join(case))

@@ -44,8 +44,8 @@ def _counts(document: Document, cases: Sequence[Row], refused: Sequence[Row]) ->
     varied = ", ".join(one["name"] for one in document["parameters"])
     found = [("Varied", varied), ("Cases", f"{len(cases)}, of which {len(refused)} refused")]
     verdicts = Counter(case["verdict"] for case in cases if case["verdict"])
-    told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
-    return [*found, ("Verdicts", told)] if told else found
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
+    return [*found, ("Verdicts", counts)] if counts else found
 
 
 def _ranges(cases: Sequence[Row]) -> list[tuple[str, str]]:
