@@ -188,20 +188,17 @@ def _traction(
     bearing: BallBearing, operation: Operation, kinematics: KinematicModel, film: Film
 ) -> TractionState:
     state = _bearing(bearing, operation, kinematics, film.race_friction)
-    curves = (
-        _unchangeable(
-            traction_curve(
-                at.ellipse,
-                at.creep,
-                race_friction=film.race_friction,
-                film_compliance=film_compliance(film),
-                film_thickness=film.thickness or 0.0,
-            )
+    inner, outer = (
+        traction_curve(
+            at.ellipse,
+            at.creep,
+            race_friction=film.race_friction,
+            film_compliance=film_compliance(film),
+            film_thickness=film.thickness or 0.0,
         )
         for at in (state.inner, state.outer)
     )
-    inner, outer = curves
-    return TractionState(bearing=state, inner=inner, outer=outer)
+    return TractionState(bearing=state, inner=_unchangeable(inner), outer=_unchangeable(outer))
 
 
 def _unchangeable(solved: Solved) -> Solved:
@@ -324,12 +321,7 @@ def pocket_stiffness(
     return stiffness, f"Hertz, ball on a flat wall of {name} at {speed:.3g} m/s"
 
 
-def cage_state(
-    study: Study,
-    *,
-    material: Material | None = None,
-    friction: Ratio | None = None,
-) -> CageState:
+def cage_state(study: Study, *, material: Material | None = None, friction: Ratio | None = None) -> CageState:
     """Build the cage in the plane, with the chain's race damping and this pocket friction or the study's.
 
     The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs faster
