@@ -109,18 +109,16 @@ def _angles(cage: Cage) -> _check.Problems:
     angles, where = cage.pocket_angles, f"{type(cage).__name__}.pocket_angles"
     wrong = [a for a in angles if not _check.is_number(a) or not -_FULL_TURN <= a <= _FULL_TURN]
     if wrong:
-        yield InputError(where, "must each be a finite angle within one turn of 0", "", f"{wrong[0]!s:.40}")
+        yield InputError(where, "must each be a finite angle within one turn of 0", f"{wrong[0]!s:.40}")
         return
     falls = [(i, a, b) for i, (a, b) in enumerate(pairwise(angles)) if not a < b]
     if falls:
         i, a, b = falls[0]
         got = f"{_degrees(b)} after {_degrees(a)}"
-        yield InputError(where, f"must rise, none twice (items {i + 1} and {i + 2})", "", got)
+        yield InputError(where, f"must be strictly increasing (items {i + 1} and {i + 2})", got)
     elif angles and angles[-1] - angles[0] >= _FULL_TURN:
         got = f"{_degrees(angles[0])} to {_degrees(angles[-1])}"
-        yield InputError(
-            where, "must lie within one turn: the last less than 360 deg after the first", "", got
-        )
+        yield InputError(where, "must lie within one turn: the last less than 360 deg after the first", got)
 
 
 def angles_for(cage: Cage, ball_count: int) -> _check.Problems:
@@ -128,7 +126,7 @@ def angles_for(cage: Cage, ball_count: int) -> _check.Problems:
     if cage.pocket_angles and len(cage.pocket_angles) != ball_count:
         where, got = f"{type(cage).__name__}.pocket_angles", str(len(cage.pocket_angles))
         cure = "Leave it out for pockets that stand evenly."
-        yield InputError(where, f"must hold one angle for each of the {ball_count} balls", "", got, cure)
+        yield InputError(where, f"must hold one angle for each of the {ball_count} balls", got, cure)
 
 
 def _axial_clearance(cage: Cage) -> _check.Problems:

@@ -18,7 +18,7 @@ def settle(*checks: Iterable[InputError]) -> None:
     found: dict[str, InputError] = {}
     for check in checks:
         for problem in check:
-            found.setdefault(problem.where, problem)
+            found.setdefault(problem.path, problem)
     if found:
         raise together(list(found.values()))
 
@@ -105,7 +105,7 @@ def problem(record: object, field: str, rule: str, cure: str = "") -> InputError
         if unit and is_number(value) and math.isfinite(value)
         else shown(value)
     )
-    return InputError(f"{type(record).__name__}.{field}", rule, "", text, cure)
+    return InputError(f"{type(record).__name__}.{field}", rule, text, cure)
 
 
 def is_number(value: object) -> bool:

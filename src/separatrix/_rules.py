@@ -81,15 +81,16 @@ def rising(
     """Refuse a tuple that is too short or long, or not strictly inside the limits or increasing."""
     values, where = getattr(record, field), f"{type(record).__name__}.{field}"
     unit = unit_of(type(record), field)
+    of_unit = f" [{unit}]" if unit != "-" else ""
     if not least <= len(values) <= most:
-        yield InputError(where, f"must hold {least} to {most} values", "", str(len(values)))
+        yield InputError(where, f"must hold {least} to {most} values", str(len(values)))
     outside = [value for value in values if not _check.is_number(value) or not low < value < high]
     if outside:
-        rule = f"must each be a finite number > {low:g} and < {high:g}"
-        yield InputError(where, rule, unit.replace("-", ""), str(outside[0]), hint)
+        rule = f"must each be a finite number > {low:g} and < {high:g}{of_unit}"
+        yield InputError(where, rule, str(outside[0]), hint)
     falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
     if falls:
-        yield InputError(where, "must increase, none twice", unit.replace("-", ""), falls[0])
+        yield InputError(where, f"must be strictly increasing{of_unit}", falls[0])
 
 
 def nothing_measured(candidate: Candidate) -> _check.Problems:
@@ -103,7 +104,7 @@ def environment_of_a_candidate(question: RankingQuestion) -> _check.Problems:
     if question.environment is not None and question.environment not in question.environments:
         cure = f"Known: {'; '.join(question.environments)}."
         rule = "must be one in which candidates were measured"
-        yield InputError("RankingQuestion.environment", rule, "", shown(question.environment), cure)
+        yield InputError("RankingQuestion.environment", rule, shown(question.environment), cure)
 
 
 def named_twice(question: RankingQuestion) -> _check.Problems:
@@ -115,9 +116,7 @@ def named_twice(question: RankingQuestion) -> _check.Problems:
         if not names:
             yield InputError(f"RankingQuestion.{field_name}", "must not be empty")
         for name in sorted({name for name in names if names.count(name) > 1}):
-            yield InputError(
-                f"RankingQuestion.{field_name}", "must have different names", "", f'"{name}" twice'
-            )
+            yield InputError(f"RankingQuestion.{field_name}", "must have different names", f'"{name}" twice')
 
 
 def unknown_environments(question: RankingQuestion) -> _check.Problems:
@@ -125,14 +124,14 @@ def unknown_environments(question: RankingQuestion) -> _check.Problems:
     for candidate in question.candidates:
         for name in sorted(set(candidate.friction) - set(question.environments)):
             rule = f'of "{candidate.name}" must be in the environments of the question'
-            yield InputError("RankingQuestion.candidates", rule, "", f'"{name}"')
+            yield InputError("RankingQuestion.candidates", rule, f'"{name}"')
 
 
 def free_kinematics_without_friction(study: Study) -> _check.Problems:
     """Without race control it is friction that turns the balls."""
     if study.kinematics.value == "free" and study.film.race_friction == 0.0:
         cure = "Without friction nothing turns the balls; choose a race control model."
-        yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "", "0", cure)
+        yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "0", cure)
 
 
 def pockets_that_overlap(study: Study) -> _check.Problems:
@@ -171,7 +170,7 @@ def _bars(cage: CageDesign, needed: float) -> _check.Problems:
             f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
             f"must stand more than {format_quantity(needed, 'rad')} apart"
         )
-        yield InputError("CageDesign.pocket_angles", rule, "", format_quantity(step, "rad"))
+        yield InputError("CageDesign.pocket_angles", rule, format_quantity(step, "rad"))
 
 
 def land_wider_than_a_ball(study: Study) -> _check.Problems:

@@ -123,7 +123,7 @@ def _check_ends(magic: bytes, tail: bytes, label: str) -> None:
     if count == 0xFFFF or 0xFFFFFFFF in (length, offset):
         raise InputError(label, "is a zip file of the kind for more than 4 GB", cure=_SAVE_AGAIN)
     if count > MOST_MEMBERS or length > 1024 * MOST_MEMBERS:
-        raise InputError(label, f"has more than {MOST_MEMBERS} parts", "", str(count))
+        raise InputError(label, f"has more than {MOST_MEMBERS} parts", str(count))
 
 
 def _check_directory(infos: list[zipfile.ZipInfo], size: int, label: str) -> None:
@@ -131,7 +131,7 @@ def _check_directory(infos: list[zipfile.ZipInfo], size: int, label: str) -> Non
     total = sum(info.file_size for info in infos)
     if total > MOST_BYTES:
         rule = f"would expand to more than {MOST_BYTES // 1024**2} MB"
-        raise InputError(label, rule, "", f"{total / 1024**2:.0f} MB", "Nothing was expanded.")
+        raise InputError(label, rule, f"{total / 1024**2:.0f} MB", "Nothing was expanded.")
     for info in infos:
         _check_member(info, label)
     _check_ratio(total, size, label)
@@ -142,10 +142,10 @@ def _check_names(infos: list[zipfile.ZipInfo], label: str) -> None:
     for info in infos:
         if not _stays_inside(info.orig_filename):
             rule = "has a part whose name leads out of it"
-            raise InputError(label, rule, "", f'"{printable(info.orig_filename)}"', "It was not opened.")
+            raise InputError(label, rule, f'"{printable(info.orig_filename)}"', "It was not opened.")
     twice = [name for name, n in Counter(info.filename.casefold() for info in infos).items() if n > 1]
     if twice:
-        raise InputError(label, "has two parts of the same name", "", f'"{printable(twice[0])}"', _SAVE_AGAIN)
+        raise InputError(label, "has two parts of the same name", f'"{printable(twice[0])}"', _SAVE_AGAIN)
 
 
 def _stays_inside(name: str) -> bool:
@@ -172,7 +172,7 @@ def _check_ratio(expanded: int, packed: int, label: str, part: str = "") -> None
     if expanded > MOST_RATIO * max(packed, 1):
         ratio = expanded / max(packed, 1)
         rule = f"would expand by more than {MOST_RATIO}:1{part}"
-        raise InputError(label, rule, "", f"{ratio:.0f}:1", "Nothing was expanded.")
+        raise InputError(label, rule, f"{ratio:.0f}:1", "Nothing was expanded.")
 
 
 def _check_overlap(infos: Iterable[zipfile.ZipInfo], label: str) -> None:

@@ -217,8 +217,7 @@ def require_rolling(study: Study) -> None:
     if study.film.race_friction <= 0.0:
         raise InputError(
             "[film] race_friction",
-            "must be > 0 for traction",
-            "-",
+            "must be > 0 for traction [-]",
             f"{study.film.race_friction:g}",
             "Without friction the races hold no ball.",
         )

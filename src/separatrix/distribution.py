@@ -209,7 +209,7 @@ class Samples:
     def __post_init__(self) -> None:
         if not 2 <= len(self.values) <= MOST_SAMPLES:
             rule = f"must hold 2 to {MOST_SAMPLES} values"
-            raise InputError("Samples.values", rule, "", str(len(self.values)))
+            raise InputError("Samples.values", rule, str(len(self.values)))
         for value in self.values:
             _check_magnitude("Samples.values", value)
         if min(self.values) == max(self.values):
@@ -291,17 +291,17 @@ def _finite(record: object, *names: str) -> None:
 def _check_magnitude(where: str, value: float) -> None:
     if not (value == 0.0 or LEAST <= abs(value) <= MOST):
         rule = f"must be a finite number: 0, or between {LEAST:g} and {MOST:g} in magnitude"
-        raise InputError(where, rule, "", shown(value))
+        raise InputError(where, rule, shown(value))
 
 
 def _positive(record: object, *names: str) -> None:
     for name in names:
         if not getattr(record, name) > 0.0:
             where = f"{type(record).__name__}.{name}"
-            raise InputError(where, "must be > 0", "", shown(getattr(record, name)))
+            raise InputError(where, "must be > 0", shown(getattr(record, name)))
 
 
 def _rising(record: Uniform | LogUniform) -> None:
     if not record.low < record.high:
         got = f"{record.low:g} and {record.high:g}"
-        raise InputError(f"{type(record).__name__}.high", "must be above its lower bound", "", got)
+        raise InputError(f"{type(record).__name__}.high", "must be above its lower bound", got)

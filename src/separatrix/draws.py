@@ -165,7 +165,7 @@ def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
     if variance > MOST_VARIANCE:
         got = f"{friction.mean:.3g} with a standard deviation of {deviation:.3g}"
         cure = "Test it nearer to how the pocket rubs, or state a friction."
-        raise InputError(where, "must not scatter by ten times its mean", "-", got, cure)
+        raise InputError(where, "must not scatter by ten times its mean [-]", got, cure)
     mean = friction.mean * exp(0.5 * variance)
     return LogNormal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
 
@@ -220,7 +220,7 @@ def sample(study: Study, samples: int, seed: int | None = None) -> Draws:
         Nothing is uncertain, or the number of samples is out of range.
     """
     if not 1 <= samples <= MOST_SAMPLES:
-        raise InputError("samples", f"must be a whole number from 1 to {MOST_SAMPLES}", "", str(samples))
+        raise InputError("samples", f"must be a whole number from 1 to {MOST_SAMPLES}", str(samples))
     inputs = uncertain_inputs(study)
     if not inputs:
         cure = 'Write one like "0.5 um +- 20 %".'

@@ -10,31 +10,33 @@ class SeparatrixError(Exception):
 
 
 class InputError(SeparatrixError, ValueError):
-    """A wrong input: where it stands, the rule, the unit, the value, the cure.
+    """A wrong input: its path, the rule, what was given, the cure.
 
     Parameters
     ----------
-    where : str
-        The quantity, for instance ``"[bearing] inner_conformity"``.
+    path : str
+        The quantity and where it stands, for instance ``"case.toml, line 7: [bearing] inner_conformity"``.
     rule : str
-        What must hold, for instance ``"must lie between 0.5 and 0.6"``.
-    unit : str
-        Unit of the rule's numbers; empty where there is none, ``"-"`` if dimensionless.
-    value : str
-        What was given; empty if nothing was.
+        What must hold, with the unit of its numbers: ``"must lie between 0.5 and 0.6 [-]"``.
+    got : str
+        The value given; empty if there was none.
     cure : str
         A sentence that helps; may be empty.
     """
 
-    def __init__(self, where: str, rule: str, unit: str = "", value: str = "", cure: str = "") -> None:
-        super().__init__(where, rule, unit, value, cure)
-        self.where, self.rule, self.unit, self.value, self.cure = where, rule, unit, value, cure
+    def __init__(self, path: str, rule: str, got: str = "", cure: str = "") -> None:
+        super().__init__(path, rule, got, cure)
+        self.path, self.rule, self.got, self.cure = path, rule, got, cure
         self.problems: tuple[InputError, ...] = ()
 
     def __str__(self) -> str:
-        text = f"{self.where} {self.rule}".rstrip() + (f" [{self.unit}]" if self.unit else "")
-        text += f"; got {self.value}." if self.value else "."
+        text = f"{self.path} {self.rule}".rstrip()
+        text += f"; got {self.got}." if self.got else "."
         return f"{text} {self.cure}".rstrip()
+
+    def at(self, path: str, *, cure: str | None = None) -> InputError:
+        """Return the same fault at another path, with its own cure or this one."""
+        return InputError(path, self.rule, self.got, self.cure if cure is None else cure)
 
 
 def together(problems: Sequence[InputError]) -> InputError:

@@ -123,18 +123,18 @@ def axis_ratio(curvature_ratio: Ratio) -> Ratio:
 def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> None:
     where = "contact_ellipse:"
     if not 0.0 <= load < math.inf:
-        raise InputError(f"{where} load", "must be finite and >= 0", "N", f"{load:g}")
+        raise InputError(f"{where} load", "must be finite and >= 0 [N]", f"{load:g}")
     if not 0.0 < modulus < math.inf:
-        raise InputError(f"{where} contact_modulus", "must be finite and > 0", "Pa", f"{modulus:g}")
+        raise InputError(f"{where} contact_modulus", "must be finite and > 0 [Pa]", f"{modulus:g}")
     if not 0.0 < transverse < math.inf:
         cure = "The groove radius must exceed the ball radius."
         raise InputError(
-            f"{where} curvature_transverse", "must be finite and > 0", "1/m", f"{transverse:g}", cure
+            f"{where} curvature_transverse", "must be finite and > 0 [1/m]", f"{transverse:g}", cure
         )
     if not transverse <= rolling < math.inf:
         cure = "Swap the two: the ellipse is long where the gap curves less."
         raise InputError(
-            f"{where} curvature_rolling", f"must lie from {transverse:g} up", "1/m", f"{rolling:g}", cure
+            f"{where} curvature_rolling", f"must lie from {transverse:g} up [1/m]", f"{rolling:g}", cure
         )
 
 

@@ -96,7 +96,7 @@ def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
         It has a standard deviation, and a mean of 0 or nearly so.
     """
     if friction.standard_deviation and friction.mean < LEAST_FRICTION:
-        rule = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation"
+        rule = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
         cure = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
-        raise InputError(f"{where}.mean", rule, "-", f"{friction.mean:g}", cure)
+        raise InputError(f"{where}.mean", rule, f"{friction.mean:g}", cure)
     return friction

@@ -89,7 +89,7 @@ def damping_ratio(stiffness: NewtonPerMetre, mass: Kilogram, damping: NewtonSeco
     r"""Damping ratio of the impact, :math:`\zeta = \sqrt{k_{BC} M_C} / (2 C_\mu)`."""
     if not damping > 0.0:
         cure = "A race friction above 0 and a rolling bearing give one."
-        raise InputError("race_damping", "must be > 0", "N s/m", f"{damping:.6g}", cure)
+        raise InputError("race_damping", "must be > 0 [N s/m]", f"{damping:.6g}", cure)
     return sqrt(stiffness * mass) / (2.0 * damping)
 
 
@@ -113,7 +113,7 @@ def damping_ratio_for(restitution_factor: Ratio) -> Ratio:
     eta = restitution_factor
     if not 0.0 <= eta < 1.0:
         cure = "An impact that returns all its speed would need races that grip without any creep."
-        raise InputError("restitution_factor", "must lie in 0 <= eta < 1", "-", f"{eta:.6g}", cure)
+        raise InputError("restitution_factor", "must lie in 0 <= eta < 1 [-]", f"{eta:.6g}", cure)
     return -log(eta) / hypot(pi, log(eta)) if eta > 0.0 else 1.0
 
 

@@ -185,7 +185,7 @@ def _known(known: Mapping[str, StudyNumber], key: str) -> StudyNumber:
 
 def _whole(value: float) -> int:
     if value != int(value):
-        raise InputError("A whole number", "must be set to one", "", f"{value:g}")
+        raise InputError("A whole number", "must be set to one", f"{value:g}")
     return int(value)
 
 
@@ -229,7 +229,7 @@ def contact_angle_of(radial_clearance: Metre, diameter: Metre, inner: float, out
     room = 2.0 * (inner + outer - 1.0) * diameter
     if not 0.0 <= radial_clearance < room:
         rule = f"must be >= 0 and < {format_quantity(room, 'm')}, where the free contact angle reaches 90 deg"
-        raise InputError("[bearing] radial_clearance", rule, "", format_quantity(radial_clearance, "m"))
+        raise InputError("[bearing] radial_clearance", rule, format_quantity(radial_clearance, "m"))
     return 2.0 * math.asin(math.sqrt(0.5 * radial_clearance / room))
 
 
@@ -250,10 +250,10 @@ def _held_clearance(study: Study, keys: Sequence[str]) -> Metre | None:
 def in_the_words_of_a_file(error: InputError) -> InputError:
     """Name the key as a study file does: ``[cage] pocket_clearance``."""
     problem = (error.problems or (error,))[0]
-    record, _, key = problem.where.partition(".")
+    record, _, key = problem.path.partition(".")
     names = {**_SECTION_OF, RankingQuestion.__name__: "ranking", Friction.__name__: "ranking"}
-    where = f"[{names[record]}] {key}" if record in names else problem.where
-    return InputError(where, problem.rule, problem.unit, problem.value, problem.cure)
+    where = f"[{names[record]}] {key}" if record in names else problem.path
+    return problem.at(where)
 
 
 def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
@@ -270,7 +270,7 @@ def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study
     settled = {**central.distributions, **{key: settled_in(central, key, one) for key, one in given.items()}}
     if len(settled) > MOST_DISTRIBUTIONS:
         rule = f"has more uncertain numbers than {MOST_DISTRIBUTIONS}"
-        raise InputError(study.name, rule, "", str(len(settled)), "Make those certain that matter least.")
+        raise InputError(study.name, rule, str(len(settled)), "Make those certain that matter least.")
     return replace(central, distributions=settled)
 
 
@@ -304,11 +304,11 @@ def _refusal(study: Study, number: StudyNumber, distribution: Distribution) -> I
         try:
             put([end])
         except InputError as error:
-            where = f"at the {side} end, {format_quantity(end, unit or '-')}: {error.where} {error.rule}"
+            where = f"at the {side} end, {format_quantity(end, unit or '-')}: {error.path} {error.rule}"
             rule = f"leaves the range that the study takes {where}"
             wide = isinstance(distribution, Normal | LogNormal)
             cure = "Make it narrower, or write { between = [..., ...] }." if wide else "Narrow it."
-            return InputError(key, rule, "", distribution.text or described(distribution, unit), cure)
+            return InputError(key, rule, distribution.text or described(distribution, unit), cure)
     return None
 
 

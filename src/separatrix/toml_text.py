@@ -186,11 +186,7 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
         )
     reason = message[: found.start()]
     return InputError(
-        where,
-        f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120],
-        "",
-        printable(line),
-        _cure(line),
+        where, f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120], printable(line), _cure(line)
     )
 
 

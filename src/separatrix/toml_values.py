@@ -52,9 +52,9 @@ def ratio(value: Any, where: str) -> float:
         cure = "Write it without quotes." if isinstance(value, str) and _is_plain_number(value) else ""
         if isinstance(value, str) and "," in value:
             cure = "Write a decimal point, without quotes."
-        raise InputError(where, "must be a plain number, without a unit", "", shown(value), cure)
+        raise InputError(where, "must be a plain number, without a unit", shown(value), cure)
     if not -1e300 < value < 1e300:  # an integer may be too long for a float
-        raise InputError(where, "must be a finite number", "", shown(value))
+        raise InputError(where, "must be a finite number", shown(value))
     return float(value)
 
 
@@ -65,16 +65,16 @@ def whole(value: Any, where: str) -> int:
         cure = f"Write {int(value)}." if near else ""
         if isinstance(value, str) and _is_plain_number(value):
             cure = "Write it without quotes."
-        raise InputError(where, "must be a whole number", "", shown(value), cure)
+        raise InputError(where, "must be a whole number", shown(value), cure)
     return value
 
 
 def text(value: Any, where: str) -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text in quotes", "", shown(value))
+        raise InputError(where, "must be text in quotes", shown(value))
     if not 0 < len(value.strip()) <= 200 or not value.isprintable():
-        raise InputError(where, "must be one line of 1 to 200 printable characters", "", shown(value))
+        raise InputError(where, "must be one line of 1 to 200 printable characters", shown(value))
     return value
 
 
@@ -88,7 +88,7 @@ def choice(options: type[Enum]) -> Reader:
         found = known.get(folded(value)) if isinstance(value, str) else None
         if found is None:
             rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
-            raise InputError(where, rule, "", shown(value))
+            raise InputError(where, rule, shown(value))
         return options(found)
 
     return read
@@ -99,7 +99,7 @@ def list_of(reader: Reader) -> Reader:
 
     def read(value: Any, where: str) -> tuple[Any, ...]:
         if not isinstance(value, list):
-            raise InputError(where, "must be a list in [brackets]", "", shown(value))
+            raise InputError(where, "must be a list in [brackets]", shown(value))
         return tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(value, 1))
 
     return read
@@ -108,7 +108,7 @@ def list_of(reader: Reader) -> Reader:
 def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[str, ...]) -> dict[str, Any]:
     """Read a table in place: every key known, every required key there."""
     if not isinstance(value, dict):
-        raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", "", shown(value))
+        raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", shown(value))
     for key in value:
         if key not in readers:
             at = f"{where}.{printable(key)}"
@@ -123,10 +123,7 @@ def build(record: type[Record], values: dict[str, Any], where: str) -> Record:
     try:
         return record(**values)
     except InputError as error:
-        found = [
-            InputError(f"{where}.{p.where.partition('.')[2]}", p.rule, p.unit, p.value, p.cure)
-            for p in error.problems or (error,)
-        ]
+        found = [p.at(f"{where}.{p.path.partition('.')[2]}") for p in error.problems or (error,)]
         raise together(found) from None
 
 

@@ -243,7 +243,7 @@ def _scaled(number: str, scale: str, text: str, where: str) -> float:
     except OverflowError:
         value = math.inf
     if math.isinf(value) or (value == 0.0 and top != 0):
-        raise InputError(where, "must be a number that a computer can hold", "", shown(text))
+        raise InputError(where, "must be a number that a computer can hold", shown(text))
     return value
 
 
@@ -261,7 +261,7 @@ def _integers(text: str) -> tuple[int, int]:
 def _needs_unit(value: object, unit: str, where: str) -> InputError:
     example = str(value) if _is_number(value) else "1.5"
     rule = f"needs a unit of {QUANTITIES[unit]}"
-    return InputError(where, rule, "", shown(value), f'Write "{example} {_HABITS[unit]}".')
+    return InputError(where, rule, shown(value), f'Write "{example} {_HABITS[unit]}".')
 
 
 def _is_number(value: object) -> bool:
@@ -273,19 +273,17 @@ def _is_number(value: object) -> bool:
 def _refusal(text: str, unit: str, where: str) -> InputError:
     value = shown(text)
     if len(text) > LONGEST:
-        return InputError(
-            where, f"must be one number and one unit in at most {LONGEST} characters", "", value
-        )
+        return InputError(where, f"must be one number and one unit in at most {LONGEST} characters", value)
     if comma := re.match(r"\s*([+-]?[0-9]+),([0-9]+)(.*)", text):
         whole, part, rest = comma.groups()
         cure = f'Write "{printable(f"{whole}.{part}{rest}")}".'
         if len(part) == 3 and whole.strip("+-0"):  # perhaps thousands
             cure = f'Write "{printable(whole + part + rest)}" or "{printable(f"{whole}.{part}{rest}")}".'
-        return InputError(where, "needs a decimal point, not a comma", "", value, cure)
+        return InputError(where, "needs a decimal point, not a comma", value, cure)
     if re.match(r"\s*[+-]?(nan|inf)", text, re.IGNORECASE):
-        return InputError(where, "must be a finite number with a unit", "", value)
+        return InputError(where, "must be a finite number with a unit", value)
     rule = f"must be one number and one unit of {QUANTITIES[unit]} ({spellings(unit)})"
-    return InputError(where, rule, "", value, f'Write it like "1.5 {_HABITS[unit]}".')
+    return InputError(where, rule, value, f'Write it like "1.5 {_HABITS[unit]}".')
 
 
 def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
@@ -293,7 +291,7 @@ def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     others = [QUANTITIES[other] for other, known in UNITS.items() if plain in known]
     rule = f"needs a unit of {QUANTITIES[unit]} ({spellings(unit)})"
     value = shown(text) + (f", which is a {others[0]}" if others else "")
-    return InputError(where, rule, "", value, "" if others else _near(plain, unit))
+    return InputError(where, rule, value, "" if others else _near(plain, unit))
 
 
 def _near(spelling: str, unit: str) -> str:

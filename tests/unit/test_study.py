@@ -164,7 +164,7 @@ WRONG_RECORDS = [
     ),
     (
         lambda: StabilitySettings(kicks=(0.5, 0.1)),
-        "StabilitySettings.kicks must increase, none twice [m/s]; got 0.1 after 0.5",
+        "StabilitySettings.kicks must be strictly increasing [m/s]; got 0.1 after 0.5",
     ),
     (lambda: StabilitySettings(kicks=(math.nan,)), "StabilitySettings.kicks must each be a finite number"),
     (lambda: StabilitySettings(runs=True), "StabilitySettings.runs must be a whole number"),
@@ -209,7 +209,7 @@ def test_a_record_reports_everything_wrong_at_once():
     """Two fields, one error that holds both."""
     with pytest.raises(InputError) as caught:
         bearing(ball_diameter=-1.0, inner_conformity=5.88)
-    assert [p.where for p in caught.value.problems] == [
+    assert [p.path for p in caught.value.problems] == [
         "BallBearing.ball_diameter",
         "BallBearing.inner_conformity",
     ]

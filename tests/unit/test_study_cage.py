@@ -150,7 +150,7 @@ RECORDS = [
         {"pocket_spacing_scatter": 0.1, "pocket_angles": (0.0, 2.0, 4.0)},
         "pocket_spacing_scatter and pocket_angles exclude each other",
     ),
-    ({"pocket_angles": (0.0, 2.0, 2.0)}, "pocket_angles must rise, none twice (items 2 and 3)"),
+    ({"pocket_angles": (0.0, 2.0, 2.0)}, "pocket_angles must be strictly increasing (items 2 and 3)"),
     ({"pocket_angles": (0.0, 4.0, 2.0)}, "got 114.6 deg after 229.2 deg"),
     ({"pocket_angles": (0.0, math.nan, 2.0)}, "pocket_angles must each be a finite angle"),
     ({"pocket_angles": (0.0, 2.0, 7.0)}, "pocket_angles must each be a finite angle within one turn of 0"),

@@ -282,12 +282,12 @@ EDITS = {
         ["[stability] kicks must be a list"],
     ),
     "kick of zero": (('"0.1 m/s"', '"0 m/s"'), ["[stability] kicks", "> 1e-09"]),
-    "kick twice": (('"0.1 m/s"', '"0.5 m/s"'), ["[stability] kicks", "twice"]),
+    "kick twice": (('"0.1 m/s"', '"0.5 m/s"'), ["[stability] kicks", "strictly increasing"]),
     "kick with wrong unit": (('"0.1 m/s"', '"0.1 m"'), ["[stability] kicks, item 1, needs a unit of speed"]),
     "restitution factor of 1": (("to = 0.95", "to = 1.0"), ["[stability] restitution_factors", "< 1"]),
     "restitution factors falling": (
         ("from = 0.05", "from = 0.99"),
-        ["[stability] restitution_factors must increase"],
+        ["[stability] restitution_factors must be strictly increasing"],
     ),
     "one restitution factor": (("count = 19", "count = 1"), ["restitution_factors", "count from 2", "got 1"]),
     "no restitution factors": (

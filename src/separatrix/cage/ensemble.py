@@ -206,8 +206,8 @@ def check_length(cage: PlanarCage, duration: Second) -> None:
     longest = MOST_RADIANS / fastest_rate(cage)
     if not duration <= longest:
         cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moment of inertia."
-        rule = f"must be at most {longest:.3g} for this cage"
-        raise InputError("[stability] duration", rule, "s", f"{duration:g}", cure)
+        rule = f"must be at most {longest:.3g} for this cage [s]"
+        raise InputError("[stability] duration", rule, f"{duration:g}", cure)
 
 
 def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
@@ -249,10 +249,10 @@ def chosen(
     speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
     count = settings.runs if runs is None else runs
     if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > LEAST_KICK)):
-        rule = f"must be one or more speeds > {LEAST_KICK:g}"
-        raise InputError("[stability] kicks", rule, "m/s", str(speeds.tolist()), NO_KICK)
+        rule = f"must be one or more speeds > {LEAST_KICK:g} [m/s]"
+        raise InputError("[stability] kicks", rule, str(speeds.tolist()), NO_KICK)
     if count < 1:
-        raise InputError("[stability] runs", "must be at least 1", "-", str(count))
+        raise InputError("[stability] runs", "must be at least 1 [-]", str(count))
     return speeds, count
 
 

@@ -297,10 +297,10 @@ def _refuse(cage: PlanarCage) -> None:
     """Refuse what the hard form leaves out."""
     cure = "Use run_ensemble, which has lands, gravity, unbalance and pockets without play."
     if not math.isinf(cage.land_gap):
-        raise InputError("PlanarCage.guidance", "must be ball in the hard-impact form", "", "", cure)
+        raise InputError("PlanarCage.guidance", "must be ball in the hard-impact form", "", cure)
     if cage.gravity > 0 or cage.unbalance > 0:
         raise InputError(
             "PlanarCage", "must be free of gravity and unbalance in the hard-impact form", cure=cure
         )
     if cage.half_play <= 0:
-        raise InputError("PlanarCage.pocket_clearance", "must be > 0 in the hard-impact form", "m", "0", cure)
+        raise InputError("PlanarCage.pocket_clearance", "must be > 0 in the hard-impact form [m]", "0", cure)

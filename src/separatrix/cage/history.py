@@ -164,12 +164,12 @@ def follow(
         A setting is out of range.
     """
     if not 2 <= samples <= MOST_SAMPLES:
-        raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES}", "-", str(samples))
+        raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES} [-]", str(samples))
     lead = np.asarray(ball_lead, dtype=np.float64)
     play = np.full(cage.ball_count, cage.half_play) if half_play is None else half_play
     if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= play):
-        rule = f"must be {cage.ball_count} numbers within the pockets' play"
-        raise InputError("ball_lead", rule, "m", f"{lead.tolist()}")
+        rule = f"must be {cage.ball_count} numbers within the pockets' play [m]"
+        raise InputError("ball_lead", rule, f"{lead.tolist()}")
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)
     check_length(cage, duration)

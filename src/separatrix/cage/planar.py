@@ -279,18 +279,18 @@ def _refused_speeds(cage: PlanarCage, field: str) -> Iterator[InputError]:
     """Each orbital speed is a number."""
     wrong = [v for v in getattr(cage, field) if not _check.is_number(v) or not -1e6 <= v <= 1e6]
     if wrong:
-        yield InputError(f"PlanarCage.{field}", "must each be a finite number", "m/s", f"{wrong[0]!s:.40}")
+        yield InputError(f"PlanarCage.{field}", "must each be a finite number [m/s]", f"{wrong[0]!s:.40}")
 
 
 def _refused_orbits(cage: PlanarCage) -> Iterator[InputError]:
     """Cosines and sines come in pairs, and only a set that turns brings its balls back to where they were."""
     if len(cage.orbital_cosines) != len(cage.orbital_sines):
         rule = f"must be as many as orbital_cosines, {len(cage.orbital_cosines)}"
-        yield InputError("PlanarCage.orbital_sines", rule, "", str(len(cage.orbital_sines)))
+        yield InputError("PlanarCage.orbital_sines", rule, str(len(cage.orbital_sines)))
     elif cage.orbital_cosines and cage.cage_speed == 0.0:
         rule = "must be empty for a ball set at rest: its balls would run apart"
         got = str(len(cage.orbital_cosines))
-        yield InputError("PlanarCage.orbital_cosines", rule, "", got, "Give the cage's speed.")
+        yield InputError("PlanarCage.orbital_cosines", rule, got, "Give the cage's speed.")
 
 
 def _sign(value: float) -> int:

@@ -45,7 +45,7 @@ def whole(option: typer.CallbackParam, value: str | None) -> int | None:
         return None if value is None else int(value)
     except ValueError:
         cure = "Write it in digits, or leave it out."
-        raise InputError(option.opts[0], "must be a whole number", "", shown(value), cure) from None
+        raise InputError(option.opts[0], "must be a whole number", shown(value), cure) from None
 
 
 WHOLE: dict[str, Any] = {"metavar": "N", "parser": str, "callback": whole}
@@ -100,7 +100,7 @@ def threads(jobs: int | None) -> int:
     """
     if jobs is not None and not 1 <= jobs <= MOST_JOBS:
         cure = f"Leave it out for one thread on each of the {processors()} processors."
-        raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", value=str(jobs), cure=cure)
+        raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", got=str(jobs), cure=cure)
     return jobs or processors()
 
 
@@ -113,7 +113,7 @@ def folder(out: str | None) -> Path | None:
         The name is empty.
     """
     if out is not None and not out.strip():
-        raise InputError("--out", "needs the name of a folder", value='""', cure="The current one is .")
+        raise InputError("--out", "needs the name of a folder", got='""', cure="The current one is .")
     return None if out is None else Path(out)
 
 
@@ -308,7 +308,7 @@ def named(text: str, option: str, what: str) -> str:
         The name is empty.
     """
     if not text.strip() or "\0" in text:
-        raise InputError(option, f"needs the name of {what}", value='""')
+        raise InputError(option, f"needs the name of {what}", got='""')
     return text
 
 

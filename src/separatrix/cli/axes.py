@@ -46,7 +46,7 @@ def read_axis(text: str, option: str, points: int) -> MapAxis:
 
     name, found, rest = text.partition("=")
     if not found:
-        raise InputError(option, "needs a parameter, = and a range", value=shown(text), cure=EXAMPLE)
+        raise InputError(option, "needs a parameter, = and a range", got=shown(text), cure=EXAMPLE)
     parameter = find_parameter(name.strip(), option)
     span, *extras = rest.split(":")
     where = f"{option} {parameter.name}"
@@ -77,7 +77,7 @@ def find_parameter(name: str, option: str) -> Parameter:
         raise InputError(f"{option} {name}", "is no number that a map can vary")
     ends = [full for full in known if full.endswith(f".{name}")]
     cure = f"Did you mean {ends[0]}?" if ends else nearest(name, known)
-    raise InputError(option, "names no parameter of a study", value=shown(name), cure=cure)
+    raise InputError(option, "names no parameter of a study", got=shown(name), cure=cure)
 
 
 def _extras(extras: list[str], where: str, points: int) -> tuple[int, bool]:
@@ -86,7 +86,7 @@ def _extras(extras: list[str], where: str, points: int) -> tuple[int, bool]:
     counts = extras[: len(extras) - is_log]
     if len(counts) > 1 or not all(_COUNT.fullmatch(count) for count in counts):
         rule = "takes after its range at most a number of points and log"
-        raise InputError(where, rule, value=shown(":" + ":".join(extras)), cure=EXAMPLE)
+        raise InputError(where, rule, got=shown(":" + ":".join(extras)), cure=EXAMPLE)
     return checked_points(int(counts[0]) if counts else points, where), is_log
 
 
@@ -99,7 +99,7 @@ def checked_points(count: int, where: str) -> int:
         It is too small or too large.
     """
     if not FEWEST <= count <= MOST:
-        raise InputError(where, f"must have between {FEWEST} and {MOST} points", value=str(count))
+        raise InputError(where, f"must have between {FEWEST} and {MOST} points", got=str(count))
     return count
 
 
@@ -107,7 +107,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
     """Lowest and highest value; the unit of the highest holds for both, unless the lowest has its own."""
     low, found, high = (part.strip() for part in text.partition(".."))
     if not found or not low or not high or high.startswith("."):
-        raise InputError(where, "needs a range LOW..HIGH", value=shown(text), cure=EXAMPLE)
+        raise InputError(where, "needs a range LOW..HIGH", got=shown(text), cure=EXAMPLE)
     if parameter.unit in ("-", ""):
         ends = plain_number(low, where), plain_number(high, where)
     else:
@@ -116,7 +116,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
         top = parse(high, parameter.unit, where)
         ends = parse(own, parameter.unit, where), top
     if not ends[0] < ends[1]:
-        raise InputError(where, "must rise from LOW to HIGH", value=shown(text))
+        raise InputError(where, "must rise from LOW to HIGH", got=shown(text))
     _refuse_no_share(parameter, ends, text, where)
     return ends
 
@@ -124,7 +124,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
 def _refuse_no_share(parameter: Parameter, ends: tuple[float, float], text: str, where: str) -> None:
     top = HIGHEST.get(parameter.name)
     if top is not None and not 0.0 <= ends[0] < ends[1] <= top:
-        raise InputError(where, f"must lie between 0 and {top:g}", "-", shown(text))
+        raise InputError(where, f"must lie between 0 and {top:g} [-]", shown(text))
 
 
 def plain_number(text: str, where: str) -> float:
@@ -137,7 +137,7 @@ def plain_number(text: str, where: str) -> float:
     """
     if _NUMBER.fullmatch(text) is None:
         cure = "Write a decimal point." if "," in text else ""
-        raise InputError(where, "takes plain numbers, without a unit", value=shown(text), cure=cure)
+        raise InputError(where, "takes plain numbers, without a unit", got=shown(text), cure=cure)
     return float(text)
 
 
@@ -153,7 +153,7 @@ def _by_ratio(low: float, high: float, count: int, parameter: Parameter, where: 
     if parameter.is_whole:
         raise InputError(where, "takes whole numbers, which have no log spacing")
     if low <= 0.0:
-        raise InputError(where, "must be > 0 for log spacing", value=f"{low:g}")
+        raise InputError(where, "must be > 0 for log spacing", got=f"{low:g}")
     steps = count - 1
     inside = (float(f"{low * (high / low) ** (i / steps):.12g}") for i in range(1, steps))
     return (low, *inside, high)
@@ -162,8 +162,8 @@ def _by_ratio(low: float, high: float, count: int, parameter: Parameter, where: 
 def _whole(low: float, high: float, count: int, where: str) -> tuple[int, ...]:
     """Whole numbers only: all of the range, or as many as asked for."""
     if low != int(low) or high != int(high):
-        raise InputError(where, "takes whole numbers", value=f"{low:g}..{high:g}")
+        raise InputError(where, "takes whole numbers", got=f"{low:g}..{high:g}")
     if high - low > 1e6:
-        raise InputError(where, "has too wide a range", value=f"{low:g}..{high:g}")
+        raise InputError(where, "has too wide a range", got=f"{low:g}..{high:g}")
     steps = min(count, int(high - low) + 1) - 1
     return tuple(round(low + (high - low) * i / steps) for i in range(steps + 1))

@@ -83,7 +83,7 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     pair = read(first), read(second)
     if pair[0].verb != pair[1].verb:
         rule = f"must be an answer of {pair[0].verb}, as {first} is"
-        raise InputError(str(second), rule, value=pair[1].verb)
+        raise InputError(str(second), rule, got=pair[1].verb)
     found = document(*pair)
     folder = out or (None if as_json else Path("compare"))
     if folder is not None:
@@ -110,7 +110,7 @@ def read(path: Path) -> Saved:
     data = results.load(here[0])
     if data.attrs.get("verb") not in VERBS:
         rule = f"must be an answer of {' or '.join(VERBS)}"
-        raise InputError(str(path), rule, value=str(data.attrs.get("verb", "none")))
+        raise InputError(str(path), rule, got=str(data.attrs.get("verb", "none")))
     _check_head(data, path)
     study = _study(data, path)
     _check_variables(data, path)
@@ -136,7 +136,7 @@ def _check_variables(data: xr.Dataset, path: Path) -> None:
     texts = {name for name in wanted if name.endswith(("outcome", "verdict")) or name == "environment"}
     for name in (name for name in wanted if name not in {*texts, "material"}):
         if data[name].dtype.kind not in "iuf":
-            raise InputError(str(path), f"must have numbers in {name}", value=str(data[name].dtype))
+            raise InputError(str(path), f"must have numbers in {name}", got=str(data[name].dtype))
         if wanted is DRAWN and not float(abs(data[name]).max(skipna=False)) < MOST:
             raise InputError(str(path), f"must have finite numbers below {MOST:g} in {name}")
 

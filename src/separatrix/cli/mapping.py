@@ -76,7 +76,7 @@ def map_question(study: Study, options: MapOptions) -> MapQuestion:
 
     points = checked_points(options.points, "--points")
     if not 1 <= options.runs <= MOST_RUNS:
-        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", value=str(options.runs))
+        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", got=str(options.runs))
     x = read_axis(options.x or DEFAULT_X, "--x", points)
     y = read_axis(options.y or DEFAULT_Y, "--y", points)
     _refuse_twice(x, y)
@@ -87,7 +87,7 @@ def map_question(study: Study, options: MapOptions) -> MapQuestion:
 def _refuse_twice(x: MapAxis, y: MapAxis) -> None:
     if x.parameter == y.parameter:
         cure = f"Without --x it is {DEFAULT_X}, without --y {DEFAULT_Y}."
-        raise InputError("--x and --y", "must be two parameters", value=f"{x.parameter} twice", cure=cure)
+        raise InputError("--x and --y", "must be two parameters", got=f"{x.parameter} twice", cure=cure)
 
 
 def _kick(text: str | None, study: Study, x: MapAxis, y: MapAxis) -> float:
@@ -113,6 +113,6 @@ def kick_speed(text: str) -> float:
 
     speed = parse(text, "m/s", "--kick")
     if not LEAST_KICK < speed < MOST_KICK:
-        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g}"
-        raise InputError("--kick", rule, "m/s", f"{speed:g}", NO_KICK)
+        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
+        raise InputError("--kick", rule, f"{speed:g}", NO_KICK)
     return speed

@@ -42,7 +42,7 @@ class SensitivityOptions:
             near = 1 << max(0, self.samples - 1).bit_length()
             cure = f"Try {min(max(near, FEWEST), MOST)}."
             rule = f"must be a power of two from {FEWEST} to {MOST}"
-            raise InputError("--samples", rule, value=str(self.samples), cure=cure)
+            raise InputError("--samples", rule, got=str(self.samples), cure=cure)
 
     def compute(self, study: Study, work: Work) -> SensitivityAnswer:
         """Answer the verb."""

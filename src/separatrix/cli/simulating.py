@@ -38,13 +38,13 @@ class SimulateOptions:
             An option is wrong, or an animation has no folder to go to.
         """
         if not 0 <= self.run <= LAST_RUN:
-            raise InputError("--run", f"must lie between 0 and {LAST_RUN}", value=str(self.run))
+            raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(self.run))
         if self.kick is not None:
             kick_speed(self.kick)
         if self.animate is None:
             return
         if self.animate not in KINDS:
-            raise InputError("--animate", f"must be {' or '.join(KINDS)}", value=f'"{self.animate}"')
+            raise InputError("--animate", f"must be {' or '.join(KINDS)}", got=f'"{self.animate}"')
         if not writes:
             raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
         if self.animate == "mp4":

@@ -77,10 +77,10 @@ class SweepOptions:
         names = [axis.parameter for axis in axes]
         for name in names:
             if names.count(name) > 1:
-                raise InputError("--vary", "must name each parameter once", value=name)
+                raise InputError("--vary", "must name each parameter once", got=name)
         cases = math.prod(len(axis.values) for axis in axes)
         if cases > MOST_CASES:
-            raise InputError("A sweep", f"must have at most {MOST_CASES} cases", value=str(cases))
+            raise InputError("A sweep", f"must have at most {MOST_CASES} cases", got=str(cases))
         values = itertools.product(*(axis.values for axis in axes))
         return [dict(zip(names, case, strict=True)) for case in values]
 
@@ -113,7 +113,7 @@ def read_cases(path: Path) -> list[Case]:
 def _case(heads: Sequence[Parameter], row: Sequence[str], where: str) -> Case:
     """Values of one row."""
     if len(row) != len(heads):
-        raise InputError(where, f"must have {len(heads)} cells", value=str(len(row)))
+        raise InputError(where, f"must have {len(heads)} cells", got=str(len(row)))
     cells = zip(heads, row, strict=True)
     return {head.name: _value(head, cell.strip(), f"{where}, {head.name}") for head, cell in cells}
 
@@ -123,7 +123,7 @@ def _value(parameter: Parameter, text: str, where: str) -> float:
         return parse(text, parameter.unit, where)
     value = plain_number(text, where)
     if parameter.is_whole and value != int(value):
-        raise InputError(where, "takes whole numbers", value=shown(text))
+        raise InputError(where, "takes whole numbers", got=shown(text))
     return value
 
 

@@ -90,7 +90,7 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
 def _refuse(paths: Sequence[Path], options: TribometerOptions) -> None:
     """Refuse what is wrong with the command line itself, before any file is read."""
     if len(paths) > MOST_FILES:
-        raise InputError("FILES", f"must be at most {MOST_FILES}", "", str(len(paths)))
+        raise InputError("FILES", f"must be at most {MOST_FILES}", str(len(paths)))
     known: dict[Path, Path] = {}
     for path in paths:
         if path.resolve() in known:
@@ -106,10 +106,10 @@ def _refuse_out(out: Path) -> None:
         folder, exists = out.is_dir(), out.exists() or out.is_symlink()
     except OSError as error:
         where = f"--out {printable(str(out), 200)}"
-        raise InputError(where, "cannot be written", "", error.strerror or type(error).__name__) from None
+        raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
     if out.suffix != SUFFIX or folder:
         cure = 'Name a file like "friction.toml".'
-        raise InputError("--out", f"must name a file that ends in {SUFFIX}", "", shown(str(out)), cure)
+        raise InputError("--out", f"must name a file that ends in {SUFFIX}", shown(str(out)), cure)
     if exists:
         from separatrix.friction_file.refusal import exists_already
 
@@ -128,7 +128,7 @@ def _reduction_options(options: TribometerOptions) -> ReductionOptions:
     try:
         return ReductionOptions(run_in_end=options.run_in)
     except InputError as error:
-        raise InputError("--run-in", error.rule, error.unit, error.value, error.cure) from None
+        raise error.at("--run-in") from None
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -249,10 +249,10 @@ def _reduced(path: Path, log: RawLog, chosen: ColumnMap | None, how: ReductionOp
     try:
         return reduction(log, how if how.run_in_end is not None else replace(how, run_in_end=said))
     except InputError as error:
-        if not error.where.startswith("ReductionOptions."):
+        if not error.path.startswith("ReductionOptions."):
             raise
         where = f"{printable(path.name, 150)}: {key}"
-        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
+        raise error.at(where) from None
 
 
 def _with_others(wrong: Sequence[InputError]) -> InputError:
@@ -261,7 +261,7 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     if not others:
         return first
     more = f"{others} other file{'s are' if others > 1 else ' is'} refused too."
-    return InputError(first.where, first.rule, first.unit, first.value, f"{first.cure} {more}".strip())
+    return first.at(first.path, cure=f"{first.cure} {more}".strip())
 
 
 def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> None:

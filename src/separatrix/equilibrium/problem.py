@@ -69,7 +69,7 @@ def problem(bearing: BallBearing, operation: Operation, inner_share: float, fric
     turning = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
     if ball.density is None and turning:
         cure = "Centrifugal force needs it; add it, or set the speeds to 0."
-        raise InputError("[bearing] ball_material", "needs a density", "kg/m3", "", cure)
+        raise InputError("[bearing] ball_material", "needs a density [kg/m3]", "", cure)
     mass = (ball.density or 0.0) * math.pi * D**3 / 6.0
     numbers = (
         D,

@@ -270,10 +270,10 @@ def _not_free(reached: float, ball: int) -> str:
 def _check(model: KinematicModel, race_friction: Ratio) -> None:
     if model is KinematicModel.FREE and not 0.0 < race_friction < math.inf:
         rule, cure = (
-            "must be > 0 without race control",
+            "must be > 0 without race control [-]",
             "Without friction nothing turns the balls; use race control.",
         )
-        raise InputError("[film] race_friction", rule, "-", f"{race_friction:g}", cure)
+        raise InputError("[film] race_friction", rule, f"{race_friction:g}", cure)
 
 
 def _beside_grooves(table: Array) -> InputError | None:
@@ -282,14 +282,14 @@ def _beside_grooves(table: Array) -> InputError | None:
     if steepest > STEEPEST:
         rule = f"press balls out of their grooves: a contact angle reaches {math.degrees(steepest):.0f} deg"
         cure = "The limit is 80 deg. Lower the loads or the speed, or raise the axial load."
-        return InputError("[operation] loads and speed", rule, "", "", cure)
+        return InputError("[operation] loads and speed", rule, "", cure)
     if edge >= 0.5 * math.pi:
         rule = "press balls over the edges of their grooves: a contact ellipse is wider than a groove can be"
         cure = (
             "It would end more than 90 deg from the bottom. Lower the loads, or raise inner_conformity and "
             "outer_conformity."
         )
-        return InputError("[operation] loads", rule, "", "", cure)
+        return InputError("[operation] loads", rule, "", cure)
     return None
 
 

@@ -168,7 +168,7 @@ def sweep(
 
 def _names(cases: Sequence[Case]) -> list[str]:
     if not 1 <= len(cases) <= MOST_CASES:
-        raise InputError("A sweep", f"must have between 1 and {MOST_CASES} cases", value=str(len(cases)))
+        raise InputError("A sweep", f"must have between 1 and {MOST_CASES} cases", got=str(len(cases)))
     names = list(cases[0])
     known = parameters()
     for name in names:
@@ -176,7 +176,7 @@ def _names(cases: Sequence[Case]) -> list[str]:
             raise InputError(name, "is not a numeric input that a sweep can vary")
     for place, case in enumerate(cases):
         if list(case) != names:
-            raise InputError(f"Case {place}", f"must give {', '.join(names)}", value=", ".join(case))
+            raise InputError(f"Case {place}", f"must give {', '.join(names)}", got=", ".join(case))
     return names
 
 

@@ -91,7 +91,7 @@ def uncertain_study(
     ranking_question(study)
     if bearings < FEWEST:
         cure = "Powers of two spread most evenly: 512."
-        raise InputError("--samples", f"must be at least {FEWEST}", value=str(bearings), cure=cure)
+        raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
     drawn, runner = drawn_bearings(study, bearings), Runner(jobs=jobs, progress=progress, ledger=ledger)
     inverse = _inverse(drawn, runner)
     pieces: dict[Case | str, Callable[[], object]] = {

@@ -66,7 +66,7 @@ def animate(
     """
     kind = path.suffix[1:].lower() if kind is None else kind
     if kind not in KINDS:
-        raise InputError("The kind of an animation", f"must be {' or '.join(KINDS)}", value=f'"{kind}"')
+        raise InputError("The kind of an animation", f"must be {' or '.join(KINDS)}", got=f'"{kind}"')
     encoder = video_encoder() if kind == "mp4" else None
     data, moments = literal_texts(data), frame_moments(data)
     with journal(), _beside(path) as part:

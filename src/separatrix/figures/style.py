@@ -111,7 +111,7 @@ def save(figure: Figure, path: Path) -> None:
         The ending is none of `NOTHING`.
     """
     if path.suffix not in NOTHING:
-        raise InputError(str(path), f"must end in {', '.join(NOTHING)}", value=f'"{path.suffix}"')
+        raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
     with journal():
         figure.savefig(path, metadata=NOTHING[path.suffix])
 

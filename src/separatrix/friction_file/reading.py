@@ -71,14 +71,14 @@ def _items(data: Mapping[str, Any], lines: Mapping[str, int], label: str) -> lis
     if not isinstance(items, list) or not 0 < len(items) <= MOST_TESTS:
         place = _place(lines, label, "test", "test.0")
         got = f"{len(items)} tests" if isinstance(items, list) else shown(items)
-        raise InputError(f"{place}: test", f"must be 1 to {MOST_TESTS} tables", "", got, _EXAMPLE)
+        raise InputError(f"{place}: test", f"must be 1 to {MOST_TESTS} tables", got, _EXAMPLE)
     return items
 
 
 def _test(item: Any, where: str, number: int, lines: Mapping[str, int], label: str) -> FrictionTest:
     """One test; what its record or its readers refuse is given the line of its key."""
     if not isinstance(item, dict):
-        raise InputError(where, "must be a table", "", shown(item), _EXAMPLE)
+        raise InputError(where, "must be a table", shown(item), _EXAMPLE)
     try:
         given = _all_keys(item, where)
         if "run_in_end" in given:
@@ -108,10 +108,10 @@ def _all_keys(item: dict[str, Any], where: str) -> dict[str, Any]:
 def _at_its_line(
     problem: InputError, where: str, number: int, lines: Mapping[str, int], label: str
 ) -> InputError:
-    key = problem.where.removeprefix(where).lstrip(".").partition(",")[0]
+    key = problem.path.removeprefix(where).lstrip(".").partition(",")[0]
     line = lines.get(f"test.{number}.{key}")
-    at = problem.where if line is None else f"{label}, line {line}: {problem.where.partition(': ')[2]}"
-    return InputError(at, problem.rule, problem.unit, problem.value, problem.cure)
+    at = problem.path if line is None else f"{label}, line {line}: {problem.path.partition(': ')[2]}"
+    return problem.at(at)
 
 
 def _place(lines: Mapping[str, int], label: str, *keys: str) -> str:
@@ -151,7 +151,7 @@ def _alike(tests: list[FrictionTest], lines: Mapping[str, int], label: str) -> I
                 place = _place(lines, label, f"test.{number}.{key}", f"test.{number}")
                 rule = f"differs from that of test {first + 1} only in capitals or spaces"
                 cure = f"Write both alike, for instance {shown(spelled)}."
-                yield InputError(f"{place}: [[test]].{key}", rule, "", shown(name), cure)
+                yield InputError(f"{place}: [[test]].{key}", rule, shown(name), cure)
 
 
 def _interval(unit: str) -> Reader:
@@ -163,7 +163,7 @@ def _interval(unit: str) -> Reader:
             return single, single
         if len(value) != 2:
             rule = "must be one quantity, or [lowest, highest]"
-            raise InputError(where, rule, "", f"{len(value)} of them")
+            raise InputError(where, rule, f"{len(value)} of them")
         low, high = list_of(quantity(unit))(value, where)
         return low, high
 
@@ -174,7 +174,7 @@ def run_in_end(value: Any, where: str) -> tuple[str, float]:
     """Read where running-in ends, and its axis: ``"120 s"``, ``"35 m"`` or ``"500 cycles"``."""
     if not isinstance(value, str):
         rule = "must be a time, a distance or a number of cycles, as text"
-        raise InputError(where, rule, "", shown(value), 'Write it like "35 m".')
+        raise InputError(where, rule, shown(value), 'Write it like "35 m".')
     if found := _CYCLES.fullmatch(value):
         return "cycles", float(found.group(1))
     try:
@@ -186,7 +186,7 @@ def run_in_end(value: Any, where: str) -> tuple[str, float]:
     except InputError:
         rule = "must be a time, a distance or a number of cycles"
         cure = 'Write it like "120 s", "35 m" or "500 cycles".'
-        raise InputError(where, rule, "", shown(value), cure) from None
+        raise InputError(where, rule, shown(value), cure) from None
 
 
 _READERS: dict[str, Reader] = {

@@ -182,8 +182,8 @@ def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT
     if not tests:
         raise InputError("The friction file", "holds no test")
     if not LEAST_SCATTER <= default_scatter <= MOST_SCATTER:
-        rule = f"must lie between {LEAST_SCATTER:g} and {MOST_SCATTER:g}"
-        raise InputError("friction_scatter", rule, "-", f"{default_scatter:g}", "0.09 stands for 9 %.")
+        rule = f"must lie between {LEAST_SCATTER:g} and {MOST_SCATTER:g} [-]"
+        raise InputError("friction_scatter", rule, f"{default_scatter:g}", "0.09 stands for 9 %.")
     return _fit(tuple(tests), default_scatter)
 
 

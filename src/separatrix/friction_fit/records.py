@@ -95,10 +95,10 @@ def _plain_names(test: FrictionTest) -> Iterator[InputError]:
     for name in NAMES:
         value = getattr(test, name)
         if isinstance(value, str) and value != value.strip():
-            yield InputError(f"FrictionTest.{name}", "must not begin or end with a space", "", shown(value))
+            yield InputError(f"FrictionTest.{name}", "must not begin or end with a space", shown(value))
     if isinstance(test.medium, str) and "," in test.medium:
         cure = 'An environment is named "medium, counterface".'
-        yield InputError("FrictionTest.medium", "must not hold a comma", "", shown(test.medium), cure)
+        yield InputError("FrictionTest.medium", "must not hold a comma", shown(test.medium), cure)
 
 
 def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[InputError]:
@@ -106,14 +106,14 @@ def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[I
     if value is None:
         return
     if not isinstance(value, tuple) or len(value) != 2:
-        yield InputError(where, "must be a lowest and a highest value", "", shown(value))
+        yield InputError(where, "must be a lowest and a highest value", shown(value))
     elif outside := [x for x in value if not (_check.is_number(x) and low <= x <= high)]:
         rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
         got = outside[0]
-        yield InputError(where, rule, "", format_quantity(got, unit) if got == got else "nan")
+        yield InputError(where, rule, format_quantity(got, unit) if got == got else "nan")
     elif value[0] > value[1]:
         rule = "must name the lowest first"
-        yield InputError(where, rule, "", " before ".join(format_quantity(x, unit) for x in value))
+        yield InputError(where, rule, " before ".join(format_quantity(x, unit) for x in value))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

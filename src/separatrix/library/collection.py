@@ -190,10 +190,10 @@ def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTab
         return
     if not old.file.shipped:
         cure = "Rename or remove one of them."
-        raise InputError(where, f"stands in {place(old)} too", "", shown(new.name), cure)
+        raise InputError(where, f"stands in {place(old)} too", shown(new.name), cure)
     if not new.replaces:
         cure = "Give it another name, or say replaces = true."
-        raise InputError(where, f"has the name of a shipped {new.kind}", "", shown(new.name), cure)
+        raise InputError(where, f"has the name of a shipped {new.kind}", shown(new.name), cure)
 
 
 def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
@@ -204,7 +204,7 @@ def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
             old = known.setdefault(" ".join(name.casefold().split()), record)
             if old is not record:
                 rule = f"has a name of {printable(old.name)} ({place(old)})"
-                raise InputError(_header(record), rule, "", shown(name), "Give it another name.")
+                raise InputError(_header(record), rule, shown(name), "Give it another name.")
 
 
 def _aliases(record: Record | FrictionTable) -> Sequence[str]:

@@ -53,7 +53,7 @@ def _data(known: Property, value: Any, where: str) -> tuple[Datum, ...]:
     if not isinstance(value, list):
         return (_datum(known, value, where),)
     if not 0 < len(value) <= MOST_DATA:
-        raise InputError(where, f"must hold 1 to {MOST_DATA} data", "", f"{len(value)} of them", BLANK)
+        raise InputError(where, f"must hold 1 to {MOST_DATA} data", f"{len(value)} of them", BLANK)
     data = tuple(_datum(known, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
     conditions = [(d.temperature, d.pressure, d.medium, d.form) for d in data]
     if len(set(conditions)) < len(conditions):
@@ -65,9 +65,7 @@ def _data(known: Property, value: Any, where: str) -> tuple[Datum, ...]:
 def _datum(known: Property, value: Any, where: str) -> Datum:
     if not isinstance(value, dict):
         example = '{ value = "5 GPa", source = "our test 12", confidence = "measured" }'
-        raise InputError(
-            where, "must be a number with its source", "", shown(value), f"Write it like {example}."
-        )
+        raise InputError(where, "must be a number with its source", shown(value), f"Write it like {example}.")
     given = table(value, where, dict.fromkeys(_DATUM, raw), ("value", "source", "confidence"))
     words: dict[str, Any] = {
         name: long_text(given[name], f"{where}.{name}") for name in _WORDS if name in given
@@ -81,7 +79,7 @@ def _datum(known: Property, value: Any, where: str) -> Datum:
     confidence = confidence_of(given["confidence"], f"{where}.confidence")
     source = long_text(given["source"], f"{where}.source")
     if len(source.strip()) < 3:
-        raise InputError(f"{where}.source", "must name a source", "", shown(source), _WHO)
+        raise InputError(f"{where}.source", "must name a source", shown(source), _WHO)
     return Datum(value=number, unit=known.unit, range=expected, source=source, confidence=confidence, **words)
 
 
@@ -90,37 +88,35 @@ def _number(known: Property, value: Any, where: str) -> float:
     if not known.low <= number <= known.high:
         low, high = (format_quantity(bound, known.unit) for bound in (known.low, known.high))
         cure = BLANK if number == 0.0 else "Check the unit."
-        raise InputError(where, f"must lie between {low} and {high}", "", shown(value), cure)
+        raise InputError(where, f"must lie between {low} and {high}", shown(value), cure)
     return number
 
 
 def _expected(known: Property, value: Any, where: str, number: float) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
-        raise InputError(where, "must be a list of the lowest and the highest value", "", shown(value))
+        raise InputError(where, "must be a list of the lowest and the highest value", shown(value))
     low, high = (_number(known, bound, where) for bound in value)
     if not low <= number <= high:
-        raise InputError(where, "must hold the value between its ends, the lower one first", "", shown(value))
+        raise InputError(where, "must hold the value between its ends, the lower one first", shown(value))
     return low, high
 
 
 def _phase(value: Any, where: str) -> str:
     if value not in ("liquid", "gas"):
-        raise InputError(where, 'must be "liquid" or "gas"', "", shown(value))
+        raise InputError(where, 'must be "liquid" or "gas"', shown(value))
     return str(value)
 
 
 def _coolprop(value: Any, where: str) -> str:
     given = text(value, where)
     if not (given.isascii() and given.replace("-", "").isalnum()):
-        raise InputError(
-            where, "must be the plain name of a pure fluid, letters and digits", "", shown(given)
-        )
+        raise InputError(where, "must be the plain name of a pure fluid, letters and digits", shown(given))
     return given
 
 
 def _aliases(value: Any, where: str) -> list[str]:
     if not isinstance(value, list) or not 0 < len(value) <= 20:
-        raise InputError(where, "must be a list of 1 to 20 names", "", shown(value))
+        raise InputError(where, "must be a list of 1 to 20 names", shown(value))
     return [text(name, where) for name in value]
 
 

@@ -121,7 +121,7 @@ class _Reading:
             )
             cure = nearest(section, SECTIONS) if section not in SECTIONS else ""
             self.problems.append(
-                InputError(where, rule, "", "" if section not in SECTIONS else shown(value), cure)
+                InputError(where, rule, "" if section not in SECTIONS else shown(value), cure)
             )
             return []
         if len(value) > MOST_RECORDS:
@@ -140,9 +140,9 @@ class _Reading:
         line = self.lines.get(key)
         at = f"{self.place(key, section)}: [{section}] {printable(name)}"
         if text(name, f"{at}, its name,") != name.strip():
-            raise InputError(f"{at}, its name,", "must not begin or end with a space", "", shown(name))
+            raise InputError(f"{at}, its name,", "must not begin or end with a space", shown(name))
         if not isinstance(item, dict):
-            raise InputError(at, "must be a record: keys with values", "", shown(item))
+            raise InputError(at, "must be a record: keys with values", shown(item))
         common = {"name": name, "file": self.file, "line": line}
         places = {field: self.place(f"{key}.{field}", key, section) for field in item}
         if section == "friction_table":

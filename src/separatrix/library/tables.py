@@ -50,7 +50,7 @@ def _rows(value: Any, where: str, words: Mapping[str, str]) -> dict[str, dict[st
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_MATERIALS:
         cure = 'Write a section [friction_table."NAME".friction."MATERIAL"] for each.'
         rule = f"must hold the friction of 1 to {MOST_MATERIALS} materials"
-        raise InputError(where, rule, "", shown(value), cure)
+        raise InputError(where, rule, shown(value), cure)
     return {name: _row(text(name, where), row, where, words) for name, row in value.items()}
 
 
@@ -58,7 +58,7 @@ def _row(name: str, value: Any, where: str, words: Mapping[str, str]) -> dict[st
     at = f'{where}."{printable(name)}"'
     if not isinstance(value, dict) or not value:
         rule = "must give the friction in at least one environment"
-        raise InputError(at, rule, "", shown(value), 'Write "liquid nitrogen, 440C" = 0.11.')
+        raise InputError(at, rule, shown(value), 'Write "liquid nitrogen, 440C" = 0.11.')
     return {env: _friction(item, f'{at}."{text(env, at)[:60]}"', words) for env, item in value.items()}
 
 
@@ -68,7 +68,7 @@ def _friction(value: Any, where: str, words: Mapping[str, str]) -> Friction:
         table(value, where, readers, ("mean",)) if isinstance(value, dict) else {"mean": ratio(value, where)}
     )
     if given["mean"] == 0.0:
-        raise InputError(where, "must be above 0", "", "0", BLANK)
+        raise InputError(where, "must be above 0", "0", BLANK)
     known = {**given, "source": words["source"], "confidence": words["confidence"]}
     return refuse_scatter_about_zero(build(Friction, known, where), where)
 
@@ -79,10 +79,10 @@ def _environments(value: Any, rows: Mapping[str, Mapping[str, Friction]], where:
     if value is None:
         return used
     if not isinstance(value, list) or not all(isinstance(env, str) for env in value):
-        raise InputError(where, "must be a list of names in quotes", "", shown(value))
+        raise InputError(where, "must be a list of names in quotes", shown(value))
     if unknown := [env for env in used if env not in value]:
         cure = nearest(unknown[0], value) if value else ""
-        raise InputError(where, "lacks an environment that the table uses", "", shown(unknown[0]), cure)
+        raise InputError(where, "lacks an environment that the table uses", shown(unknown[0]), cure)
     if len(set(value)) < len(value):
         raise InputError(where, "names an environment twice")
     return tuple(value)

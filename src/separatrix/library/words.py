@@ -15,17 +15,17 @@ BLANK = "What is not known is left out, never given as 0."
 def long_text(value: Any, where: str) -> str:
     """Read printable text on one line, up to `LONGEST_TEXT` characters."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text in quotes", "", shown(value))
+        raise InputError(where, "must be text in quotes", shown(value))
     if not 0 < len(value.strip()) <= LONGEST_TEXT or not value.isprintable():
         rule = f"must be one line of 1 to {LONGEST_TEXT} printable characters"
-        raise InputError(where, rule, "", shown(value))
+        raise InputError(where, rule, shown(value))
     return value
 
 
 def yes_or_no(value: Any, where: str) -> bool:
     """Read true or false."""
     if not isinstance(value, bool):
-        raise InputError(where, "must be true or false, without quotes", "", shown(value))
+        raise InputError(where, "must be true or false, without quotes", shown(value))
     return value
 
 
@@ -33,12 +33,10 @@ def span(unit: str, value: Any, where: str, low: float, high: float) -> tuple[fl
     """Read one quantity, or a list of the lowest and the highest one."""
     bounds = value if isinstance(value, list) else [value, value]
     if len(bounds) != 2:
-        raise InputError(
-            where, "must be one quantity or a list of the lowest and the highest", "", shown(value)
-        )
+        raise InputError(where, "must be one quantity or a list of the lowest and the highest", shown(value))
     first, last = (in_range(unit, bound, where, low, high) for bound in bounds)
     if first > last:
-        raise InputError(where, "must give the lower end first", "", f"{shown(bounds[0])} first")
+        raise InputError(where, "must give the lower end first", f"{shown(bounds[0])} first")
     return first, last
 
 
@@ -47,7 +45,7 @@ def in_range(unit: str, value: Any, where: str, low: float, high: float) -> floa
     number = parse(value, unit, where)
     if not low <= number <= high:
         rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
-        raise InputError(where, rule, "", shown(value))
+        raise InputError(where, rule, shown(value))
     return number
 
 
@@ -56,7 +54,7 @@ def confidence_of(value: Any, where: str) -> str:
     given = long_text(value, where)
     if given.partition(";")[0].strip() not in CONFIDENCES:
         rule = f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon"
-        raise InputError(where, rule, "", shown(given), 'A guess is allowed and marked: "guess".')
+        raise InputError(where, rule, shown(given), 'A guess is allowed and marked: "guess".')
     return given
 
 

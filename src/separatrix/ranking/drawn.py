@@ -158,7 +158,7 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
             except SeparatrixError as error:
                 failures.append(str(error))
     if not made:
-        raise InputError(study.name, "makes no bearing in any draw of its uncertain inputs", "", failures[0])
+        raise InputError(study.name, "makes no bearing in any draw of its uncertain inputs", failures[0])
     return DrawnBearings(
         study=asked,
         inputs=draws.inputs,

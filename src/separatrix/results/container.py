@@ -54,7 +54,7 @@ def check_container(path: Path) -> None:
     size = size_of(path, where)
     if size > MOST_BYTES:
         rule = f"is larger than a file of results can be, {MOST_BYTES // 1024**2} MB"
-        raise InputError(where, rule, "", f"{size / 1024**2:.0f} MB")
+        raise InputError(where, rule, f"{size / 1024**2:.0f} MB")
     _check_heaps(path, where)
     try:
         with h5py.File(path, "r") as file:
@@ -106,7 +106,7 @@ def _check(file: Any, path: Path, size: int) -> None:
 
 
 def _refusal(where: str, rule: str, value: str = "") -> InputError:
-    return InputError(where, rule, "", value, _SAVE_AGAIN)
+    return InputError(where, rule, value, _SAVE_AGAIN)
 
 
 def _variable(file: Any, name: str, at: str) -> Any:

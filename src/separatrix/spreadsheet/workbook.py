@@ -104,7 +104,7 @@ def open_workbook(path: Path) -> Workbook:
 
     parse(archive, main, start)
     if not 0 < len(sheets) <= MOST_SHEETS:
-        raise InputError(label, f"must have 1 to {MOST_SHEETS} sheets", "", str(len(sheets)))
+        raise InputError(label, f"must have 1 to {MOST_SHEETS} sheets", str(len(sheets)))
     return Workbook(archive, sheets, dict(targets.values()))
 
 

@@ -77,7 +77,7 @@ def _columns(sheet: SheetText) -> Iterator[_Column]:
         column = _column(sheet, number, above, below, environment)
         environment = column.environment
         if (column.what, environment) in seen:
-            raise InputError(sheet.at(2, number), "is a second column of that heading", "", shown(below))
+            raise InputError(sheet.at(2, number), "is a second column of that heading", shown(below))
         seen.add((column.what, environment))
         yield column
 
@@ -88,7 +88,7 @@ def _column(sheet: SheetText, number: int, above: str, below: str, environment: 
     if below not in MEASURED:
         known = MEASURED if environment or above else (*OWN, *PROPERTIES, *MEASURED)
         raise InputError(
-            sheet.at(2, number), "is no heading of candidates", "", shown(below), nearest(below, known)
+            sheet.at(2, number), "is no heading of candidates", shown(below), nearest(below, known)
         )
     if not above and not environment:
         cure = 'Write it like "liquid nitrogen, 440C".'
@@ -101,7 +101,7 @@ def _heading(sheet: SheetText, row: int, column: int) -> str:
     if cell is None:
         return ""
     if not isinstance(cell.value, str):
-        raise InputError(sheet.at(row, column), "must be text", "", shown(cell.value))
+        raise InputError(sheet.at(row, column), "must be text", shown(cell.value))
     return cell.value.strip()
 
 
@@ -156,7 +156,7 @@ def _value(cell: Cell, column: _Column, where: str) -> Any:
     is_number = column.what in MEASURED and column.what != "source"
     if is_number and isinstance(cell.value, str) and not begins_as_number(cell.value):
         cure = "Leave the cell empty if it was not measured."
-        raise InputError(where, "must be a number", "", shown(cell.value), cure)
+        raise InputError(where, "must be a number", shown(cell.value), cure)
     if isinstance(cell.value, float):
         if column.what == "standard_deviation" and cell.format == "percent":
             return f"{number_text(float(f'{100.0 * cell.value:.12g}'))} %"

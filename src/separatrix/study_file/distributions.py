@@ -54,7 +54,7 @@ def count(value: Any, where: str) -> Any:
     """Read a whole number, or a list of those that it may be, as `Uncertain`."""
     if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
         rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError(where, rule, "", shown(value), "Write it like [12, 13].")
+        raise InputError(where, rule, shown(value), "Write it like [12, 13].")
     items = value["samples"] if isinstance(value, dict) else value
     if not isinstance(items, list):
         return whole(value, where)
@@ -67,9 +67,9 @@ def certain(reader: Reader) -> Reader:
 
     def read(value: Any, where: str) -> Any:
         if _is_spread(value):
-            raise InputError(where, "takes no distribution", "", shown(value), _CERTAIN)
+            raise InputError(where, "takes no distribution", shown(value), _CERTAIN)
         if isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value):
-            raise InputError(where, "takes no distribution", "", written(value), _CERTAIN)
+            raise InputError(where, "takes no distribution", written(value), _CERTAIN)
         return reader(value, where)
 
     return read
@@ -127,10 +127,10 @@ def _plus_minus(text: str, where: str, reader: Reader, unit: str) -> Distributio
     parts = _sides(text.strip())
     if len(text) > 120 or len(parts) != 2 or not all(parts):
         rule = "must be one value, +- and one expanded uncertainty"
-        raise InputError(where, rule, "", shown(text), f'Write it like "{_example(unit)} +- 20 %".')
+        raise InputError(where, rule, shown(text), f'Write it like "{_example(unit)} +- 20 %".')
     if unit != "-" and _PLAIN.fullmatch(parts[0]):
         cure = f'Write it like "{_example(unit)} +- 20 %", with a unit on either side of +-.'
-        raise InputError(where, "needs a unit before +- too", "", shown(text), cure)
+        raise InputError(where, "needs a unit before +- too", shown(text), cure)
     mean = _written_number(parts[0], where, reader, unit)
     half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
     return _made(Normal, where, mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
@@ -154,7 +154,7 @@ def _table(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Dist
     forms = {known[key] for key in value if key in known}
     if len(forms) != 1:
         rule = f"must have {_FORMS}" if not forms else f"must have only one of {_FORMS}"
-        raise InputError(where, rule, "", written(value))
+        raise InputError(where, rule, written(value))
     if "log" in value and "between" not in value:
         raise InputError(f"{where}.log", "has a meaning only with between")
     return forms.pop()(value, where, reader, unit)
@@ -164,24 +164,24 @@ def _between(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Di
     del unit
     bounds, log = value["between"], value.get("log", False)
     if not isinstance(log, bool):
-        raise InputError(f"{where}.log", "must be true or false", "", shown(log))
+        raise InputError(f"{where}.log", "must be true or false", shown(log))
     if not isinstance(bounds, list) or len(bounds) != 2:
         got = f"a list of {len(bounds)}" if isinstance(bounds, list) else shown(bounds)
-        raise InputError(f"{where}.between", "must be a list of two bounds", "", got)
+        raise InputError(f"{where}.between", "must be a list of two bounds", got)
     low, high = (reader(bound, f"{where}.between, item {i},") for i, bound in enumerate(bounds, 1))
     if not low < high:
         got = f"{written(bounds[0])} and {written(bounds[1])}"
         cure = "Write the value alone if it is certain." if low == high else "Write the lower one first."
-        raise InputError(f"{where}.between", "must rise", "", got, cure)
+        raise InputError(f"{where}.between", "must rise", got, cure)
     if log and low <= 0.0:
         cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
-        raise InputError(f"{where}.between", "must be > 0 with log = true", "", shown(bounds[0]), cure)
+        raise InputError(f"{where}.between", "must be > 0 with log = true", shown(bounds[0]), cure)
     return _made(LogUniform if log else Uniform, f"{where}.between", low=low, high=high, text=written(value))
 
 
 def _moments(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
     if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
-        raise InputError(where, f"lacks: {missing[0]}", "", written(value))
+        raise InputError(where, f"lacks: {missing[0]}", written(value))
     mean, width = reader(value["mean"], f"{where}.mean"), value["standard_deviation"]
     at = f"{where}.standard_deviation"
     if isinstance(width, str) and (unit != "-" or "%" in width):
@@ -195,7 +195,7 @@ def _sampled(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Di
     del unit
     items = value["samples"]
     if not isinstance(items, list):
-        raise InputError(f"{where}.samples", "must be a list in [brackets]", "", shown(items))
+        raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(items))
     return _samples(items, f"{where}.samples", reader, written(value))
 
 
@@ -203,11 +203,11 @@ def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples
     """Read equally likely values."""
     if not 2 <= len(items) <= MOST_SAMPLES:
         cure = "Write one value without brackets." if len(items) == 1 else ""
-        raise InputError(where, f"must hold 2 to {MOST_SAMPLES} samples", "", str(len(items)), cure)
+        raise InputError(where, f"must hold 2 to {MOST_SAMPLES} samples", str(len(items)), cure)
     values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
     if min(values) == max(values):
         cure = "Write the value alone if it is certain."
-        raise InputError(where, "must differ: there is no spread in them", "", written(items), cure)
+        raise InputError(where, "must differ: there is no spread in them", written(items), cure)
     return _made(Samples, where, values=values, text=text)
 
 
@@ -216,7 +216,7 @@ def _made(kind: type[Made], where: str, **values: Any) -> Made:
     try:
         return kind(**values)
     except InputError as error:
-        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
+        raise error.at(where) from None
 
 
 def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:
@@ -224,15 +224,15 @@ def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> flo
     percent = _PERCENT.fullmatch(text.strip())
     if percent is None and unit != "-" and _PLAIN.fullmatch(text.strip()):
         cure = f'Write "{printable(text.strip())} %", or the width with its unit.'
-        raise InputError(where, "needs a unit, or %", "", shown(text), cure)
+        raise InputError(where, "needs a unit, or %", shown(text), cure)
     if percent is None:
         return _not_zero(_difference(text, where, unit), text, where)
     if unit == "K" and not re.search(r"[0-9] ?K$", mean_text.strip()):
         cure = "Write the width in kelvin."
-        raise InputError(where, "is a share of a temperature, whose zero is arbitrary", "", shown(text), cure)
+        raise InputError(where, "is a share of a temperature, whose zero is arbitrary", shown(text), cure)
     share = _not_zero(float(percent.group(1)) / 100.0, text, where)
     if mean == 0.0:
-        raise InputError(where, "is a share of 0", "", shown(text), "Write the width with its unit.")
+        raise InputError(where, "is a share of 0", shown(text), "Write the width with its unit.")
     return share * abs(mean)
 
 
@@ -253,14 +253,14 @@ def _written_number(text: str, where: str, reader: Reader, unit: str) -> float:
         return float(reader(text, where))
     if _PLAIN.fullmatch(text.strip()) is None:
         cure = "Write a decimal point." if "," in text else f'Write it like "{_example(unit)} +- 20 %".'
-        raise InputError(where, "must be a plain number, without a unit", "", shown(text), cure)
+        raise InputError(where, "must be a plain number, without a unit", shown(text), cure)
     return float(reader(float(text), where))
 
 
 def _not_zero(width: float, written_as: Any, where: str) -> float:
     if not width > 0.0:
         cure = "Write the value alone if it is certain." if width == 0.0 else "A width has no sign."
-        raise InputError(where, "must be a width > 0", "", shown(written_as), cure)
+        raise InputError(where, "must be a width > 0", shown(written_as), cure)
     return width
 
 

@@ -100,7 +100,7 @@ def find(study: str | Path) -> Path:
     path = Path(text)
     shipped = shipped_studies()
     if not text or "\0" in text:
-        raise InputError("STUDY", "must be a path or a name", "", shown(text), _shipped_names(text))
+        raise InputError("STUDY", "must be a path or a name", shown(text), _shipped_names(text))
     if _is_file(path):
         return path
     if text in shipped:
@@ -118,13 +118,13 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
         return document
     where = f"{base.place}: extends"
     if not isinstance(base.value, str):
-        raise InputError(where, "must be a path or the name of a shipped example", "", shown(base.value))
+        raise InputError(where, "must be a path or the name of a shipped example", shown(base.value))
     target = _base(path, base.value, where)
     chain = (*above, path.resolve())
     if target.resolve() in chain:
-        raise InputError(where, "leads back to a file that extends this one", "", shown(base.value))
+        raise InputError(where, "leads back to a file that extends this one", shown(base.value))
     if len(chain) > MOST_BASES:
-        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", "", shown(base.value))
+        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", shown(base.value))
     return _merged(load(target, chain), document)
 
 
@@ -160,7 +160,7 @@ def _own(path: Path) -> Document:
         elif name in SECTIONS:
             rule = f"must be one section, headed [{name}]"
             document.sections[name] = {}
-            document.problems.append(InputError(f"{place}: {name}", rule, "", shown(value)))
+            document.problems.append(InputError(f"{place}: {name}", rule, shown(value)))
         elif isinstance(value, dict):
             cure = nearest(name, SECTIONS)
             document.problems.append(InputError(f"{place}: [{plain}]", "is no section of a study", cure=cure))
@@ -184,7 +184,7 @@ def _base(path: Path, text: str, where: str) -> Path:
         return beside
     if text in shipped_studies():
         return shipped_studies()[text]
-    raise InputError(where, "names no file beside this one", "", shown(text), _shipped_names(text))
+    raise InputError(where, "names no file beside this one", shown(text), _shipped_names(text))
 
 
 def _merged(base: Document, document: Document) -> Document:

@@ -51,14 +51,14 @@ def _named(folder: Path, given: Entry) -> Iterator[Path]:
     where = f"{given.place}: library"
     names = given.value if isinstance(given.value, list) else [given.value]
     if not 0 < len(names) <= MOST_NAMED:
-        raise InputError(where, f"must be one path or a list of 1 to {MOST_NAMED}", "", shown(given.value))
+        raise InputError(where, f"must be one path or a list of 1 to {MOST_NAMED}", shown(given.value))
     for name in names:
         yield from _existing(folder, name, where)
 
 
 def _existing(folder: Path, name: Any, where: str) -> list[Path]:
     if not isinstance(name, str) or not name or not name.isprintable():
-        raise InputError(where, "must be the path of a file or a folder, in quotes", "", shown(name))
+        raise InputError(where, "must be the path of a file or a folder, in quotes", shown(name))
     path = folder / name
     try:
         found = library_files(path) if path.exists() else None
@@ -66,7 +66,7 @@ def _existing(folder: Path, name: Any, where: str) -> list[Path]:
         found = None
     if found is None:
         cure = "It is taken from the folder of the study."
-        raise InputError(where, "names no file or folder", "", shown(name), cure)
+        raise InputError(where, "names no file or folder", shown(name), cure)
     if not found:
-        raise InputError(where, "names a folder without a .toml file", "", shown(name))
+        raise InputError(where, "names a folder without a .toml file", shown(name))
     return found

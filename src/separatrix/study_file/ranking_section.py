@@ -66,7 +66,7 @@ def _in_place(document: Document, items: Any) -> dict[str, Any]:
     place = where(document, "ranking", "candidates")
     if not isinstance(items, list) or not 0 < len(items) <= MOST_CANDIDATES:
         rule = f"must be 1 to {MOST_CANDIDATES} tables, each under [[ranking.candidates]]"
-        raise InputError(place, rule, "", shown(items))
+        raise InputError(place, rule, shown(items))
     before = len(document.problems)
     found = [attempt(document, _candidate, document, item, i) for i, item in enumerate(items)]
     candidates = [item for item in found if item is not None]
@@ -101,7 +101,7 @@ def _frictions(value: Any, at: str) -> Uncertain:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
         got = f"{len(value)} of them" if isinstance(value, dict) else shown(value)
         rule = f"must be a table from environment to friction, with 1 to {MOST_CANDIDATES} entries"
-        raise InputError(at, rule, "", got, cure)
+        raise InputError(at, rule, got, cure)
     frictions: dict[str, Friction | Uncertain] = {}
     problems = []
     for name, item in value.items():

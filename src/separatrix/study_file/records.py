@@ -87,14 +87,14 @@ def refuse_both(document: Document, section: str, one: str, other: str) -> None:
 
 
 def _relocated(document: Document, problem: InputError) -> InputError:
-    record, _, key = problem.where.partition(".")
+    record, _, key = problem.path.partition(".")
     section = _SECTION_OF.get(record)
     if section is None:
         return problem
     entry = document.sections.get(section, {}).get(key)
-    value, uncertain = problem.value, document.distributions.get(f"{section}.{key}")
+    value, uncertain = problem.got, document.distributions.get(f"{section}.{key}")
     if value and uncertain is not None:
         value = f"{uncertain.text}, whose mean is {value}"
     elif value and entry is not None and isinstance(entry.value, (str, int, float)):
         value = shown(entry.value)
-    return InputError(where(document, section, key), problem.rule, problem.unit, value, problem.cure)
+    return InputError(where(document, section, key), problem.rule, value, problem.cure)

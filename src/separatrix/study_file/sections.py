@@ -136,7 +136,7 @@ def _with_distributions(document: Document, study: Study) -> Study:
     if len(found) > MOST_DISTRIBUTIONS:
         cure = "Make those certain that matter least."
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
-        raise InputError(document.label, rule, "", str(len(found)), cure)
+        raise InputError(document.label, rule, str(len(found)), cure)
     tried = {key: attempt(document, _settled, document, study, key) for key in found}
     settled = {key: one for key, one in tried.items() if one is not None}
     if document.problems:
@@ -148,8 +148,7 @@ def _settled(document: Document, study: Study, key: str) -> Distribution:
     try:
         return settled_in(study, key, document.distributions[key])
     except InputError as error:
-        at = _place_of_number(document, key)
-        raise InputError(at, error.rule, error.unit, error.value, error.cure) from None
+        raise error.at(_place_of_number(document, key)) from None
 
 
 def _place_of_number(document: Document, name: str) -> str:
@@ -247,7 +246,7 @@ def _free_angle(document: Document, clearance: float, given: dict[str, Any]) -> 
         return contact_angle_of(clearance, diameter, inner, outer)
     except InputError as error:
         text = shown(document.sections["bearing"]["radial_clearance"].value)
-        raise InputError(where(document, "bearing", "radial_clearance"), error.rule, "", text) from None
+        raise InputError(where(document, "bearing", "radial_clearance"), error.rule, text) from None
 
 
 def _operation(document: Document, given: dict[str, Any]) -> Operation:

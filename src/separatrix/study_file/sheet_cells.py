@@ -70,20 +70,18 @@ class SheetText:
 
     def _check(self, cell: Cell, where: str) -> None:
         if cell.error:
-            raise InputError(where, "shows an error instead of a value", "", cell.error)
+            raise InputError(where, "shows an error instead of a value", cell.error)
         if cell.formula and self.has_links:
             rule = "is a formula in a workbook that takes values from other files, which are never opened"
             raise InputError(where, rule, cure="Paste it as a value.")
         if cell.value is None:
             cure = "Open the workbook in a spreadsheet program and save it, or enter the value."
-            raise InputError(
-                where, "holds a formula without a saved value", "", shown(f"={cell.formula}"), cure
-            )
+            raise InputError(where, "holds a formula without a saved value", shown(f"={cell.formula}"), cure)
         if cell.format == "date":
             cure = "Format the cell as a number, and enter the value again."
             raise InputError(where, "holds a date or a time of day", cure=cure)
         if isinstance(cell.value, float) and not math.isfinite(cell.value):
-            raise InputError(where, "must be a finite number", "", shown(cell.value))
+            raise InputError(where, "must be a finite number", shown(cell.value))
         if isinstance(cell.value, str) and len(cell.value) > LONGEST_TEXT:
             raise InputError(where, f"is longer than {LONGEST_TEXT} characters")
 
@@ -120,7 +118,7 @@ def sheet_text(workbook: Workbook, name: str) -> SheetText:
         heading = str(cell.value).strip().casefold().replace("±", "+-") if row == 1 else ""
         if heading in COLUMNS and heading in found and {"key", "value"} <= {*found, heading}:
             where = f"{place}, cell {cell_name(row, column)}"
-            raise InputError(where, "is a second column of that heading", "", shown(heading))
+            raise InputError(where, "is a second column of that heading", shown(heading))
         if heading in COLUMNS:
             found[heading] = column
     return SheetText(workbook.label, name, cells, found, has_links=workbook.has_links, beyond=beyond)
@@ -172,5 +170,5 @@ def _unit(sheet: SheetText, row: int, column: int | None) -> str:
 
 def _text(cell: Cell, where: str) -> str:
     if not isinstance(cell.value, str):
-        raise InputError(where, "must be text", "", shown(cell.value))
+        raise InputError(where, "must be text", shown(cell.value))
     return cell.value.strip()

@@ -81,7 +81,7 @@ def _alone(field: Field) -> Any:
     if isinstance(value, float):
         if unit and field.value.format == "percent":
             rule, cure = "is a percentage with a unit", "Format the cell as a number."
-            raise InputError(field.value_place, rule, "", f"{shown(value)} {unit}", cure)
+            raise InputError(field.value_place, rule, f"{shown(value)} {unit}", cure)
         return f"{number_text(value)} {unit}" if unit else plain_number(value)
     if not unit or not isinstance(value, str):
         return value
@@ -91,7 +91,7 @@ def _alone(field: Field) -> Any:
         and _PLAIN.fullmatch(value.strip()) is None
     ):
         rule, cure = "is a unit beside a value that brings its own", "Clear this cell."
-        raise InputError(field.unit_place, rule, "", shown(value), cure)
+        raise InputError(field.unit_place, rule, shown(value), cure)
     return f"{value} {unit}"
 
 

@@ -38,7 +38,7 @@ def tests_file(document: Document, name: str) -> Path | None:
     if not _is_file(path):
         rule = "names no file beside the study"
         cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
-        raise InputError(where(document, "ranking", "friction"), rule, "", shown(name), cure)
+        raise InputError(where(document, "ranking", "friction"), rule, shown(name), cure)
     return path
 
 
@@ -77,7 +77,7 @@ def chosen_materials(
     for material in chosen:
         if material not in known:
             rule, cure = f"names a material that {name} lacks", nearest(material, known)
-            raise InputError(where(document, "ranking", "materials"), rule, "", shown(material), cure)
+            raise InputError(where(document, "ranking", "materials"), rule, shown(material), cure)
     return tuple(chosen)
 
 

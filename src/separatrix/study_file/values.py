@@ -104,7 +104,7 @@ def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
         return tuple(list_of(ratio)(value, where))
     given = table(value, where, {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
     if not 2 <= given["count"] <= 1000:
-        raise InputError(where, "needs a count from 2 to 1000", "", shown(given["count"]))
+        raise InputError(where, "needs a count from 2 to 1000", shown(given["count"]))
     return study.evenly_spaced(given["from"], given["to"], given["count"])
 
 
@@ -116,7 +116,7 @@ def material(kind: str) -> Reader:
             return named_material(value, kind, where)
         if not isinstance(value, dict):
             rule = f"must be the name of a {kind} in quotes, or a table with its properties in {{braces}}"
-            raise InputError(where, rule, "", shown(value))
+            raise InputError(where, rule, shown(value))
         return material_in_place(value, where)
 
     return read
@@ -148,7 +148,6 @@ def known_name(name: str, kind: str, where: str, more: str = "") -> str:
     raise InputError(
         where,
         f"is no {kind} of the library",
-        "",
         shown(name),
         f"{near} {listed}{more}" if near.startswith("Did") else f"{listed}{more}",
     )

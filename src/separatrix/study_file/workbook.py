@@ -59,7 +59,7 @@ def document_of(path: Path) -> Document:
         if text is not None:
             if (twin := known.setdefault(name.strip().casefold(), name)) != name:
                 cure = "Delete one of them, or give it another name."
-                raise InputError(text.place, "is a second sheet of that name", "", shown(twin), cure)
+                raise InputError(text.place, "is a second sheet of that name", shown(twin), cure)
             _add(document, text)
             formulas += text.formulas
     document.libraries.append(LibraryPlace(path, document.top.get("library")))
@@ -154,7 +154,7 @@ def _known_once(sheet: SheetText) -> Iterator[Field]:
     seen: dict[str, str] = {}
     for field in fields_of(sheet):
         if _KEY.fullmatch(field.key) is None:
-            raise InputError(field.key_place, "must be the name of a key", "", shown(field.key))
+            raise InputError(field.key_place, "must be the name of a key", shown(field.key))
         if field.key in seen:
             cure = f"It stands in {seen[field.key]}, too."
             raise InputError(f"{field.key_place}: {field.key}", "is given a second time", cure=cure)
@@ -180,21 +180,21 @@ def in_cells(document: Document, error: InputError) -> InputError:
 
 
 def _in_cell(document: Document, problem: InputError) -> InputError:
-    place, _, name = problem.where.partition(": ")
+    place, _, name = problem.path.partition(": ")
     if ", sheet " not in place:
         return problem
     key = name.partition(", item")[0].strip()
     found = name if name in document.cells else next((k for k in _shorter(key) if k in document.cells), None)
-    where, rule, cure = problem.where, problem.rule, problem.cure
+    where, rule, cure = problem.path, problem.rule, problem.cure
     if found is not None:
         where = f"{document.cells[found]}: {name}"
     for said, better in _IN_CELLS.items():
         rule, cure = rule.replace(said, better), cure.replace(said, better)
     unit = re.fullmatch(r'Write "\S+ (.+)"\.', cure)
-    is_bare = rule.startswith("needs a unit") and re.fullmatch(r"[-+.0-9eE]+", problem.value) is not None
+    is_bare = rule.startswith("needs a unit") and re.fullmatch(r"[-+.0-9eE]+", problem.got) is not None
     if found is not None and unit and is_bare and f"{found} unit" in document.cells:
         where, cure = f"{document.cells[f'{found} unit']}: {name}", f"Write {unit[1]} there."
-    return InputError(where, rule, problem.unit, problem.value, cure)
+    return InputError(where, rule, problem.got, cure)
 
 
 def _shorter(name: str) -> Iterator[str]:

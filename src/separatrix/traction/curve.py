@@ -162,4 +162,4 @@ def check_film(**values: float) -> None:
     units = {"race_friction": "-", "film_compliance": "m/Pa", "film_thickness": "m"}
     for name, value in values.items():
         if not 0.0 <= value < math.inf:
-            raise InputError(f"traction: {name}", "must be finite and >= 0", units[name], f"{value:g}")
+            raise InputError(f"traction: {name}", f"must be finite and >= 0 [{units[name]}]", f"{value:g}")

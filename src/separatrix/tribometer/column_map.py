@@ -111,7 +111,7 @@ class ColumnMap:
         files = list(paths)
         idle = [p for p in self.files if not any(_fits(path, p) for path in files)]
         rule, cure = "must fit a file that is named", "Mend it, or leave it out of this column map."
-        return [InputError(_section(self.source, p), rule, "", _listed(files), cure) for p in idle]
+        return [InputError(_section(self.source, p), rule, _listed(files), cure) for p in idle]
 
 
 def read_column_map(path: str | Path) -> ColumnMap:
@@ -178,13 +178,13 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     name, unit, sign = table.get("name"), table.get("unit"), table.get("sign", 1)
     if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
         value = "" if name is None else shown(name)
-        raise InputError(where, "must name a column, or give its number", "", value, cure)
+        raise InputError(where, "must name a column, or give its number", value, cure)
     if isinstance(name, int) and not 1 <= name <= MOST:
-        raise InputError(where, "must be the number of a column, counted from 1", "", shown(name))
+        raise InputError(where, "must be the number of a column, counted from 1", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):
-        raise InputError(f"{where} sign", "must be 1 or -1", "", shown(sign))
+        raise InputError(f"{where} sign", "must be 1 or -1", shown(sign))
     if unit is not None and (not isinstance(unit, str) or scale_of(unit, meaning) is None):
-        raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", "", shown(unit))
+        raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", shown(unit))
     if isinstance(name, str):
         return ColumnChoice(name=name, unit=unit, sign=sign)
     return ColumnChoice(number=name, unit=unit, sign=sign)
@@ -217,13 +217,13 @@ def _conditions(given: Mapping[str, Any], where: str) -> dict[str, str | float]:
 def _condition(key: str, value: object, where: str) -> str | float:
     if key in TEXTS:
         if not isinstance(value, str) or not 0 < len(value) <= 200 or not value.isprintable():
-            raise InputError(where, "must be printable text of 1 to 200 characters", "", shown(value))
+            raise InputError(where, "must be printable text of 1 to 200 characters", shown(value))
         return value
     if key == RUN_IN_END:
         return _end(value, where)
     number = _area(value, where) if key == "contact_area" else units.parse(value, QUANTITIES[key], where)  # type: ignore[arg-type]
     if number <= 0.0:
-        raise InputError(where, "must be > 0", "", shown(value))
+        raise InputError(where, "must be > 0", shown(value))
     return number
 
 
@@ -232,7 +232,7 @@ def _end(value: object, where: str) -> str:
     try:
         place(value)  # type: ignore[arg-type]  # it refuses what is no text
     except InputError as error:
-        raise InputError(where, error.rule, error.unit, error.value, error.cure) from None
+        raise error.at(where) from None
     return str(value)
 
 
@@ -241,9 +241,7 @@ def _area(value: object, where: str) -> float:
     text = value if isinstance(value, str) else ""
     number, _, unit = text.strip().replace("\u00b2", "2").replace("^", "").partition(" ")
     if unit.strip() not in _AREAS:
-        raise InputError(
-            where, f"needs a unit of area ({', '.join(_AREAS)})", "", shown(value), 'Write "3 mm2".'
-        )
+        raise InputError(where, f"needs a unit of area ({', '.join(_AREAS)})", shown(value), 'Write "3 mm2".')
     return units.parse(f"{number} m", "m", where) * _AREAS[unit.strip()]
 
 
@@ -252,12 +250,12 @@ def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: s
         if name not in names:
             near = get_close_matches(name, names, 1, 0.6)
             cure = f'Did you mean "{near[0]}"?' if near else f"There are {', '.join(names)}."
-            raise InputError(where, f"has no {kind} of that name", "", shown(name), cure)
+            raise InputError(where, f"has no {kind} of that name", shown(name), cure)
 
 
 def _table(value: object, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise InputError(where, "must be a section of the file", "", shown(value))
+        raise InputError(where, "must be a section of the file", shown(value))
     return value
 
 
@@ -267,7 +265,7 @@ def _one_of(given: Mapping[str, Any], key: str, options: Mapping[str, str], wher
         return None
     if not isinstance(value, str) or value not in options:
         names = ", ".join(f'"{name}"' for name in options if name.isprintable() and name.strip())
-        raise InputError(f"{where} {key}", f"must be one of {names}", "", shown(value))
+        raise InputError(f"{where} {key}", f"must be one of {names}", shown(value))
     return options[value]
 
 
@@ -276,7 +274,7 @@ def _line(given: Mapping[str, Any], key: str, where: str) -> int | None:
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST:
-        raise InputError(f"{where} {key}", "must be the number of a line, counted from 1", "", shown(value))
+        raise InputError(f"{where} {key}", "must be the number of a line, counted from 1", shown(value))
     return value
 
 

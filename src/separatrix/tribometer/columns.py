@@ -271,8 +271,8 @@ def _no_friction(headers: Sequence[str], source: str, result: Understood) -> Inp
         cure = f"Say which below [columns] in a column map: friction = {shown(name)}."
         if not near:
             cure += " A log without friction is of no use here: leave it out."
-        return InputError(source, rule, "", _listed(headers, near or range(len(headers))), cure)
-    return InputError(source, rule, "", _listed(headers, forces), _forces_line(headers, forces[0], result))
+        return InputError(source, rule, _listed(headers, near or range(len(headers))), cure)
+    return InputError(source, rule, _listed(headers, forces), _forces_line(headers, forces[0], result))
 
 
 def _is_tangential(header: str) -> bool:
@@ -305,7 +305,7 @@ def _require_abscissa(
         _refuse_unsettled(meaning, result, headers, source, options)
     rule = "has no column that is known to be time, distance or cycles"
     cure = 'Say which below [columns] in a column map: time = { name = "...", unit = "s" }.'
-    raise InputError(source, rule, "", _listed(headers, range(len(headers))), cure)
+    raise InputError(source, rule, _listed(headers, range(len(headers))), cure)
 
 
 def _refuse_unsettled(
@@ -325,7 +325,7 @@ def _refuse_unsettled(
     choice = str(places[0] + 1) if twice else shown(headers[places[0]].strip())
     rule = f"has {len(places)} columns that could be the {_words(meaning)}"
     cure = f"Say which below [columns] in a column map: {meaning} = {choice}."
-    raise InputError(source, rule, "", _listed(headers, places), cure)
+    raise InputError(source, rule, _listed(headers, places), cure)
 
 
 def _column(source: str, header: str) -> str:
@@ -343,7 +343,7 @@ def _unit_wanted(
         cure = cure[:-1] + f" (or {others[0]})."
     if unit:
         rule = f"has a unit that is not one of the {_words(meaning)} ({known_units(meaning)})"
-        return InputError(f"{source}: column {name}", rule, "", shown(unit), cure)
+        return InputError(f"{source}: column {name}", rule, shown(unit), cure)
     return InputError(f"{source}: column {name}", NO_UNIT, cure=cure)
 
 

@@ -174,7 +174,7 @@ def _settle(key: str, value: float, reason: str, found: Found, source: str) -> N
         unit = QUANTITIES[key]
         shown = f"{format_quantity(there, unit)} ({found.reasons[key]}) and {format_quantity(value, unit)}"
         rule = f"has two values of {key.replace('_', ' ')} that differ"
-        raise InputError(source, rule, "", f"{shown} ({reason})", "Leave out the wrong one.")
+        raise InputError(source, rule, f"{shown} ({reason})", "Leave out the wrong one.")
 
 
 def _sentence(key: str, found: Found) -> str:

@@ -197,16 +197,16 @@ def rising(log: RawLog, axis: str) -> Array:
     where = f"{log.source}: {axis}"
     if not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-        raise InputError(where, "must be a finite number in each row", "", f"none in row {row}")
+        raise InputError(where, "must be a finite number in each row", f"none in row {row}")
     falls = np.flatnonzero(np.diff(values) < 0.0)
     if falls.size:
         i = int(falls[0])
         cure = "One log holds one test; split it where it begins anew."
         raise InputError(
-            where, "must not fall", "", f"{values[i + 1]:g} after {values[i]:g} in row {i + 2}", cure
+            where, "must not fall", f"{values[i + 1]:g} after {values[i]:g} in row {i + 2}", cure
         )
     if values[-1] <= values[0]:
-        raise InputError(where, "must rise", "", f"{values[0]:g} in every row")
+        raise InputError(where, "must rise", f"{values[0]:g} in every row")
     return values
 
 
@@ -273,7 +273,7 @@ def even_spans(abscissa: Array, values: Array, start: float, end: float, source:
     count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST)))
     if count < FEWEST_ROWS:
         rule = f"needs at least {FEWEST_ROWS} rows of steady friction"
-        raise InputError(source, rule, "", str(rows), "Take a longer log, or an earlier run_in_end.")
+        raise InputError(source, rule, str(rows), "Take a longer log, or an earlier run_in_end.")
     return means(abscissa, values, start, end, count)
 
 

@@ -169,10 +169,10 @@ def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
     if both or any(_several_signs(field) for field in tokens):
         shown = " and ".join(f'"{printable(found[0])}"' for found in (commas, points) if found)
         cure = "Export the file without marks between thousands, or say below [format]: decimal = ..."
-        raise InputError(source, "has points and commas in its numbers", "", shown, cure)
+        raise InputError(source, "has points and commas in its numbers", shown, cure)
     marked = commas or points
     if marked and all(_GROUPED.fullmatch(field) for field in marked):
         cure = f'Add to the column map, below [format]: decimal = "{"," if commas else "."}".'
         value = f'"{printable(marked[0])}"'
-        raise InputError(source, "does not tell decimals from thousands", "", value, cure)
+        raise InputError(source, "does not tell decimals from thousands", value, cure)
     return "," if commas else "."

@@ -116,7 +116,7 @@ def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
         line = raw.count(b"\n", 0, place) + 1
         rule = f"cannot be read as {encoding} text"
         cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
-        raise InputError(f"{source}: line {line}", rule, "", f"byte {raw[place]:#04x}", cure) from None
+        raise InputError(f"{source}: line {line}", rule, f"byte {raw[place]:#04x}", cure) from None
 
 
 def _line_feeds(text: bytes) -> bytes:

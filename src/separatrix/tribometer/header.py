@@ -70,7 +70,7 @@ def header_at(
         row = [""] * count if number is None else _row(line(number - 1), count, dialect)
         if row is None:
             where, shown = f"{source}: {key} = {number}", f'"{printable(line((number or 1) - 1))}"'
-            raise InputError(where, f"must be a line of {count} fields", "", shown)
+            raise InputError(where, f"must be a line of {count} fields", shown)
         rows.append(row)
     return Header(tuple(rows[0]), tuple(bare_unit(unit) for unit in rows[1]))
 

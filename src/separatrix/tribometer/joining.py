@@ -107,7 +107,7 @@ def _conditions(parts: Sequence[RawLog], source: str) -> Conditions:
             ends = (min(values), max(values))
             texts = [format_quantity(v, unit) if unit else printable(str(v)) for v in ends]
             rule = f"cannot be one test: their {f.name.replace('_', ' ')} differs"
-            raise InputError(source, rule, "", " and ".join(texts), "Name the parts of one test only.")
+            raise InputError(source, rule, " and ".join(texts), "Name the parts of one test only.")
     return Conditions(**found)  # type: ignore[arg-type]
 
 

@@ -82,7 +82,7 @@ class ColumnRead:
     def __post_init__(self) -> None:
         if self.meaning is not None and self.meaning not in MEANINGS:
             rule = f"must be one of {', '.join(MEANINGS)}"
-            raise InputError("ColumnRead.meaning", rule, "", f'"{self.meaning}"')
+            raise InputError("ColumnRead.meaning", rule, f'"{self.meaning}"')
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -103,7 +103,7 @@ class RawTable:
     def __post_init__(self) -> None:
         if not len(self.headers) == len(self.units) == len(self.columns):
             counts = f"{len(self.headers)}, {len(self.units)} and {len(self.columns)}"
-            raise InputError("RawTable", "needs one unit and one column for each header", "", counts)
+            raise InputError("RawTable", "needs one unit and one column for each header", counts)
         if len({column.shape for column in self.columns}) > 1:
             raise InputError("RawTable.columns", "must have the same number of rows")
 
@@ -156,9 +156,7 @@ def _enough(log: RawLog) -> Iterator[InputError]:
     if not log.abscissae:
         yield InputError(f"{log.source}", f"needs one of {', '.join(ABSCISSAE)}")
     if len(log.friction) < 2:
-        yield InputError(
-            f"{log.source}", "needs at least two rows with a friction", "", str(len(log.friction))
-        )
+        yield InputError(f"{log.source}", "needs at least two rows with a friction", str(len(log.friction)))
 
 
 def _same_length(log: RawLog) -> Iterator[InputError]:
@@ -166,4 +164,4 @@ def _same_length(log: RawLog) -> Iterator[InputError]:
     for name in sorted(names):
         column = getattr(log, name)
         if column is not None and len(column) != len(log.friction):
-            yield InputError(f"RawLog.{name}", "must have as many rows as friction", "", str(len(column)))
+            yield InputError(f"RawLog.{name}", "must have as many rows as friction", str(len(column)))

@@ -75,16 +75,16 @@ def place(text: str) -> tuple[str, float]:
     rule = "must be a time, a distance or a number of cycles with its unit"
     cure = 'Write it like "10 min", "200 m" or "500 cycles".'
     if not isinstance(text, str) or not 0 < len(text) <= units.LONGEST:
-        raise InputError(where, rule, "", units.shown(text), cure)
+        raise InputError(where, rule, units.shown(text), cure)
     if found := _CYCLES.fullmatch(text):
         return "cycles", float(found.group(1))
     spelling = re.sub(r"^[^A-Za-z]*(?:[eE][-+]?[0-9]+)? ?", "", text.strip())
     unit = next((unit for unit in ("s", "m") if spelling in units.UNITS[unit]), None)
     if unit is None:
-        raise InputError(where, rule, "", units.shown(text), cure)
+        raise InputError(where, rule, units.shown(text), cure)
     value = units.parse(text, unit, where)
     if value < 0.0:
-        raise InputError(where, "must not be negative", "", units.shown(text))
+        raise InputError(where, "must not be negative", units.shown(text))
     return ("time" if unit == "s" else "distance"), value
 
 

@@ -108,7 +108,7 @@ def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
             listed = ", ".join(f'"{printable(header)}"' for _ in places)
             numbers = " or ".join(str(i + 1) for i in places)
             cure = f"Say which below [columns] in a column map: {meaning} = {numbers}."
-            raise InputError(source, rule, "", f"columns {listed}", cure)
+            raise InputError(source, rule, f"columns {listed}", cure)
 
 
 def _in_si(table: RawTable, chosen: Chosen, absent: Sequence[float]) -> Array:
@@ -151,7 +151,7 @@ def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, no
         value = f"{positive} rows above zero, {negative} below"
         cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
         if understood.used["normal_force"].why != "column map":
-            raise InputError(source, rule, "", value, cure)
+            raise InputError(source, rule, value, cure)
 
 
 def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
@@ -205,7 +205,7 @@ def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tup
     missing = int(len(kept) - kept.sum())
     if kept.sum() < 2:
         value = f"{int(kept.sum())} of {len(kept)} rows"
-        raise InputError(source, "needs at least two rows with a friction and its abscissa", "", value)
+        raise InputError(source, "needs at least two rows with a friction and its abscissa", value)
     if missing:
         notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
     return kept, missing
@@ -218,7 +218,7 @@ def _check_share(size: Array, beyond: Rows, source: str) -> None:
         rule = (
             f"has a friction that is no ratio of forces: above {HIGHEST:g} in more than a tenth of its rows"
         )
-        raise InputError(source, rule, "", f"a median of {float(np.nanmedian(size)):.4g}", cure)
+        raise InputError(source, rule, f"a median of {float(np.nanmedian(size)):.4g}", cure)
 
 
 def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
@@ -235,7 +235,7 @@ def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, sourc
             here, before = (format_quantity(float(column[j]), unit, 8) for j in (i, i - 1))
             cure = "Split the file there; or, if this column is another, say so in a column map."
             where = f"{source}: line {line}" if table.lines is not None else f"{source}: table row {line}"
-            raise InputError(where, f"{meaning} must not run backwards", "", f"{here} after {before}", cure)
+            raise InputError(where, f"{meaning} must not run backwards", f"{here} after {before}", cure)
 
 
 def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list[str]) -> dict[str, str]:

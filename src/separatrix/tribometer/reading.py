@@ -101,7 +101,7 @@ def _content(path: Path, name: str) -> bytes:
     size = size_of(path, name)
     if size > LARGEST:
         cure = "Split it, or log at a lower rate."
-        raise InputError(name, "is too large: at most 2 GB", "", f"{size / 1e9:.1f} GB", cure)
+        raise InputError(name, "is too large: at most 2 GB", f"{size / 1e9:.1f} GB", cure)
     try:
         return path.read_bytes()
     except OSError as error:
@@ -222,7 +222,7 @@ def _logs(
         raise wrong
     names = ", ".join(shown(name) for name, _ in found)
     cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
-    raise InputError(wrong.where, wrong.rule, wrong.unit, wrong.value, cure)
+    raise wrong.at(wrong.path, cure=cure)
 
 
 def _without_copies(logs: Sequence[RawLog]) -> tuple[RawLog, ...]:

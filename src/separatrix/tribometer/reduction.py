@@ -112,7 +112,7 @@ def _axis(log: RawLog, options: ReductionOptions) -> str:
         return next(name for name in PREFERRED if name in log.abscissae)
     if wanted not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-        raise InputError(log.source, f"needs a column of {wanted}", "", "none", cure)
+        raise InputError(log.source, f"needs a column of {wanted}", "none", cure)
     return wanted
 
 
@@ -121,7 +121,7 @@ def _finite(log: RawLog) -> None:
     bad = np.flatnonzero(~np.isfinite(log.friction))
     if bad.size:
         where = f"{log.source}: friction"
-        raise InputError(where, "must be a finite number in each row", "", f"none in row {bad[0] + 1}")
+        raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
 
 
 def _steady(
@@ -174,11 +174,11 @@ def _given(log: RawLog, stretch: cycles.Stretch, kept: slice, axis: str, value: 
     """
     if axis not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-        raise InputError("ReductionOptions.run_in_end", f"needs a column of {axis}", "", "none", cure)
+        raise InputError("ReductionOptions.run_in_end", f"needs a column of {axis}", "none", cure)
     column = cycles.rising(log, axis)[kept]
     if value >= column[-1]:
         rule = f"must lie before the end of the test, {flags.at(float(column[-1]), axis)}"
-        raise InputError("ReductionOptions.run_in_end", rule, "", flags.at(value, axis))
+        raise InputError("ReductionOptions.run_in_end", rule, flags.at(value, axis))
     return float(stretch.ruler[int(np.searchsorted(column, value))])
 
 

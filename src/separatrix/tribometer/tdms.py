@@ -107,7 +107,7 @@ def _check_scales(content: Any, label: str) -> None:
     for holder in (content, *groups, *(channel for group in groups for channel in group.channels())):
         number = holder.properties.get("NI_Number_Of_Scales", 0)
         if not isinstance(number, int | np.integer) or not 0 <= number <= MOST_SCALES:
-            raise InputError(label, f"must have at most {MOST_SCALES} scalings a channel", "", shown(number))
+            raise InputError(label, f"must have at most {MOST_SCALES} scalings a channel", shown(number))
 
 
 def _tables(group: Any, content: Any, label: str, size: int) -> Iterator[RawTable]:
@@ -135,9 +135,9 @@ def _is_moment(channel: Any) -> bool:
 def _check_size(length: int, channels: list[Any], label: str, size: int) -> None:
     """Refuse channels that declare more values than the file has bytes, before any is read."""
     if len(channels) > MOST_CHANNELS:
-        raise InputError(label, f"has more than {MOST_CHANNELS} channels in a group", "", str(len(channels)))
+        raise InputError(label, f"has more than {MOST_CHANNELS} channels in a group", str(len(channels)))
     if length > size:
-        raise InputError(label, "declares more values than it can hold", "", f"{length} in {size} bytes")
+        raise InputError(label, "declares more values than it can hold", f"{length} in {size} bytes")
     if 8 * length * len(channels) > MOST_BYTES:
         rule = f"would need more than {MOST_BYTES // 1024**2} MB"
         raise InputError(label, rule, cure="Export fewer channels or rows.")
@@ -182,7 +182,7 @@ def _waveform_time(channels: list[Any], where: str) -> Array | None:
         raise InputError(where, "has waveforms of one length but of different times", cure=cure)
     start, increment = tracks.pop()
     if not (np.isfinite(start) and np.isfinite(increment) and increment > 0.0):
-        raise InputError(where, "needs an increment of time above 0", "s", f"{increment:g}")
+        raise InputError(where, "needs an increment of time above 0 [s]", f"{increment:g}")
     return start + increment * np.arange(len(channels[0]), dtype=np.float64)
 
 

@@ -97,7 +97,7 @@ def _dialect(lines: Lines, source: str, form: TextFormat) -> Dialect:
     """Dialect of the head; where that holds no rows yet, of ten times as many lines."""
     if form.begin >= len(lines):
         where, shown = f"{source}: header_line = {form.header_line}", f"a file of {len(lines)} lines"
-        raise InputError(where, "must be a line above the rows", "", shown)
+        raise InputError(where, "must be a line above the rows", shown)
     for most in (HEAD, 10 * HEAD):
         head = [lines[i] for i in range(form.begin, min(len(lines), form.begin + most))]
         try:
@@ -170,7 +170,6 @@ def _wrong_row(lines: Lines, i: int, table: _Found, source: str, dialect: Dialec
     return InputError(
         f"{source}: line {i + 1}",
         f"has {got} fields where the rows before it have {due}",
-        "",
         f'"{printable(lines[i])}"',
         "Mend or delete this line.",
     )
@@ -188,7 +187,7 @@ def _no_header(
     if found:
         cure = "Delete it, or give the second table a line of column names."
         where = f"{source}: line {before[0] + 1}"
-        return InputError(where, "breaks the table", "", f'"{printable(lines[before[0]])}"', cure)
+        return InputError(where, "breaks the table", f'"{printable(lines[before[0]])}"', cure)
     above = fields(lines[before[-1]], dialect.separator) if before else []
     if dialect.separator == "," and 2 * len(above) == n + 1:
         rule = f"has {len(above)} names over {n + 1} fields: comma as separator and as decimal sign"
@@ -279,7 +278,7 @@ def _clock(body: bytes, column: int, header: Header, dialect: Dialect, where: Ca
     wrong = next((i for i, text in enumerate(texts) if text and not is_clock(text)), None)
     if wrong is not None:
         place = f'{where(wrong)}, column "{printable(header.names[column])}"'
-        raise InputError(place, "must be a time", "", f'"{printable(texts[wrong])}"', NO_MOMENTS)
+        raise InputError(place, "must be a time", f'"{printable(texts[wrong])}"', NO_MOMENTS)
     return seconds(texts, of_minutes=header.units[column].startswith("m"))
 
 
@@ -347,7 +346,7 @@ def _not_a_number(line: str, column: str, text: str) -> InputError:
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{_toml(text)}]."
     cure = NO_MOMENTS if is_moment(text) else cure
     where = f'{line}, column "{printable(column)}"'
-    return InputError(where, "must be a number", "", f'"{printable(text)}"', cure)
+    return InputError(where, "must be a number", f'"{printable(text)}"', cure)
 
 
 def _toml(text: str) -> str:

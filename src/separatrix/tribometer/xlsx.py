@@ -106,7 +106,7 @@ def _table(sheet: _Sheet) -> RawTable | None:
     names, written, metadata = _headings(above, first[0], sheet)
     numbers = sorted({*names, *first[0][1]})
     if len(numbers) > MOST_COLUMNS:
-        raise InputError(sheet.at(), f"has more than {MOST_COLUMNS} columns", "", str(len(numbers)))
+        raise InputError(sheet.at(), f"has more than {MOST_COLUMNS} columns", str(len(numbers)))
     headers = tuple(names.get(n, f"column {column_name(n)}") for n in numbers)
     kinds = {n: _kind(first, n) for n in numbers}
     units = tuple(_unit(sheet, n, kinds[n], bare_unit(written.get(n, ""))) for n in numbers)
@@ -211,7 +211,7 @@ def _unit(sheet: _Sheet, column: int, kind: str, written: str) -> str:
         where = sheet.at(f"column {column_name(column)}")
         cure = "Format the column as a number, or take the unit away."
         rule = "holds dates or times of day, which have no unit"
-        raise InputError(where, rule, "", shown(written), cure)
+        raise InputError(where, rule, shown(written), cure)
     return {"date": "s", "percent": "%"}.get(kind, written)
 
 
@@ -268,7 +268,7 @@ class _Columns:
             return np.nan
         where = self._sheet.at(f"cell {cell_name(row, column)}")
         cure = _cure(cell.value) if isinstance(cell.value, str) else ""
-        raise InputError(where, "must be a number or empty", "", shown(cell.value), cure)
+        raise InputError(where, "must be a number or empty", shown(cell.value), cure)
 
     def _mixed(self, column: int, kind: str) -> InputError:
         where = self._sheet.at(f"column {column_name(column)}")
@@ -291,7 +291,7 @@ def _check_formula(sheet: _Sheet, row: int, column: int, cell: Cell) -> None:
         raise InputError(where, rule, cure="Paste it as a value.")
     if cell.value is None and not cell.error:
         cure = "Open the workbook in a spreadsheet program and save it."
-        raise InputError(where, "holds a formula without a saved value", "", shown(f"={cell.formula}"), cure)
+        raise InputError(where, "holds a formula without a saved value", shown(f"={cell.formula}"), cure)
 
 
 def _cure(text: str) -> str:
