@@ -309,16 +309,11 @@ def simulate(
 def _say_beyond_model(study: Study, state: CageState, history: History) -> None:
     """Warn where the run leaves the range of the model or of hardware."""
     from separatrix.cage_choice import cage_candidate
-    from separatrix.ranking.plausible import beyond_motion
-    from separatrix.ranking.records import RankedMaterial
+    from separatrix.ranking.plausible import Moved, beyond_motion
 
     made_of = cage_candidate(study)
-    run = RankedMaterial(
-        name=made_of.name if made_of else "The cage",
-        reason="",
-        largest_contact_force=float(abs(history.contact_force).max()),
-        largest_offset=float((history.position**2).sum(axis=1).max() ** 0.5),
-    )
+    force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
+    run = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
     for note in beyond_motion(study, state, [run]):
         warnings.warn(note, ValidityWarning, stacklevel=3)
 
