@@ -24,10 +24,10 @@ from separatrix.explore.expected import expected_curve, expected_map, expected_r
 from separatrix.explore.records import UncertainStudy
 from separatrix.friction_fit import TestedFriction
 from separatrix.lubrication import LubricationCurve
-from separatrix.ranking import RankedMaterial, Ranking, ranking_question
+from separatrix.ranking import Ranking, ranking_question
 from separatrix.ranking import rank as rank_materials
 from separatrix.ranking.drawn import frictions_to_draw
-from separatrix.ranking.plausible import beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.restitution import Restitution
 from separatrix.runner import Runner, made_into
 from separatrix.stability import StabilityCurve, stability_curve
@@ -327,12 +327,8 @@ def simulate(study: Study, kick: MetrePerSecond | None = None, run: int = 0) -> 
 def _warn_if_beyond_model(solution: Solution, history: History) -> None:
     """Warn where the run leaves the range of the model or of hardware."""
     made_of = cage_candidate(solution.study)
-    run = RankedMaterial(
-        name=made_of.name if made_of else "The cage",
-        reason="",
-        largest_contact_force=float(abs(history.contact_force).max()),
-        largest_offset=float((history.position**2).sum(axis=1).max() ** 0.5),
-    )
+    force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
+    run = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
     for note in beyond_motion(solution, [run]):
         warnings.warn(note, ValidityWarning, stacklevel=3)
 
