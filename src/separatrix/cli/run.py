@@ -8,7 +8,7 @@ import re
 import threading
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +30,7 @@ ANSWERED = 0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What follows the study on the command line."""
+    """What follows the study on the command line; `question` are the options of the verb alone."""
 
     json: bool
     out: Path | None
@@ -38,6 +38,7 @@ class Options:
     jobs: int
     full: bool = False
     cluster: str | None = None
+    question: Mapping[str, Any] = field(default_factory=dict)
 
 
 def run(verb: Verb, name: str, options: Options) -> int:
@@ -94,7 +95,7 @@ def _record(verb: Verb, study: Study, options: Options, folder: Path | None) -> 
     ):
         runner = Runner(jobs=threads or options.jobs, progress=progress, ledger=ledger, executor=executor)
         try:
-            record = verb.compute(study, runner)
+            record = verb.compute(study, runner, options.question)
         except Interrupted as stop:
             if stop.finished is None:
                 raise
