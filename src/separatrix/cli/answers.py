@@ -12,16 +12,21 @@ from separatrix.units import format_quantity
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from separatrix.answers import (
+        CheckAnswer,
+        RankingAnswer,
+        RestitutionAnswer,
+        SimulationAnswer,
+        StabilityAnswer,
+        TractionAnswer,
+    )
     from separatrix.cage import History
     from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
     from separatrix.cli.console import Life
     from separatrix.ledger import Ledger
-    from separatrix.lubrication import LubricationCurve
-    from separatrix.ranking import Ranking
-    from separatrix.stability import StabilityCurve
     from separatrix.study import Study
     from separatrix.traction import ShearField, TractionCurve
-    from separatrix.units import Metre, MetrePerSecond, Ratio, Second
+    from separatrix.units import MetrePerSecond, Second
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
@@ -51,63 +56,6 @@ class Work:
         self.progress.expect(estimate, at_most=at_most or (self.ledger is not None and self.ledger.goes_on))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CheckAnswer:
-    """The bearing at standstill; None with the reason if its balance was not found."""
-
-    static: BearingState | None
-    static_reason: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TractionAnswer:
-    """Traction curves, as they are and at other pivoting-to-rolling ratios, and shear in free rolling."""
-
-    race_friction: Ratio
-    bearing: BearingState
-    inner: TractionCurve
-    outer: TractionCurve
-    inner_others: tuple[TractionCurve, ...]
-    outer_others: tuple[TractionCurve, ...]
-    inner_shear: ShearField
-    outer_shear: ShearField
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RestitutionAnswer:
-    """Restitution factor, and what it would be with other films; None without a film material."""
-
-    state: RestitutionState
-    film_thickness: Metre
-    lubrication: LubricationCurve | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StabilityAnswer:
-    """Stability curve of the cage that the chain gives."""
-
-    cage: CageState
-    curve: StabilityCurve
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationAnswer:
-    """One run of the ensemble, from one kick."""
-
-    cage: CageState
-    history: History
-    kick: MetrePerSecond
-    run: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RankingAnswer:
-    """The ranking, and the cage of its reference candidate for the numbers of the chain."""
-
-    cage: CageState
-    ranking: Ranking
-
-
 def check(study: Study, work: Work) -> CheckAnswer:  # noqa: ARG001
     """The bearing at standstill, for its contact pressures.
 
@@ -116,6 +64,7 @@ def check(study: Study, work: Work) -> CheckAnswer:  # noqa: ARG001
     ValidityWarning
         `sensitivity` refuses the friction that tests foretell in the pocket: its line.
     """
+    from separatrix.answers import CheckAnswer
     from separatrix.chain import bearing_state
 
     _foretold_friction(study)
@@ -153,6 +102,7 @@ def bearing(study: Study, work: Work) -> BearingState:  # noqa: ARG001
 
 def traction(study: Study, work: Work) -> TractionAnswer:  # noqa: ARG001
     """Traction curves, as they are and at other pivoting-to-rolling ratios."""
+    from separatrix.answers import TractionAnswer
     from separatrix.chain import traction_state
 
     state = traction_state(study)
@@ -238,6 +188,7 @@ def restitution(study: Study, work: Work) -> RestitutionAnswer:  # noqa: ARG001
     ValidityWarning
         The factor is 0: the impact is overdamped.
     """
+    from separatrix.answers import RestitutionAnswer
     from separatrix.chain import lubrication, restitution_state
 
     state = restitution_state(study)
@@ -263,6 +214,7 @@ def _say_if_overdamped(state: RestitutionState) -> None:
 
 def stability(study: Study, work: Work) -> StabilityAnswer:
     """Critical friction against restitution factor."""
+    from separatrix.answers import StabilityAnswer
     from separatrix.cage_choice import known_friction
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_curve
@@ -285,6 +237,7 @@ def simulate(
     run: int = 0,
 ) -> SimulationAnswer:
     """Follow one run of the ensemble, by default the first from the reference kick."""
+    from separatrix.answers import SimulationAnswer
     from separatrix.cage import linear_whirl_frequency, simulate
     from separatrix.chain import cage_state
     from separatrix.ranking.friction import cage_seen
@@ -320,6 +273,7 @@ def _say_beyond_model(study: Study, state: CageState, history: History) -> None:
 
 def rank(study: Study, work: Work) -> RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
+    from separatrix.answers import RankingAnswer
     from separatrix.cage_choice import reference_candidate, reference_friction, required_environment
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_ranking

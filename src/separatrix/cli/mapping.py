@@ -10,9 +10,9 @@ from separatrix.errors import InputError
 from separatrix.units import parse
 
 if TYPE_CHECKING:
-    from separatrix.chain import CageState
+    from separatrix.answers import MapAnswer
     from separatrix.cli.answers import Work
-    from separatrix.stability.map_records import MapAxis, MapQuestion, StabilityMap
+    from separatrix.stability.map_records import MapAxis, MapQuestion
     from separatrix.study import Study
 
 MOST_RUNS = 1_000_000
@@ -30,14 +30,6 @@ class MapOptions:
     adaptive: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapAnswer:
-    """The map, and the cage of the study itself."""
-
-    cage: CageState
-    map: StabilityMap
-
-
 def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> MapAnswer:
     """Run the points of a map.
 
@@ -46,6 +38,7 @@ def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> Ma
     InputError
         An option cannot be understood, or no point can be run.
     """
+    from separatrix.answers import MapAnswer
     from separatrix.cage_choice import known_friction
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_map

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
@@ -25,6 +25,19 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 ANSWERED = 0
+
+
+class Found(NamedTuple):
+    """An answer to a study, and its document."""
+
+    answer: object
+    study: Study
+    document: dict[str, Any]
+
+    @property
+    def notes(self) -> list[str]:
+        """All warnings."""
+        return list(self.document["warnings"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,9 +74,9 @@ def run(verb: Verb, name: str, options: Options) -> int:
         study = read_study(name)
         require(study, verb.name, *verb.needs)
         with _folder(verb, study, options) as folder:
-            document = _document(verb, study, options, notes, folder)
-            _deliver(verb, document, folder, options)
-    return _status(document, goes_on=verb.keeps_runs and folder is not None)
+            found = _computed(verb, study, options, notes, folder)
+            _deliver(verb, found, folder, options)
+    return _status(found.document, goes_on=verb.keeps_runs and folder is not None)
 
 
 def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
@@ -83,11 +96,9 @@ def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractCo
     return writable_folder(Path(study.name))
 
 
-def _document(
-    verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None
-) -> dict[str, Any]:
-    """Compute the answer and return it as plain data with its provenance."""
-    from separatrix.results import document
+def _computed(verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None) -> Found:
+    """Compute the answer and return it with its document."""
+    from separatrix.present import document
 
     with (
         progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress,
@@ -96,7 +107,7 @@ def _document(
         record = verb.compute(study, Work(jobs=options.jobs, progress=progress, ledger=ledger))
     if ledger is not None and ledger.taken and not options.quiet:
         complain(f"{ledger.taken} runs were taken from {ledger.path}, where an earlier call had kept them.")
-    return document(verb.name, record, study, grouped(notes))
+    return Found(record, study, document(verb.name, record, study, grouped(notes)))
 
 
 @contextlib.contextmanager
@@ -114,24 +125,24 @@ def _ledger(folder: Path | None) -> Iterator[Ledger | None]:
         ledger.close()
 
 
-def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options: Options) -> None:
+def _deliver(verb: Verb, found: Found, folder: Path | None, options: Options) -> None:
     """Write the answer, then the files, which take as long again, and say where they are."""
-    from separatrix.report import report, whereabouts
+    from separatrix.present import report, whereabouts
 
-    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
-    answer(text if options.json else report(verb.name, document, full=options.full, quiet=options.quiet))
+    text = json.dumps(found.document, indent=1, allow_nan=False) + "\n"
+    asked = (verb.name, found.answer, found.study, found.notes)
+    answer(text if options.json else report(*asked, full=options.full, quiet=options.quiet))
     if folder is None:
         return
-    texts = {".json": text, ".txt": report(verb.name, document, full=True)}
+    texts = {".json": text, ".txt": report(*asked, full=True)}
     with staged(folder) as stage:
-        _write_files(verb, document, stage, texts, quiet=options.quiet)
+        _write_files(verb, found, stage, texts, quiet=options.quiet)
     if not options.json and not options.quiet:
-        answer("\n" + whereabouts(verb.name, document, str(folder)))
+        overview = verb.name == "rank" and bool(found.document["complete"])
+        answer("\n" + whereabouts(verb.name, str(folder), overview=overview))
 
 
-def _write_files(
-    verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str], *, quiet: bool
-) -> None:
+def _write_files(verb: Verb, found: Found, folder: Path, texts: Mapping[str, str], *, quiet: bool) -> None:
     """Write texts, workbook, dataset and pictures."""
     for suffix, text in texts.items():
         path = folder / f"{verb.name}{suffix}"
@@ -139,22 +150,23 @@ def _write_files(
     if verb.has_workbook:
         from separatrix.workbook import results_workbook
 
-        results_workbook(document, folder / f"{verb.name}.xlsx")
+        results_workbook(found.document, folder / f"{verb.name}.xlsx")
     if verb.writes_files:
-        data = _write_data(verb, document, folder)
+        data = _write_data(verb, found, folder)
         if verb.draw is not None:
             verb.draw(data, folder, quiet=quiet)
 
 
-def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> xr.Dataset:
+def _write_data(verb: Verb, found: Found, folder: Path) -> xr.Dataset:
     """Write the dataset and the figures made from it; matplotlib keeps its remarks on fonts to itself."""
     import logging
 
-    from separatrix import figures, results
+    from separatrix import figures
+    from separatrix.present import dataset, save
 
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    data = results.dataset(document)
-    results.save(data, folder / f"{verb.name}.nc")
+    data = dataset(verb.name, found.answer, found.study, found.notes)
+    save(data, folder / f"{verb.name}.nc")
     for name, figure in figures.figures(verb.name, data):
         for suffix in (".png", ".svg"):
             figures.save(figure, folder / f"{name}{suffix}")

@@ -8,21 +8,12 @@ from typing import TYPE_CHECKING
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
-    from separatrix.chain import CageState
+    from separatrix.answers import SensitivityAnswer
     from separatrix.cli.answers import Work
-    from separatrix.explore.records import UncertainStudy
     from separatrix.study import Study
 
 SAMPLES = 512
 FEWEST, MOST = 64, 65_536
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensitivityAnswer:
-    """The uncertain study, and the cage of its reference candidate for the numbers of the chain."""
-
-    cage: CageState
-    uncertain: UncertainStudy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +42,7 @@ class SensitivityOptions:
 
 def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
+    from separatrix.answers import SensitivityAnswer
     from separatrix.cage_choice import reference_candidate, reference_friction, required_environment
     from separatrix.chain import cage_state
     from separatrix.cli.expected import expected_uncertain
@@ -67,4 +59,7 @@ def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> Sensitivity
     uncertain_inputs(as_pockets_see(study))  # refused before anything is timed
     work.expect(lambda: expected_uncertain(study, samples, jobs=work.jobs))
     found = uncertain_study(study, samples, jobs=work.jobs, progress=work.progress, ledger=work.ledger)
-    return SensitivityAnswer(cage=state, uncertain=found)
+    film = study.film
+    return SensitivityAnswer(
+        cage=state, uncertain=found, film_thickness=film.thickness, race_friction=film.race_friction
+    )

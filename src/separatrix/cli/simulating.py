@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+    from separatrix.answers import SimulationAnswer
     from separatrix.study import Study
 
 KINDS = ("gif", "mp4")
@@ -52,7 +53,7 @@ class SimulateOptions:
 
             video_encoder()
 
-    def compute(self, study: Study, work: answers.Work) -> answers.SimulationAnswer:
+    def compute(self, study: Study, work: answers.Work) -> SimulationAnswer:
         """Follow the run."""
         kick = None if self.kick is None else kick_speed(self.kick)
         return answers.simulate(study, work, kick=kick, run=self.run)

@@ -28,7 +28,7 @@ class Verb:
     """A question: its name, its line of help, and what computes its record.
 
     `needs` are the sections of a study that may be left out but not for this question. How the record is
-    shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
+    shown is in `separatrix.present` and, under the same name, in `separatrix.figures`.
     `keeps_runs` is for an answer whose runs are kept in its folder as they are finished; `draw` is for
     moving pictures and tables beside the figures; `has_workbook` for an answer that is also written as a
     workbook; `has_more` for one that is longer than a screen, and has an option for all of it.
