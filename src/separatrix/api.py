@@ -76,27 +76,27 @@ class Answer(Generic[Record]):
 
     def document(self) -> dict[str, Any]:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.results import document
+        from separatrix.present import document
 
         return document(self.verb, self.record, self.study, list(self.notes))
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.report import report
+        from separatrix.present import report
 
-        return report(self.verb, self.document(), full=full)
+        return report(self.verb, self.record, self.study, list(self.notes), full=full)
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
-        from separatrix.results import dataset
+        from separatrix.present import dataset
 
-        return dataset(self.document())
+        return dataset(self.verb, self.record, self.study, self.notes)
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each ball, point, material or case."""
-        from separatrix.results import to_dataframe
+        from separatrix.present import to_dataframe
 
-        return to_dataframe(self.verb, self.record)
+        return to_dataframe(self.record)
 
     def plot(self, name: str | None = None) -> Figure:
         """Return the first figure of the answer, or the one whose file has this name."""

@@ -326,7 +326,13 @@ def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> Sens
     uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
     runner.expect(lambda: expected_uncertain(study, samples, jobs=runner.jobs))
     return made_into(
-        lambda found: SensitivityAnswer(solution=solution, cage=cage, uncertain=found),
+        lambda found: SensitivityAnswer(
+            solution=solution,
+            cage=cage,
+            uncertain=found,
+            film_thickness=study.film.thickness,
+            race_friction=study.film.race_friction,
+        ),
         lambda: uncertain_study(study, samples, runner=runner),
     )
 
