@@ -35,13 +35,13 @@ CURVES = {
 }
 AGREE = np.array([["not run: the points around agree", "As they do."], ["not run: interrupted", ""]])
 MAPS = {
-    "ordinary": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
+    "an ordinary map": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
     "all refused": drawn.plane([[NAN, NAN], [NAN, NAN]]),
     "all undecided": drawn.plane([[0.5, 0.4], [0.4, 0.5]]),
     "all undecided at one half": drawn.plane([[0.5, 0.5], [0.5, 0.5]]),
     "all grow": drawn.plane([[1.0, 1.0], [1.0, 1.0]]),
     "one column": drawn.plane([[0.0], [0.6], [1.0]]),
-    "one point": drawn.plane([[0.6]]),
+    "one cell": drawn.plane([[0.6]]),
     "partly run": drawn.plane([[NAN, 0.0], [NAN, 1.0]]).assign(reason=(("y", "x"), AGREE)),
     "other parameters": drawn.plane(
         [[0.0, 0.4]] * 3, y=np.array([1e-4, 1e-3, 1e-2]), y_parameter="cage.mass"
@@ -51,18 +51,12 @@ MAPS = {
 }
 
 
-@pytest.mark.parametrize("data", CURVES.values(), ids=CURVES.keys())
-def test_every_curve_is_drawn_without_a_warning(data):
+@pytest.mark.parametrize("kind", [*CURVES, *MAPS])
+def test_every_curve_and_every_map_is_drawn_without_a_warning(kind):
     """Warnings are errors here."""
     with journal():
-        stability.stability(data).draw_without_rendering()
-
-
-@pytest.mark.parametrize("data", MAPS.values(), ids=MAPS.keys())
-def test_every_map_is_drawn_without_a_warning(data):
-    """Warnings are errors here."""
-    with journal():
-        maps.map(data).draw_without_rendering()
+        figure = stability.stability(CURVES[kind]) if kind in CURVES else maps.stability_map(MAPS[kind])
+        figure.draw_without_rendering()
 
 
 @pytest.mark.parametrize("zeta", [0.02, 0.3, 0.9])
@@ -82,7 +76,8 @@ def test_the_linear_limit_is_that_of_the_cage(zeta):
         ball_cage_friction=0.0,
     )
     drawn_limit = stability.linear_limit(np.array([restitution_factor(zeta)]), 11)
-    assert drawn_limit[0] == pytest.approx(linear_critical_friction(cage), rel=1e-9)  # eta to zeta and back
+    # eta to zeta and back
+    assert drawn_limit[0] == pytest.approx(linear_critical_friction(cage), rel=1e-9)
 
 
 def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
@@ -138,24 +133,16 @@ def test_the_warning_colour_of_a_map_is_for_the_unstable():
     assert brightness[-1] > 0.8
 
 
-def test_each_candidate_is_drawn_at_its_friction_in_each_environment():
-    """Beside the curve, in rising order of the mean."""
-    figure = stability.stability(drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]])))
-    beside = figure.axes[1]
-    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0"]
+@pytest.mark.parametrize(("reason", "mark"), [("too fast", " *"), ("", "")])
+def test_each_candidate_is_drawn_at_its_friction_in_each_environment(reason, mark):
+    """Beside the curve, in rising order of the mean; marked if extrapolated in one environment."""
+    data = drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]]))
+    data["material_extrapolation"][1, 0] = reason
+    _, beside = stability.stability(data).axes
+    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", f"material 0{mark}"]
     points = [line.get_ydata().tolist() for line in beside.lines if line.get_marker() in ("o", "s")]
     assert points == [[0.1, 0.3], [0.12, 0.2]]
-
-
-def test_a_candidate_asked_for_where_it_was_not_tested_is_marked():
-    """In one environment is enough; the legend says what the mark is, and is silent where all was tested."""
-    data = drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]]))
-    data["material_extrapolation"][1, 0] = "too fast"
-    _, beside = stability.stability(data).axes
-    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0 *"]
-    assert "friction extrapolated" in beside.get_legend_handles_labels()[1]
-    _, beside = stability.stability(CURVES["candidates"]).axes
-    assert "friction extrapolated" not in beside.get_legend_handles_labels()[1]
+    assert ("friction extrapolated" in beside.get_legend_handles_labels()[1]) is bool(reason)
 
 
 def test_cells_are_halfway_between_values():
@@ -188,7 +175,7 @@ def test_a_length_is_shown_as_an_engineer_writes_it():
     data["x"].attrs["units"] = "m"
     assert maps.shown_unit(data, "x") == (1e-3, "mm")
     assert maps.axis_values(data, "x").tolist() == pytest.approx([0.1, 1.0])
-    axes = maps.map(data).axes[0]
+    axes = maps.stability_map(data).axes[0]
     assert axes.get_xlabel() == "cage pocket clearance [mm]"
     own = next(line for line in axes.lines if line.get_label() == "the study itself")
     assert own.get_xdata().tolist() == pytest.approx([0.5])
@@ -202,13 +189,15 @@ def test_refused_not_run_and_agreed_points_are_told_apart():
             np.array([["not run: the points around agree", ""], ["not run: interrupted", "No land."]]),
         )
     )
-    assert maps.refused(data).tolist() == [[False, False], [False, True]]
-    assert maps.not_run(data).tolist() == [[True, False], [True, False]]
-    assert maps.agreed(data).tolist() == [[True, False], [False, False]]
-    assert maps.filled(data) == pytest.approx(np.array([[0.25, 0.25], [NAN, NAN]]), nan_ok=True)
+    found = maps.cells(data)
+    assert found.refused.tolist() == [[False, False], [False, True]]
+    assert found.not_run.tolist() == [[True, False], [True, False]]
+    assert found.agreed.tolist() == [[True, False], [False, False]]
+    assert found.share == pytest.approx(np.array([[0.25, 0.25], [NAN, NAN]]), nan_ok=True)
 
 
-def test_the_kick_of_a_map_is_named_unless_it_is_an_axis():
+@pytest.mark.parametrize(("x", "words"), [("restitution_factor", "0.5 m/s"), ("kick", "as on the axis")])
+def test_the_kick_of_a_map_is_named_unless_it_is_an_axis(x, words):
     """In the title."""
-    assert maps.kick_text(drawn.plane([[0.0]])) == "0.5 m/s"
-    assert maps.kick_text(drawn.plane([[0.0]], x_parameter="kick")) == "as on the axis"
+    axes = maps.stability_map(drawn.plane([[0.0]], x_parameter=x)).axes[0]
+    assert axes.get_title().endswith(f"kick {words}")

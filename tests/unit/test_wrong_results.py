@@ -11,9 +11,8 @@ import xarray as xr
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.figures import figures
-from separatrix.figures.heading import heading
-from separatrix.figures.literal import literal_texts
+from separatrix.figures import draw
+from separatrix.figures.style import heading, literal_texts
 from separatrix.results import container, load
 
 STUDY = {"cage": {"mass": {"value": 0.025, "unit": "kg"}}}
@@ -213,5 +212,5 @@ def test_a_dollar_in_a_name_is_written_as_it_is_in_every_figure():
     film = {"material": {"name": "$_$"}, "thickness": {"value": 5e-7}}
     data.attrs = {"title": "$^$", "study": json.dumps({"film": film})}
     assert heading(literal_texts(data)) == [r"\$^\$", r"\$_\$, 500 nm"]
-    for _, figure in figures("stability", data):
+    for _, figure in draw("stability", data):
         figure.canvas.draw()

@@ -153,7 +153,7 @@ def _ranked() -> dict[str, int]:
 
 def _study(data: xr.Dataset, path: Path) -> Mapping[str, Any]:
     """Return the resolved study that an answer holds; what stands above figures can be read from it."""
-    from separatrix.figures.heading import heading
+    from separatrix.figures.style import heading
 
     try:
         study = json.loads(data.attrs.get("study", ""))
@@ -280,14 +280,8 @@ def _write(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) ->
         (stage / "compare.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         (stage / "compare.txt").write_text(harmless(in_words(found, folder)), encoding="utf-8")
         if pair[0].verb == "simulate":
-            figure = figures.compared(pair[0].data, pair[1].data, _names(pair))
-            for suffix in (".png", ".svg"):
-                figures.save(figure, stage / f"comparison{suffix}")
-
-
-def _names(pair: tuple[Saved, Saved]) -> tuple[str, str]:
-    """Names for the legend: the titles, or where they were found if those are the same."""
-    first, second = pair
-    if first.title != second.title:
-        return first.title, second.title
-    return str(first.path), str(second.path)
+            paths = str(pair[0].path), str(pair[1].path)
+            names = paths if pair[0].title == pair[1].title else ("", "")  # else by their titles
+            for name, figure in figures.draw("compare", pair[0].data, pair[1].data, names=names):
+                for suffix in (".png", ".svg"):
+                    figures.save(figure, stage / f"{name}{suffix}")

@@ -155,7 +155,7 @@ def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> xr.Datase
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     data = results.dataset(document)
     results.save(data, folder / f"{verb.name}.nc")
-    for name, figure in figures.figures(verb.name, data):
+    for name, figure in figures.draw(verb.name, data):
         for suffix in (".png", ".svg"):
             figures.save(figure, folder / f"{name}{suffix}")
     return data
