@@ -123,7 +123,7 @@ def test_on_the_pocket_boundary_one_pocket_touches(count):
 
 def test_one_pocket_leaves_the_way_along_its_ball_free():
     """Along the radius of the only ball there is no boundary; across it, half the play."""
-    reach = pocket_boundary(np.zeros(1), np.ones(1), np.array([0.0, 0.5 * np.pi, np.pi]))
+    reach = pocket_boundary(np.zeros(1), np.ones(1))[[0, 360, 720]]
     assert reach.tolist() == [np.inf, 1.0, np.inf]
 
 
@@ -139,11 +139,10 @@ def test_pockets_are_where_the_run_says():
 @pytest.mark.parametrize(("guidance", "side"), [("outer", 1), ("inner", -1)])
 @pytest.mark.parametrize("lobes", [2, 3])
 def test_on_the_land_boundary_the_depth_is_zero(guidance, side, lobes):
-    """Depth r - c + a L cos n(psi - theta), L = 1 outside and (-1)^n inside (docs/theory/cage.md)."""
+    """Depth r - c + a L cos(n psi), L = 1 outside and (-1)^n inside (docs/theory/cage.md)."""
     lobed = drawn.run(guidance=guidance, cage_land_out_of_round=2e-5, cage_land_lobes=lobes)
     sign = 1 if side > 0 else (-1) ** lobes
-    reach = land_boundary(lobed, AROUND, 0.3)
-    depth = reach - 5e-4 + 2e-5 * sign * np.cos(lobes * (AROUND - 0.3))
+    depth = land_boundary(lobed) - 5e-4 + 2e-5 * sign * np.cos(lobes * AROUND)
     # rounding of half a millimetre
     assert np.abs(depth).max() < 1e-15
     assert land_boundary(drawn.run(guidance="ball")) is None

@@ -91,21 +91,14 @@ def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
 
 def test_the_picture_holds_every_curve_and_every_mark():
     """A curve from 0.51 to 0.9, its kicks, and a critical friction of 0.77: all below the top."""
-    high = np.linspace(0.9, 0.51, 4)
+    high, ends = np.linspace(0.9, 0.51, 4), {"scatter_low": 0.95, "scatter_high": 1.02}
+    ends |= {f"critical_friction{end}": part for end, part in (("", 1.0), ("_low", 0.8), ("_high", 1.05))}
     kicks = np.stack([0.8 * high, high, 1.1 * high], axis=1)
     data = drawn.curve(
-        critical_friction=(ON, high),
-        critical_friction_low=(ON, 0.8 * high),
-        critical_friction_high=(ON, 1.05 * high),
-        scatter_low=(ON, 0.95 * high),
-        scatter_high=(ON, 1.02 * high),
         kick_critical_friction=((ON, "kick"), kicks),
         here_restitution_factor=0.3,
-        here_critical_friction=0.77,
-        here_scatter_low=0.75,
-        here_scatter_high=0.79,
-        here_critical_friction_low=0.7,
-        here_critical_friction_high=0.8,
+        **{name: (ON, part * high) for name, part in ends.items()},
+        **{f"here_{name}": 0.77 * part for name, part in ends.items()},
     )
     axes = stability.stability(data).axes[0]
     top = axes.get_ylim()[1]

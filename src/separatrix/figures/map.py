@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -25,6 +25,7 @@ from separatrix.figures.style import (
     VERMILION,
     Look,
     canvas,
+    colour_bar,
     legend_below,
 )
 from separatrix.units import Array, format_quantity, parse
@@ -50,22 +51,17 @@ SIZES = {"STABLE": 5.0, "UNSTABLE": 4.0, "UNDECIDED": 3.0}
 
 
 class Cells(NamedTuple):
-    """What is known at each point of a map, shape (y, x)."""
+    """What is known at each point of a map, shape (y, x).
+
+    The share of the runs that whirl, NaN if unknown; which points the program refused; which were not run,
+    for an interrupt or as the points around agree, whose share they then have; where there is no verdict.
+    """
 
     share: Array
-    """Of the runs that whirl; where the points around agree, that of the nearest point; NaN if unknown."""
-
     refused: Mask
-    """Where the program refused the point."""
-
     not_run: Mask
-    """Where the map was not run: an interrupt, or the points around agree."""
-
     agreed: Mask
-    """Where nothing was run because the points around agree."""
-
     undecided: Mask
-    """Where the runs allow no verdict."""
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -128,14 +124,12 @@ def stability_map(data: xr.Dataset) -> Figure:
     kick = "as on the axis" if "kick" in names else kick
     runs = f", at most {int(data['stopping_most_runs'])} runs a point" if "stopping_most_runs" in data else ""
     axes.set_title(f"Share of the runs that whirl, kick {kick}{runs}")
-    bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
-    bar.set_label("share of the runs that whirl [-]")
-    bar.outline.set_visible(False)
+    colour_bar(mesh, [axes], "share of the runs that whirl [-]", pad=0.02, aspect=30)
     legend_below(figure, [axes])
     return figure
 
 
-def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: str) -> None:
+def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
     """Hatch cells."""
     x, y = edges
     corners = [

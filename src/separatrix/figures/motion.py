@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look
+from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
 from separatrix.units import Array, Hertz
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
@@ -56,58 +56,34 @@ def half_plays(data: xr.Dataset) -> Array:
     return np.full(data.sizes["ball"], 0.5 * float(data["cage_pocket_clearance"]))
 
 
-def pocket_boundary(angles: Array, plays: Array, around: Array = AROUND) -> Array:
+def pocket_boundary(angles: Array, plays: Array) -> Array:
     """Return how far the centre may go in each direction until a pocket touches its ball [m].
 
     Without rotation and lead that is where |r . e_t,j| = c_j: the polygon inside 2 Z lines. A single ball
     leaves the way along its own radius free: there it is infinite.
-
-    Parameters
-    ----------
-    angles, plays : ndarray
-        Of each pocket, shape (ball,) [rad] and [m].
-    around : ndarray
-        Directions [rad].
     """
-    across = np.abs(np.sin(around[:, np.newaxis] - angles))
+    across = np.abs(np.sin(AROUND[:, np.newaxis] - angles))
     reach = plays / np.maximum(across, 1.0 / NEVER)
     return np.where((across < 1.0 / NEVER).all(axis=1), np.inf, reach.min(axis=1))
 
 
-def land_boundary(data: xr.Dataset, around: Array = AROUND, turned: float = 0.0) -> Array | None:
-    """Return how far the centre may go in each direction until the cage touches its land [m]; None without.
-
-    Parameters
-    ----------
-    data : Dataset
-        Of a simulation.
-    around : ndarray
-        Directions [rad].
-    turned : float
-        Rotation of the cage, which takes its lobes along [rad].
-    """
-    clearance, guidance = float(data.get("cage_land_clearance", np.nan)), data.get("cage_guidance", "ball")
-    if str(np.asarray(guidance)) == "ball" or not np.isfinite(clearance):
+def land_boundary(data: xr.Dataset) -> Array | None:
+    """Return how far the centre may go in each direction until the land touches [m]; None without one."""
+    clearance = float(data.get("cage_land_clearance", np.nan))
+    guidance = str(data["cage_guidance"].values) if "cage_guidance" in data else "ball"
+    if guidance == "ball" or not np.isfinite(clearance):
         return None
-    wave = float(data.get("cage_land_out_of_round", 0.0))
-    lobes = int(data.get("cage_land_lobes", 2))
-    sign = (-1) ** lobes if str(np.asarray(guidance)) == "inner" else 1
-    return 0.5 * clearance - wave * sign * np.cos(lobes * (around - turned))
+    wave, lobes = float(data.get("cage_land_out_of_round", 0.0)), int(data.get("cage_land_lobes", 2))
+    sign = (-1) ** lobes if guidance == "inner" else 1
+    return 0.5 * clearance - wave * sign * np.cos(lobes * AROUND)
 
 
-def smooth_path(time: Array, position: Array, velocity: Array, fine: int = FINE) -> Array:
+def smooth_path(time: Array, position: Array, velocity: Array) -> Array:
     """Return the path through samples as the cubics that have their positions and velocities.
 
     Straight lines between the samples of a fast whirl would be drawn as a polygon.
-
-    Parameters
-    ----------
-    time, position, velocity : ndarray
-        Shapes (sample,) [s], (sample, 2) [m] and (sample, 2) [m/s].
-    fine : int
-        Points for each sample but the last.
     """
-    s = np.linspace(0.0, 1.0, fine, endpoint=False)[:, np.newaxis]
+    s = np.linspace(0.0, 1.0, FINE, endpoint=False)[:, np.newaxis]
     step = np.diff(time)[:, np.newaxis, np.newaxis]
     start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
     slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
@@ -116,12 +92,12 @@ def smooth_path(time: Array, position: Array, velocity: Array, fine: int = FINE)
     return np.concatenate([path.reshape(-1, 2), position[-1:]])
 
 
-def last_turns(path: Array, turns: float = LAST) -> int:
-    """Return the first point of so many last turns, by their length; 0 if the path is not much longer."""
+def last_turns(path: Array) -> int:
+    """Return the first point of the `LAST` turns, by their length; 0 if the path is not much longer."""
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     around = 2 * np.pi * float(np.hypot(*path[-1]))
-    first = int(np.searchsorted(length, length[-1] - turns * around))
-    return first if length[-1] > 2 * turns * around and around > 0.0 else 0
+    first = int(np.searchsorted(length, length[-1] - LAST * around))
+    return first if length[-1] > 2 * LAST * around and around > 0.0 else 0
 
 
 def largest_play(data: xr.Dataset) -> float | None:
@@ -168,19 +144,9 @@ def even_velocity(time: Array, velocity: Array) -> tuple[Array, Array]:
 
 
 def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
-    """Amplitude of the complex velocity over frequency, the largest being 1.
+    """Return frequency [Hz] and amplitude of the complex velocity, the largest being 1.
 
-    Parameters
-    ----------
-    time : ndarray
-        Shape (time,) [s]; need not be even.
-    velocity : ndarray
-        Shape (time, 2) [m/s].
-
-    Returns
-    -------
-    tuple of ndarray
-        Frequency, rising from negative (backward) to positive (forward) [Hz], and amplitude [-].
+    Frequency rises from negative (backward) to positive (forward); times need not be even.
     """
     even, v = even_velocity(time, velocity)
     amplitude = np.abs(np.fft.fftshift(np.fft.fft(v)))
@@ -191,18 +157,8 @@ def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
 def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
     """Spectra of pieces of the run, each with Hann's window and three quarters over the one before.
 
-    Parameters
-    ----------
-    time, velocity : ndarray
-        As for `whirl_spectrum`.
-    reach : float
-        Highest frequency to be shown, for which pieces are made long enough; 0 if it does not matter [Hz].
-
-    Returns
-    -------
-    tuple of ndarray
-        Middles of the pieces [s]; frequency, rising [Hz]; amplitude over the largest, shape
-        (piece, frequency) [-].
+    Returns the middles of the pieces [s], frequency [Hz] and amplitude over the largest, shape
+    (piece, frequency). Pieces are long enough for a picture that reaches to `reach`, unless that is 0.
     """
     even, v = even_velocity(time, velocity)
     fine = BANDS / (reach * (even[1] - even[0])) if reach > 0.0 else 1.0
@@ -260,6 +216,4 @@ def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     last = 1.5 * columns[1:][(level > SEEN).any(axis=1)].max(initial=0.0)
     axes.set(xlim=(0.0, min(whole, last or whole)), xlabel="time [ms]")
     axes.set(ylim=(-1e-3 * most, 1e-3 * most), ylabel="frequency [kHz]")
-    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, aspect=20)
-    bar.set_label("level under the largest [dB]")
-    bar.outline.set_visible(False)
+    colour_bar(mesh, [axes], "level under the largest [dB]", pad=0.02, aspect=20)

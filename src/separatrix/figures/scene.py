@@ -120,19 +120,10 @@ class Scene:
 
 
 def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
-    """Return the sizes and movements of a run at some of its samples.
+    """Return the sizes and movements of a run at some of its samples, in a frame fixed in space if asked for.
 
     Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
     the pockets and the cage in the picture, on two digits; at least 1.
-
-    Parameters
-    ----------
-    data : Dataset
-        Of a simulation.
-    moments : ndarray
-        Numbers of the samples.
-    fixed : bool
-        Whether the picture is fixed in space, and the ball set turns in it.
     """
     data = data.isel(time=moments)
     radius, play = float(data["cage_pitch_radius"]), half_plays(data)

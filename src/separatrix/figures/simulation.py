@@ -25,6 +25,7 @@ from separatrix.figures.style import (
     SKY,
     VERMILION,
     Look,
+    colour_bar,
     cut,
     heading,
     label_lines,
@@ -200,18 +201,17 @@ def _offset(axes: Axes, data: xr.Dataset) -> None:
 
 def forces(data: xr.Dataset) -> Figure:
     """Contact forces pocket by pocket and at the land, and how often each pocket touches its ball."""
-    rows = [["raster", "near raster"], ["force", "near force"], ["contacts", "contacts"]]
+    rows: Any = [["raster", "near raster"], ["force", "near force"], ["contacts", "contacts"]]
     figure = Figure(figsize=(PAGE, 5.8), layout="constrained")
-    panels: Any = figure.subplot_mosaic(rows, height_ratios=[2.0, 1.3, 1.3], width_ratios=[2.2, 1.0])
+    panels = figure.subplot_mosaic(rows, height_ratios=[2.0, 1.3, 1.3], width_ratios=[2.2, 1.0])
     near, largest = close_view(data), max(float(largest_force(data).max()), 1e-9)
     mesh = _raster(panels["raster"], data, largest, np.geomspace if is_logarithmic(data) else np.linspace)
     time_axis(panels["raster"], data)
     panels["raster"].set(title="a  Force in each pocket", ylabel="pocket")
     _raster(panels["near raster"], near, largest, np.linspace)
     panels["near raster"].set(title="b  Around the largest force", xlabel="time [ms]", xlim=view_ends(near))
-    bar = figure.colorbar(mesh, ax=[panels["raster"], panels["near raster"]], pad=0.01, aspect=14)
-    bar.set_label("force [N], root scale")
-    bar.outline.set_visible(False)
+    rasters = [panels["raster"], panels["near raster"]]
+    colour_bar(mesh, rasters, "force [N], root scale", pad=0.01, aspect=14)
     top = 1.05 * max(largest, float(np.abs(data["land_force"].values).max()))
     for name, part in (("force", data), ("near force", near)):
         axes, time, land = panels[name], milliseconds(part), np.abs(part["land_force"].values)
@@ -255,19 +255,9 @@ def largest_force(data: xr.Dataset) -> Array:
 
 
 def pooled(time: Array, force: Array, edges: Array) -> Array:
-    """Return the largest absolute force between neighbouring edges, of each pocket.
+    """Return the largest force between neighbouring edges of time, of each pocket; shape (edges - 1, ball).
 
-    Parameters
-    ----------
-    time, force : ndarray
-        Shapes (time,) and (time, ball).
-    edges : ndarray
-        Rising times.
-
-    Returns
-    -------
-    ndarray
-        Shape (edges - 1, ball); a space without a sample has that of the sample before it.
+    A space without a sample has the force of the sample before it.
     """
     starts = np.searchsorted(time, edges[:-1], side="left").clip(0, time.size - 1)
     ends = np.searchsorted(time, edges[1:], side="left").clip(1, time.size)
@@ -289,17 +279,9 @@ def _raster(axes: Axes, data: xr.Dataset, largest: float, space: Any) -> ScalarM
 
 
 def contact_counts(force: Array) -> Array:
-    """Return how often each pocket begins to touch its ball, pushing it forward or backward.
+    """Return how often each pocket begins to push its ball forward, and backward; shape (2, ball).
 
-    Parameters
-    ----------
-    force : ndarray
-        Samples of the contact force, shape (time, ball).
-
-    Returns
-    -------
-    ndarray
-        Shape (2, ball): forward, backward. What falls between two samples is not seen.
+    From samples of the force, shape (time, ball): what falls between two of them is not seen.
     """
     sides = np.stack([force > 0.0, force < 0.0])
     before = np.concatenate([np.zeros_like(sides[:, :1]), sides[:, :-1]], axis=1)
@@ -324,17 +306,10 @@ def _contacts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def comparison(first: xr.Dataset, second: xr.Dataset, names: Sequence[str]) -> Figure:
-    """Orbit, energy, spectrum and forces of two runs, each on the scale of both.
-
-    Parameters
-    ----------
-    first, second : Dataset
-        Of two simulations.
-    names : sequence of str
-        What stands above each column.
-    """
+    """Orbit, energy, spectrum and forces of two runs, each on the scale of both, with a name above each."""
     runs, figure = (first, second), Figure(figsize=(PAGE, 8.0), layout="constrained")
-    above, below = figure.subfigures(nrows=2, height_ratios=[1.0, 2.0])
+    parts: Any = figure.subfigures(nrows=2, height_ratios=[1.0, 2.0])
+    above, below = parts
     orbits, (energy, force, spectrum) = above.subplots(ncols=2), below.subplots(nrows=3)
     for axes, letter, data, other, name in zip(orbits, "AB", runs, runs[::-1], names, strict=True):
         motion.draw_orbit(axes, data, other)

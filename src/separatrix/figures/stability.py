@@ -201,10 +201,10 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
     axes.tick_params(axis="x", length=0)
     explain_extrapolated(axes, data["material_extrapolation"])
     for place, at in enumerate(_measured_mean(own)):
-        ends = _own_band(data, at, top)
-        if ends is not None:
-            axes.fill_between([place - 0.4, place + 0.4], *ends[::2], color=BLUE, alpha=0.15, lw=0)
-            axes.hlines(ends[1], place - 0.4, place + 0.4, color=BLUE, lw=1.3)
+        low, middle, high = _own_band(data, at, top)
+        if np.isfinite(middle):
+            axes.fill_between([place - 0.4, place + 0.4], low, high, color=BLUE, alpha=0.15, lw=0)
+            axes.hlines(middle, place - 0.4, place + 0.4, color=BLUE, lw=1.3)
         if not np.isfinite(friction[:, place]).any():
             look: Look = {"rotation": 90, "ha": "center", "va": "bottom", "fontsize": 6.5, "color": GREY}
             axes.text(place, 0.02 * top, "not measured", **look)
@@ -222,17 +222,15 @@ def _measured_mean(table: Array) -> Array:
     return np.where(known.any(axis=0), total, np.inf)
 
 
-def _own_band(data: xr.Dataset, at: float, top: float) -> tuple[float, float, float] | None:
-    """Return lower end, middle and upper end of the band at a restitution factor; None where not computed."""
-    if has_band(data):
-        eta, (low, high) = data["restitution_factor"].values, band_ends(data, top)
-        if not (eta.size and eta[0] <= at <= eta[-1]):
-            return None
-        low, middle, high = (np.interp(at, eta, one) for one in (low, data["critical_friction"].values, high))
-    else:
-        middle = float(data.get("here_critical_friction", np.nan))
-        here = float(data.get("here_restitution_factor", np.nan))
-        if not (np.isfinite(middle) and np.isclose(at, here, rtol=1e-9)):
-            return None
-        low, high = band_ends(data, top, "here_")
-    return float(low), float(middle), float(high)
+def _own_band(data: xr.Dataset, at: float, top: float) -> tuple[float, float, float]:
+    """Return lower end, middle and upper end of the band at a restitution factor; NaN where not computed."""
+    if not has_band(data):
+        same = np.isclose(at, float(data.get("here_restitution_factor", np.nan)), rtol=1e-9)
+        low, high = band_ends(data, top, "here_") if same else (np.nan, np.nan)
+        return float(low), float(data["here_critical_friction"]) if same else np.nan, float(high)
+    eta, (low, high) = data["restitution_factor"].values, band_ends(data, top)
+    if not (eta.size and eta[0] <= at <= eta[-1]):
+        return np.nan, np.nan, np.nan
+    ends = (low, data["critical_friction"].values.astype(float), high)
+    first, middle, last = (float(np.interp(at, eta, one)) for one in ends)
+    return first, middle, last

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.transforms import offset_copy
 
@@ -35,7 +36,7 @@ MARKERS = ("o", "s", "^", "v", "P", "*", "p")
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
 
-STYLE: Look = {
+STYLE: Any = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
@@ -138,6 +139,12 @@ def legend_above(axes: Axes, columns: int, length: float = 1.6) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=columns, handlelength=length)
 
 
+def colour_bar(mesh: ScalarMappable, panels: list[Axes], label: str, **look: Any) -> None:
+    """Explain the colours of a mesh beside its panels."""
+    bar: Any = panels[0].figure.colorbar(mesh, ax=panels, label=label, **look)
+    bar.outline.set_visible(False)
+
+
 def label_lines(
     axes: Axes,
     labels: Sequence[tuple[float, float, str, str]],
@@ -202,9 +209,9 @@ def literal_texts(data: xr.Dataset) -> xr.Dataset:
     found = data.copy()
     for name, one in data.variables.items():
         if one.dtype.kind in "OU" and "$" in str(one.values):
-            values = [literal(text) if isinstance(text, str) else text for text in one.values.flat]
-            written = np.empty(one.shape, dtype=object)
-            written.flat = values
+            written = one.values.astype(object)
+            for place, text in np.ndenumerate(written):
+                written[place] = literal(text) if isinstance(text, str) else text
             found[name] = xr.Variable(one.dims, written, one.attrs)
     found.attrs = {name: literal(v) if isinstance(v, str) else v for name, v in data.attrs.items()}
     if "study" in data.attrs:  # it is JSON, where a backslash is written twice
