@@ -236,9 +236,10 @@ def film(data: xr.Dataset) -> Figure:
         lines = axes.contour(thickness, friction, below[i], levels=[0.0], colors=[colour], linewidths=1.2)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
         points = np.concatenate([path.vertices for path in lines.get_paths()])
-        x, y = points[np.argmax(points[:, 0])]
-        labels.append((float(x), float(y), names[i], colour))
-    label_lines(axes, labels, gap=0.045)
+        end, y = points[np.argmax(points[:, 0])].tolist()
+        labels.append((round(y, 9), -end, names[i], colour))
+    at_edge = [(float(thickness[-1]), y, name, colour) for y, _, name, colour in sorted(labels)]
+    label_lines(axes, at_edge, gap=0.045)  # of lines that end at the top, the first from the left is highest
     label = f"ticks: the side of the films with P(stable) of {float(data['film_probability']):.2f} or more"
     axes.plot([], [], color=GREY, lw=1.2, label=label, path_effects=[withTickedStroke(angle=90, length=0.5)])
     here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
