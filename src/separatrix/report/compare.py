@@ -20,6 +20,8 @@ from separatrix.report.tables import (
 
 Document = Mapping[str, Any]
 
+COLUMNS = ("friction", "margin", "P(stable)", "verdict")
+
 ROWS = (
     ("kick", "m/s", "kick"),
     ("end_energy", "J", "energy at the end"),
@@ -53,17 +55,7 @@ def _simulations(document: Document) -> list[str]:
     ]
 
 
-RANKED = (
-    "material",
-    "friction\nfirst",
-    "\nsecond",
-    "margin\nfirst",
-    "\nsecond",
-    "P(stable)\nfirst",
-    "\nsecond",
-    "verdict\nfirst",
-    "\nsecond",
-)
+RANKED = ("material", *(f"{name}\nfirst" if i == 0 else "\nsecond" for name in COLUMNS for i in (0, 1)))
 
 
 def _rankings(document: Document) -> list[str]:
