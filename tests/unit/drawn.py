@@ -108,18 +108,15 @@ def swept(names, verdict=("", "", "")):
 
 def ranking(**changes):
     """A ranking of four materials in two environments on a curve, with these columns changed."""
-    table = [[0.1, 0.2, 0.3, 0.4], [0.4, np.nan, 0.1, 0.1]]
-    columns = {"rank": [[1.0, 2.0, 3.0, 4.0]] * 2, "margin": [[0.1] * 4] * 2, "friction": table}
+    frictions = [[0.1, 0.2, 0.3, 0.4], [0.4, np.nan, 0.1, 0.1]]
+    columns = {"rank": [[1.0, 2.0, 3.0, 4.0]] * 2, "margin": [[0.1] * 4] * 2, "friction": frictions}
     columns |= {"restitution_factor": [[0.27] * 4] * 2, "verdict": [["STABLE"] * 4] * 2}
     columns |= {f"restitution_threshold{end}": [[0.4] * 4] * 2 for end in ("", "_low", "_high")}
-    columns |= {"extrapolation": [[""] * 4] * 2}
-    variables = {f"material_{name}": column for name, column in columns.items()}
-    variables |= {f"overall_{name}": column[0] for name, column in columns.items()} | changes
-    dims = {name: ("environment", "material")[name.startswith("overall") :] for name in variables}
-    made = {
-        name: (dims[name], np.array(one, dtype=object if "extra" in name or "verdict" in name else float))
-        for name, one in variables.items()
-    }
+    columns |= {"extrapolation": np.full((2, 4), "", dtype=object)}
+    made = {f"material_{name}": column for name, column in columns.items()}
+    made |= {f"overall_{name}": column[0] for name, column in columns.items()} | changes
+    dims = {name: ("environment", "material")[name.startswith("overall") :] for name in made}
+    made = {name: (dims[name], one) for name, one in made.items()}
     return curve(**made).assign_coords(environment=["air", "vacuum"], material=list("ABCD"))
 
 

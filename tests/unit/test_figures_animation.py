@@ -167,7 +167,7 @@ def test_the_cage_meets_its_land_when_it_touches(guidance, side):
     reached = np.hypot(*seen.rails(0)[0 if side < 0 else 1].T)
     farthest = reached.max() if side > 0 else reached.min()
     # rounding
-    assert farthest == pytest.approx(seen.land_radius, rel=1e-12)
+    assert farthest == pytest.approx(seen.land, rel=1e-12)
 
 
 def test_forces_push_the_cage_against_the_ball_forces():
@@ -184,7 +184,7 @@ def test_forces_push_the_cage_against_the_ball_forces():
     foot, push = seen.land_arrow(1)
     assert push @ seen.offset[1] < 0
     assert np.isnan(seen.land_arrow(0)[1]).all()
-    assert np.hypot(*foot) == pytest.approx(seen.land_radius)
+    assert np.hypot(*foot) == pytest.approx(seen.land)
 
 
 def test_the_ball_set_turns_by_the_integral_of_its_speed():

@@ -26,19 +26,17 @@ ODD = {
 }
 
 
-@pytest.mark.parametrize("draw", [simulation.run, simulation.forces])
+def compared(data):
+    """The comparison with an ordinary run."""
+    return simulation.comparison(data, drawn.run(), ("one", "the other"))
+
+
+@pytest.mark.parametrize("draw", [simulation.run, simulation.forces, compared])
 @pytest.mark.parametrize("data", ODD.values(), ids=ODD.keys())
 def test_every_run_is_drawn_without_a_warning(draw, data):
     """Warnings are errors here."""
     with journal():
         draw(data).draw_without_rendering()
-
-
-@pytest.mark.parametrize("kind", ["nothing touches", "one sample", "at rest"])
-def test_any_two_runs_are_compared_without_a_warning(kind):
-    """One of them is ordinary."""
-    with journal():
-        simulation.comparison(ODD[kind], drawn.run(), ("one", "the other")).draw_without_rendering()
 
 
 def test_compared_runs_have_common_scales_and_short_names():
@@ -78,12 +76,6 @@ def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
     assert frequency[share.argmax(axis=1)] == wanted
     assert middles[0] < 0.1
     assert middles[-1] > 0.9
-
-
-def test_a_run_at_rest_has_a_spectrum_without_nan():
-    """No motion at all: zeros."""
-    for spectrum in (motion.whirl_spectrum, motion.spectrum_against_time):
-        assert not spectrum(np.linspace(0, 1, 20), np.zeros((20, 2)))[-1].any()
 
 
 def test_the_spectrum_against_time_fills_its_picture():

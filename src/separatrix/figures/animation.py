@@ -234,7 +234,7 @@ def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> Non
     pocket, land = (format_number(float(np.abs(one).max()), 3) for one in (at.force, at.land_force))
     arrow: Look = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
     named = [(Line2D([], [], color=VERMILION, **arrow), f"force of a pocket on the cage, up to {pocket} N")]
-    if np.isfinite(at.gap):
+    if np.isfinite(at.land):
         named.append((Line2D([], [], color=BLACK, **arrow), f"force of the land, up to {land} N"))
         named.append((Line2D([], [], color=GREY, lw=1.6), "land"))
     look: Look = {"bbox_to_anchor": (0.6, 0.83), "fontsize": 6.5, "handlelength": 1.6, "labelspacing": 0.25}
@@ -303,8 +303,8 @@ def _cage(axes: Axes, at: Scene) -> Part:
     axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
     axes.set_axis_off()
     count = at.angles.size
-    if np.isfinite(at.gap):
-        axes.plot(*ring(at.land_radius, ROUND).T, color=GREY, lw=1.6)
+    if np.isfinite(at.land):
+        axes.plot(*ring(at.land, ROUND).T, color=GREY, lw=1.6)
     axes.plot(*ring(at.radius, ROUND).T, color=GREY, lw=0.4, ls=":")
     rails = LineCollection([], colors=BLUE, linewidths=0.9)
     bars = PolyCollection([], facecolors=BAR, edgecolors=BLUE, linewidths=0.7)

@@ -24,8 +24,8 @@ class Scene:
 
     Attributes
     ----------
-    radius, ball : float
-        Of the pitch circle and of a ball [m].
+    radius, ball, half_width : float
+        Of the pitch circle and of a ball; half the radial width of the cage [m].
     angles, walls : ndarray
         Of each pocket, and half its angle from wall to wall with the play enlarged [rad].
     offset, turn, lead, force, land_force : ndarray
@@ -34,10 +34,10 @@ class Scene:
         Angle that the ball set has turned by, if the picture is fixed in space; else 0 [rad].
     enlarged : float
         How many times too large movements and plays are drawn [-].
-    gap : float
-        Offset at which the land is touched, enlarged [m]; infinite without a land.
-    wave, lobes, side : float, int, int
-        The land's out-of-round, enlarged [m], its lobes; 1 for a land outside the cage, -1 inside.
+    land, side : float, int
+        Radius of the land in the picture [m], infinite without one; 1 for a land outside the cage, -1 inside.
+    edges : tuple
+        Radius of the inner and the outer edge of the cage [m]; the guided one with its lobes.
     """
 
     radius: float
@@ -51,26 +51,16 @@ class Scene:
     land_force: Array
     frame: Array
     enlarged: float
-    gap: float
-    wave: float
-    lobes: int
+    land: float
     side: int
-
-    @property
-    def half_width(self) -> float:
-        """Half the radial width of the cage [m]."""
-        return 2 * RAIL * self.ball
+    edges: tuple[Array | float, Array | float]
+    half_width: float
 
     @property
     def reach(self) -> float:
         """What the picture must show on either side of the axis [m]."""
         far = float(np.abs(self.offset).max(initial=0.0))
         return self.radius + self.half_width + max(3.0 * self.ball, far)
-
-    @property
-    def land_radius(self) -> float:
-        """Radius of the land in the picture [m]."""
-        return self.radius + self.side * (self.half_width + self.gap)
 
     def ball_places(self, moment: int) -> Array:
         """Return the centre of each ball, shape (ball, 2)."""
@@ -91,10 +81,8 @@ class Scene:
         return [self.placed(outline, moment) for outline in outlines]
 
     def rails(self, moment: int) -> list[Array]:
-        """Return the inner and the outer edge of the cage; the guided one with its lobes."""
-        wave = self.wave * np.cos(self.lobes * ROUND)
-        edges = [self.radius + s * (self.half_width + (wave if s == self.side else 0.0)) for s in (-1, 1)]
-        return [self.placed(ring(edge, ROUND), moment) for edge in edges]
+        """Return the inner and the outer edge of the cage."""
+        return [self.placed(ring(edge, ROUND), moment) for edge in self.edges]
 
     def pocket_arrows(self, moment: int) -> tuple[Array, Array]:
         """Return foot and direction of the pockets' forces on the cage, as long as the root of their share.
@@ -116,7 +104,7 @@ class Scene:
         far = float(np.hypot(*offset))
         if not (force > 0.0 and far > 0.0):
             return np.zeros(2), np.full(2, np.nan)
-        return self.side * offset / far * self.land_radius, -offset / far * np.sqrt(force / largest)
+        return self.side * offset / far * self.land, -offset / far * np.sqrt(force / largest)
 
 
 def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
@@ -136,6 +124,10 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     enlarged = float(f"{max(1.0, min(most, default=1.0)):.2g}")
     guidance, clearance = str(data["cage_guidance"].values), float(data["cage_land_clearance"])
     guided, turn = guidance != "ball" and np.isfinite(clearance), turned_by(data)
+    side, half_width = -1 if guidance == "inner" else 1, 2 * RAIL * ball
+    wave = enlarged * float(data.get("cage_land_out_of_round", 0.0)) if guided else 0.0
+    waved = wave * np.cos(int(data.get("cage_land_lobes", 2)) * ROUND)
+    inner, outer = (radius + s * (half_width + (waved if s == side else 0.0)) for s in (-1, 1))
     return Scene(
         radius=radius,
         ball=ball,
@@ -148,10 +140,10 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
         land_force=np.abs(data["land_force"].values),
         frame=turn if fixed else np.zeros_like(turn),
         enlarged=enlarged,
-        gap=enlarged * 0.5 * clearance if guided else np.inf,
-        wave=enlarged * float(data.get("cage_land_out_of_round", 0.0)) if guided else 0.0,
-        lobes=int(data.get("cage_land_lobes", 2)),
-        side=-1 if guidance == "inner" else 1,
+        land=radius + side * (half_width + enlarged * 0.5 * clearance) if guided else np.inf,
+        side=side,
+        edges=(inner, outer),
+        half_width=half_width,
     )
 
 
