@@ -197,7 +197,9 @@ def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
 
 def test_what_is_no_simulation_is_not_compared(folder, capsys):
     """Nothing there, another verb's answer, a file that is no dataset."""
-    assert "holds no saved simulation" in refused(capsys, "compare", "nowhere", str(folder / "small"))
+    assert "does not contain a saved simulation" in refused(
+        capsys, "compare", "nowhere", str(folder / "small")
+    )
     assert main(["bearing", str(folder / "small.toml"), "--out", str(folder / "bearing")]) == 0
     capsys.readouterr()
     other = str(folder / "bearing" / "bearing.nc")

@@ -137,7 +137,7 @@ GIVEN = {"cage": {"ball_cage_friction": {"value": 0.09}}}
         ("sweep", CASES, {"operation": LOADED}, f"liquid nitrogen; 300 N axial; {FILM}; seed 7"),
     ],
 )
-def test_what_stands_above_a_picture(verb, data, changes, last):
+def test_the_heading_of_a_picture(verb, data, changes, last):
     """Study, operating point without what the answer varies, and which run; a dollar is not a formula."""
     attrs = {"title": "A $5 bearing", "study": json.dumps(STUDY | changes), "seed": 7, "verb": verb}
     assert heading(literal_texts(data.assign_attrs(attrs))) == [r"A \$5 bearing", *last.split("|")]

@@ -95,7 +95,7 @@ def test_a_circle_of_few_samples_is_drawn_as_a_circle():
 
 
 @pytest.mark.parametrize(("turns", "first"), [(20, 15), (6, 0)])
-def test_the_last_turns_of_a_long_path_are_told_from_the_rest(turns, first):
+def test_the_last_turns_of_a_long_path_are_found(turns, first):
     """Five of twenty turns; of a path of six turns all."""
     path = motion.ring(1.0, np.linspace(0.0, 2 * np.pi * turns, 100 * turns + 1))
     # the chords of 100 points a turn are shorter than its arcs
@@ -179,7 +179,7 @@ def test_a_source_has_one_look_everywhere():
 
 @pytest.mark.parametrize(("judged", "spans"), [({"judged_from": 0.008, "judged_until": 0.009}, 3), ({}, 0)])
 def test_the_judged_part_of_a_run_is_shaded(judged, spans):
-    """In energy, offset and work; nothing in a file of an earlier version, which does not say it."""
+    """In energy, offset and work; nothing in a file of an earlier version, which does not record it."""
     page = simulation.run(drawn.run(samples=40, **judged))
     shaded = [patch for axes in page.axes for patch in axes.patches if patch.get_alpha() == 0.2]
     assert [float(patch.get_xy()[0]) for patch in shaded] == pytest.approx([8.0] * spans)

@@ -157,7 +157,7 @@ def test_a_length_is_shown_as_an_engineer_writes_it():
     assert own.get_xdata().tolist() == pytest.approx([0.5])
 
 
-def test_refused_not_run_and_agreed_points_are_told_apart():
+def test_refused_not_run_and_agreed_points_are_distinct():
     """A refusal has a reason of its own; an interrupt leaves nothing; agreeing points lend their value."""
     data = drawn.plane([[NAN, 0.25], [NAN, NAN]]).assign(
         reason=(

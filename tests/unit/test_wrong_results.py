@@ -171,7 +171,7 @@ def test_a_file_that_was_cut_is_refused(path):
 
 SPOILED_HEADS = {
     "seed": (None, "lacks its seed"),
-    "study": ("{", "holds a study that separatrix did not write"),
+    "study": ("{", "contains a study that separatrix did not write"),
     "title": (None, "lacks its title"),
 }
 
@@ -180,8 +180,12 @@ SPOILED_HEADS = {
 def test_a_head_that_is_no_head_is_refused(path, name, capsys):
     """Missing, not JSON, not a table, or nested without end."""
     key, value, message = {
-        "a list": ("study", "[]", "holds a study that separatrix did not write"),
-        "deep": ("study", '{"a":' * 3000 + "1" + "}" * 3000, "holds a study that separatrix did not write"),
+        "a list": ("study", "[]", "contains a study that separatrix did not write"),
+        "deep": (
+            "study",
+            '{"a":' * 3000 + "1" + "}" * 3000,
+            "contains a study that separatrix did not write",
+        ),
         "seed of text": ("seed", "x", "lacks its seed"),
     }.get(name) or (name, *SPOILED_HEADS[name])
     with h5py.File(path, "a") as file:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 VERBS = ("simulate", "rank")
 NUMBERS = ("kick", "run", "end_energy", "largest_offset", "largest_contact_force", "outcome")
-"""What a saved simulation says of itself in one value; not every version has each."""
+"""Single values of a saved simulation; not every version has each."""
 
 DRAWN: dict[str, int] = {
     **dict.fromkeys(("outcome", "kick", "largest_offset"), 0),
@@ -73,7 +73,7 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     first, second : Path
         Folder of an answer of `simulate` or `rank`, or its netCDF file.
     out : Path or None
-        Folder of the files; without it none is written where a document is asked for.
+        Folder of the files; without it none is written with `as_json`.
     as_json : bool
         Whether to print the document instead of the table.
 
@@ -110,7 +110,7 @@ def read(path: Path) -> Saved:
     here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
     if not here or not here[0].exists():
         cure = "Make one with: separatrix simulate STUDY --out DIR, or separatrix rank STUDY --out DIR."
-        raise InputError(str(path), "holds no saved simulation or ranking", cure=cure)
+        raise InputError(str(path), "does not contain a saved simulation or ranking", cure=cure)
     data = results.load(here[0])
     verb, title = str(data.attrs.get("verb", "none")), str(data.attrs.get("title", ""))
     if verb not in VERBS:
@@ -135,7 +135,7 @@ def read(path: Path) -> Saved:
 
 
 def _study(data: xr.Dataset, path: Path) -> dict[str, Any]:
-    """Return the resolved study that an answer holds; the heading of figures can be read from it."""
+    """Return the resolved study of an answer; the heading of figures can be read from it."""
     from separatrix.figures.style import heading
 
     try:
@@ -145,11 +145,11 @@ def _study(data: xr.Dataset, path: Path) -> dict[str, Any]:
             return study
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
         pass
-    raise InputError(str(path), "holds a study that separatrix did not write")
+    raise InputError(str(path), "contains a study that separatrix did not write")
 
 
 def document(first: Saved, second: Saved) -> dict[str, Any]:
-    """Return what each answer says of itself, and the inputs that differ."""
+    """Return the numbers of each answer, and the inputs that differ."""
     from separatrix import __version__
 
     found: dict[str, Any] = {"separatrix_version": __version__, "verb": "compare", "of": first.verb}

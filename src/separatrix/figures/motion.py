@@ -42,7 +42,7 @@ def ring(radius: Array | float, angle: Array) -> Array:
 
 
 def pocket_angles(data: xr.Dataset) -> Array:
-    """Return the angle of each pocket in the frame of the ball set [rad]; even unless the data say more."""
+    """Return the angle of each pocket in the frame of the ball set [rad]; even unless the data differ."""
     if "pocket_angle" in data:
         return np.asarray(data["pocket_angle"].values, dtype=float)
     count = data.sizes["ball"]

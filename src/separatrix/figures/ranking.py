@@ -58,7 +58,7 @@ def file_name(text: str) -> str:
 
 
 def own_environment(data: xr.Dataset) -> int | None:
-    """Return the place of the bearing's own environment; None if the study does not say it."""
+    """Return the place of the bearing's own environment; None if the study does not name one."""
     stated = study_of(data).get("ranking", {}).get("environment", {}).get("value")
     names = [str(name) for name in data["environment"].values]
     return names.index(stated) if stated in names else (0 if len(names) == 1 else None)
@@ -175,8 +175,8 @@ def overview(data: xr.Dataset) -> Figure:
 def _names(axes: Axes, data: xr.Dataset, own: int | None) -> None:
     """Write names and ranks at the left, verdicts at the right: of the own environment, or overall."""
     rows, prefix = (data, "overall") if own is None else (data.isel(environment=own), "material")
-    asked = rows[f"{prefix}_extrapolation"]
-    marks = [EXTRAPOLATED if text else "" for text in asked.values.astype(str)]
+    sentences = rows[f"{prefix}_extrapolation"]
+    marks = [EXTRAPOLATED if text else "" for text in sentences.values.astype(str)]
     ranks = rank_texts(rows[f"{prefix}_rank"].values.tolist())
     named = zip(data["material"].values, marks, ranks, strict=True)
     axes.set_yticks(range(len(marks)), [f"{name}{mark}  {rank}" for name, mark, rank in named])
@@ -187,7 +187,7 @@ def _names(axes: Axes, data: xr.Dataset, own: int | None) -> None:
         axes.text(VERDICT_AT + 0.02, place, verdict or "none", fontsize=7, va="center")
     head = "overall verdict" if own is None else "verdict here"
     axes.text(VERDICT_AT - 0.01, len(marks) - 0.4, head, fontsize=7, color=GREY, va="bottom")
-    explain_extrapolated(axes, asked)
+    explain_extrapolated(axes, sentences)
 
 
 def text_order(data: xr.Dataset) -> list[int]:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from separatrix.figures.style import BLACK, GREY, PAGE, Look, canvas, study_of
 
 DASHES = ((0, (1, 1.5)), (0, (4, 2)), (0, (6, 1.5, 1, 1.5)), (0, (9, 2)), "-")
-"""Lines from the least to the largest race friction: those that run along 0 are told apart."""
+"""Lines from the least to the largest race friction: those that run along 0 remain distinct."""
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:

@@ -108,7 +108,7 @@ class Scene:
 
 
 def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
-    """Return the sizes and movements of a run at some of its samples, in a frame fixed in space if asked for.
+    """Return the sizes and movements of a run at some samples, in the frame of the balls or a fixed one.
 
     Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
     the pockets and the cage in the picture, on two digits; at least 1.

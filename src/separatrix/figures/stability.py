@@ -176,7 +176,7 @@ def draw_chain(axes: Axes, data: xr.Dataset) -> None:
 
 
 def explain_extrapolated(axes: Axes, sentences: xr.DataArray) -> None:
-    """Add to the legend that a friction is extrapolated; the printed answer says in what respect."""
+    """Add to the legend that a friction is extrapolated; the printed answer gives the reason."""
     if (sentences.values.astype(str) != "").any():
         look: Look = {"ls": "", "marker": f"${EXTRAPOLATED}$", "color": GREY, "ms": 4}
         axes.plot([], [], label="friction extrapolated", **look)
@@ -194,8 +194,8 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
     data, friction, own, error = data.isel(material=order), friction[:, order], own[:, order], error[:, order]
     count, top = order.size, axes.get_ylim()[1]
     axes.set(xlim=(-0.6, count - 0.4), title=r"b  Candidates at their $\eta$")
-    asked = (data["material_extrapolation"].values.astype(str) != "").any(axis=0)
-    marks = [f" {EXTRAPOLATED}" if mark else "" for mark in asked]
+    extrapolated = (data["material_extrapolation"].values.astype(str) != "").any(axis=0)
+    marks = [f" {EXTRAPOLATED}" if mark else "" for mark in extrapolated]
     names = [f"{name}{mark}" for name, mark in zip(data["material"].values, marks, strict=True)]
     axes.set_xticks(range(count), names, rotation=90, fontsize=6.5)
     axes.tick_params(axis="x", length=0)

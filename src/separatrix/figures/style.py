@@ -1,4 +1,4 @@
-"""How every figure looks: sizes, colours that colour-blind readers tell apart, labels, and its heading."""
+"""How every figure looks: sizes, colours that colour-blind readers can distinguish, labels and heading."""
 
 from __future__ import annotations
 
@@ -225,7 +225,7 @@ def study_of(data: xr.Dataset) -> dict[str, Any]:
 
 
 def headed(figure: Figure, data: xr.Dataset) -> Figure:
-    """Write above a figure what it was made from; nothing if the dataset does not say it."""
+    """Write above a figure what it was made from; nothing if the dataset does not record it."""
     lines = heading(data)
     if lines:
         width, height = figure.get_size_inches()
@@ -240,7 +240,7 @@ def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     Parameters
     ----------
     data : Dataset
-        Of any verb, from `literal_texts`; what its attributes do not say is left out.
+        Of any verb, from `literal_texts`; what its attributes do not record is left out.
     width : int
         Most letters of a line.
     """
@@ -273,7 +273,7 @@ def varied(data: xr.Dataset) -> set[str]:
 
 
 def _operating_point(study: Mapping[str, Any], without: set[str]) -> Iterator[str]:
-    """Yield medium, speed and load, and film, as far as the study says them and nothing varies them."""
+    """Yield medium, speed and load, and film, as far as the study gives them and nothing varies them."""
 
     def known(section: str, key: str) -> Any:
         return None if key in without else study.get(section, {}).get(key, {}).get("value")

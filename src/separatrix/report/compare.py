@@ -61,12 +61,12 @@ RANKED = ("material", *(f"{name}\nfirst" if i == 0 else "\nsecond" for name in C
 def _rankings(document: Document) -> list[str]:
     """Return friction, margin, P(stable) and verdict of each material in both rankings."""
     names = zip(("first", "second"), document["rankings"], strict=True)
-    said = [(which, f"{one['title']} ({one['path']}, seed {one['seed']})") for which, one in names]
+    named = [(which, f"{one['title']} ({one['path']}, seed {one['seed']})") for which, one in names]
     tables = [
         section(one["name"], table(RANKED, [_ranked(row) for row in one["materials"]]))
         for one in document["environments"]
     ]
-    return [heading("Two rankings"), facts(said), *tables]
+    return [heading("Two rankings"), facts(named), *tables]
 
 
 def _ranked(row: Document) -> list[str]:
