@@ -152,9 +152,10 @@ UNITS: dict[str, dict[str, str]] = {
 LONGEST = 60
 """Characters a quantity may have."""
 
-_QUANTITY = re.compile(
-    r"([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?) ?([A-Za-z\u00b5\u03bc\u00b0].*)?"
-)
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+"""Pattern of a plain number."""
+
+_QUANTITY = re.compile(rf"({NUMBER}) ?([A-Za-z\u00b5\u03bc\u00b0].*)?")
 _GROUPS = re.compile(r"(?<![0-9.])[0-9]{1,3}(?:['\u2019][0-9]{3})+(?![0-9'\u2019])")
 """Digits in groups of three, with apostrophes between: 40'000."""
 
@@ -188,14 +189,14 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
     (77.0, 77.0)
     """
     if not isinstance(text, str):
-        raise _needs_unit(text, unit, where)
+        raise missing_unit(text, unit, where)
     stripped = _GROUPS.sub(lambda groups: re.sub("[^0-9]", "", groups[0]), text.strip(" "), count=1)
     match = _QUANTITY.fullmatch(stripped) if len(stripped) <= LONGEST else None
     if match is None:
         raise _refusal(text, unit, where)
     number, spelling = match.groups()
     if spelling is None:
-        raise _needs_unit(number, unit, where)
+        raise missing_unit(number, unit, where)
     scale = UNITS[unit].get(spelling.translate(_SPELLINGS))
     if scale is None:
         raise _wrong_unit(text, spelling, unit, where)
@@ -203,7 +204,7 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
 
 
 def unit_of(record: type, field: str) -> str:
-    """SI unit in the type of a record's field; ``"-"`` for a ratio, empty for what is no quantity."""
+    """SI unit in the type of a record's field; ``"-"`` for a ratio, empty for what is not a quantity."""
     hint = str(get_type_hints(record, include_extras=True)[field])
     found = re.search(r"Annotated\[float, '([^']+)'\]", hint)
     return found.group(1) if found else ""
@@ -258,10 +259,12 @@ def _integers(text: str) -> tuple[int, int]:
     return int(whole + part) * 10 ** max(power, 0), 10 ** max(-power, 0)
 
 
-def _needs_unit(value: object, unit: str, where: str) -> InputError:
+def missing_unit(value: object, unit: str, where: str, *, in_cell: bool = False) -> InputError:
+    """Refusal of a number without a unit; `in_cell` where the unit has a cell of its own."""
     example = str(value) if _is_number(value) else "1.5"
-    rule = f"needs a unit of {QUANTITIES[unit]}"
-    return InputError(where, rule, shown(value), f'Write "{example} {_HABITS[unit]}".')
+    cure = f"Write {_HABITS[unit]} there." if in_cell else f'Write "{example} {_HABITS[unit]}".'
+    got = str(value) if in_cell else shown(value)
+    return InputError(where, f"needs a unit of {QUANTITIES[unit]}", got, cure)
 
 
 def _is_number(value: object) -> bool:

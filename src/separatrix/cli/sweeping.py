@@ -129,7 +129,7 @@ def _value(parameter: Parameter, text: str, where: str) -> float:
 
 def write_tables(data: xr.Dataset, folder: Path, *, quiet: bool) -> None:  # noqa: ARG001
     """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
-    from separatrix.spreadsheet.writing import (
+    from separatrix.workbook_looks import (
         add_sheet,
         headings,
         new_workbook,
