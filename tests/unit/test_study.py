@@ -104,11 +104,14 @@ WRONG_RECORDS = [
     ),
     (lambda: bearing(ball_diameter=-1.0), "BallBearing.ball_diameter must be > 0; got -1 m"),
     (lambda: bearing(ball_diameter=0.0), "BallBearing.ball_diameter must be > 0; got 0 mm"),
-    (lambda: bearing(ball_diameter="1 kg"), 'ball_diameter needs a unit of length (m, cm, mm, um, ...)'),
+    (lambda: bearing(ball_diameter="1 kg"), "ball_diameter needs a unit of length (m, cm, mm, um, ...)"),
     (lambda: bearing(ball_diameter="1"), 'ball_diameter needs a unit of length; got "1". Write "1 mm".'),
     (lambda: bearing(ball_diameter="-1 mm"), "BallBearing.ball_diameter must be > 0; got -1 mm"),
     (lambda: bearing(ball_diameter=None), "BallBearing.ball_diameter is missing"),
-    (lambda: bearing(contact_angle=15), "contact_angle must be >= 0 and < 90 deg; got 859.43669 deg (15 rad)"),
+    (
+        lambda: bearing(contact_angle=15),
+        "contact_angle must be >= 0 and < 90 deg; got 859.43669 deg (15 rad)",
+    ),
     (lambda: StabilitySettings(kicks=("1 m/s", "2 m")), "StabilitySettings.kicks needs a unit of speed"),
     (lambda: bearing(ball_diameter=True), "BallBearing.ball_diameter must be a finite number > 0; got true"),
     (

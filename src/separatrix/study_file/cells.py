@@ -12,8 +12,8 @@ import re
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeGuard
 
@@ -114,32 +114,38 @@ class Sheet:
         return found
 
 
-def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> Iterator[Sheet]:
-    """Yield the worksheets of a workbook: whole where `is_whole` wants it, of others the first two rows.
+def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> list[Sheet]:
+    """Return the worksheets of a workbook: whole where `is_whole` wants it, of others the first two rows.
 
     Raises
     ------
     InputError
         It is not an .xlsx workbook that can be read safely, or has macros.
     """
-    import openpyxl
+    from openpyxl.reader.excel import ExcelReader
 
     has_links = _refuse_other_kinds(path, label)
     try:
-        with warnings.catch_warnings(), ExitStack() as stack:
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # on parts of the workbook that are not read
-            values, formulas = (
-                openpyxl.load_workbook(path, True, data_only=saved) for saved in (True, False)
-            )
-            stack.callback(values.close)
-            stack.callback(formulas.close)
-            for sheet in values.worksheets:
-                yield _sheet(sheet, formulas[sheet.title], label, is_whole(sheet.title), has_links)
+            content = path.read_bytes()
+            readers = [ExcelReader(BytesIO(content), True, data_only=saved) for saved in (True, False)]
+            for reader in readers:
+                reader.read()
+            for sheet, relation in readers[0].parser.find_sheets():
+                if relation.target not in readers[0].valid_files:
+                    raise InputError(label, "has a sheet without content", shown(sheet.name), SAVE_AGAIN)
+            values, formulas = (reader.wb for reader in readers)
+            sheets = [
+                _sheet(sheet, formulas[sheet.title], label, is_whole(sheet.title), has_links)
+                for sheet in values.worksheets
+            ]
     except InputError:  # which is a ValueError, too
         raise
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, SyntaxError, OSError) as error:
-        why = printable(str(error).partition("\n")[0].replace(str(path), label), 100).rstrip(".")
+        why = printable(str(error.__cause__ or error).partition("\n")[0], 100).rstrip(".")
         raise InputError(label, f"is not a readable workbook: {why}", cure=SAVE_AGAIN) from None
+    return sheets
 
 
 def _refuse_other_kinds(path: Path, label: str) -> bool:
