@@ -158,7 +158,10 @@ RECORDS = [
     ({"land_count": 3} | GUIDED, "land_count must be a whole number from 1 to 2; got 3"),
     ({"land_count": 2}, "land_count has no meaning for a cage guided by its balls"),
     ({"land_out_of_round": 1e-5}, "land_out_of_round has no meaning for a cage guided by its balls"),
-    ({"land_lobes": 1} | GUIDED, "land_lobes must be a whole number from 2 to 100; got 1. One lobe is an offset"),
+    (
+        {"land_lobes": 1} | GUIDED,
+        "land_lobes must be a whole number from 2 to 100; got 1. One lobe is an offset",
+    ),
     ({"land_out_of_round": 1e-4} | GUIDED, "the square of land_lobes, 100 um: beyond it a lobe touches"),
     (
         {"land_out_of_round": 5e-5, "land_lobes": 3} | GUIDED,

@@ -12,7 +12,7 @@ from typing import Any
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, together
 from separatrix.library import Library, beside, library_files, with_files
-from separatrix.toml_text import label_of, path_text, read_toml
+from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
 from separatrix.toml_values import folded, nearest
 from separatrix.units import printable, shown
 
@@ -78,9 +78,7 @@ class Document:
     label: str
     top: dict[str, Entry] = field(default_factory=dict)
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
-    places: dict[str, str] = field(default_factory=dict)
-    """File and line, or sheet and cell, of each path."""
-
+    places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
     """Of the uncertain numbers, by their names, as they are read."""
@@ -88,16 +86,10 @@ class Document:
     libraries: list[LibraryPlace] = field(default_factory=list)
     folder: Path = Path()
 
-    def place(self, path: str) -> str:
-        """File and line, or sheet and cell, of the longest part of a path that has one."""
-        known = [p for p in self.places if path.startswith(p) and path[len(p) : len(p) + 1] in (*".,[ ", "")]
-        return self.places[max(known, key=len)] if known else self.label
-
     def locate(self, path: str) -> str:
-        """Return a path with its place: ``case.toml, line 7: [cage] mass``; one of another file as it is."""
-        if not path:
-            return self.label
-        return f"{self.place(path)}: {path}" if path.startswith("[") or path in TOP else path
+        """Return a path with its place; one of another file as it is."""
+        own = not path or path.startswith("[") or path in TOP
+        return self.places.locate(path) if own else path
 
     def refusal(self) -> InputError:
         """Everything that is wrong, each fault in its place."""
@@ -173,9 +165,7 @@ def _own(path: Path) -> Document:
         return document_of(path)
     data, lines = read_toml(path)
     document = Document(label_of(path), folder=path.parent)
-    for dotted, line in lines.items():
-        for at in _paths(dotted, data):
-            document.places.setdefault(at, f"{document.label}, line {line}")
+    document.places = places_of(document.label, data, lines)
     for name, value in data.items():
         if len(document.problems) > MOST_PROBLEMS:
             break
@@ -193,33 +183,17 @@ def _own(path: Path) -> Document:
             cure = nearest(name, SECTIONS)
             document.problems.append(InputError(at, "is not a section of a study", cure=cure))
         else:
-            where = f"{document.place(name)}: {printable(name) or chr(34) * 2}"
+            where = f"{document.places.of(name)}: {printable(name) or chr(34) * 2}"
             document.problems.append(InputError(where, "is outside a section", cure=_OUTSIDE))
     document.libraries.append(LibraryPlace(path, document.top.get("library")))
     return document
-
-
-def _paths(dotted: str, data: dict[str, Any]) -> Iterator[str]:
-    """Yield a dotted key as the paths of faults, and those of what it is in: ``[ranking] candidates[1]``."""
-    name, *keys = dotted.split(".")
-    if not keys and not isinstance(data.get(name), dict | list):
-        yield name
-        return
-    path = f"[{printable(name)}]"
-    yield path
-    for i, key in enumerate(keys):
-        if key.isdigit() and i > 0:
-            path += f"[{int(key) + 1}]"
-        elif not key.isdigit():
-            path += f"{' ' if i == 0 else '.'}{key}"
-        yield path
 
 
 def _merged(base: Document, document: Document) -> Document:
     merged = Document(
         document.label,
         {"title": base.top["title"], **document.top} if "title" in base.top else document.top,
-        places=base.places | document.places,
+        places=Places(document.label, base.places.known | document.places.known),
         problems=base.problems + document.problems,
         libraries=document.libraries + base.libraries,
         folder=document.folder,
@@ -315,7 +289,7 @@ def _existing(folder: Path, name: Any) -> list[Path]:
         found = None
     if found is None:
         cure = "It is taken from the folder of the study."
-        raise InputError("library", "does not name a file or a folder", shown(name), cure)
+        raise InputError("library", "does not name a file or folder", shown(name), cure)
     if not found:
         raise InputError("library", "names a folder without a .toml file", shown(name))
     return found

@@ -6,8 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 from separatrix.cage_choice import NAMELESS
+from separatrix.distribution import Normal
 from separatrix.errors import InputError, together
 from separatrix.library import Library
+from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import BallBearing, CageDesign, Candidate, Friction, Operation, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
@@ -19,8 +21,8 @@ from separatrix.study_file.tested_friction import (
     scatter_of,
     tests_file,
 )
-from separatrix.study_file.values import Uncertain, gathered
-from separatrix.toml_values import Reader, build, folded, table, text
+from separatrix.study_file.values import Uncertain, friction_deviation, gathered, number, unwrapped
+from separatrix.toml_values import Reader, build, folded, ratio, table, text, whole
 from separatrix.units import shown
 
 MOST_CANDIDATES = 1000
@@ -105,12 +107,35 @@ def _frictions(value: Any, at: str) -> Uncertain:
     for name, item in value.items():
         try:
             environment = text(name, f"{at}, name of an environment,")
-            frictions[environment] = values.friction(item, f'{at}."{environment[:60]}"')
+            frictions[environment] = _friction(item, f'{at}."{environment[:60]}"')
         except InputError as error:
             problems.append(error)
     if problems:
         raise together(problems)
     return Uncertain(*gathered(frictions))
+
+
+def _friction(value: Any, where: str) -> Friction | Uncertain:
+    """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
+    if isinstance(value, dict) and not {"between", "samples"} & set(value):
+        readers: dict[str, Reader] = {
+            "mean": ratio,
+            "standard_deviation": ratio,
+            "count": whole,
+            "source": text,
+        }
+        given = {**value, "standard_deviation": friction_deviation(value, where)}
+        kept = {key: item for key, item in given.items() if key in value}
+        stated = build(Friction, table(kept, where, readers, ("mean",)), where)
+        return refuse_scatter_about_zero(stated, where)
+    mean, found = unwrapped(number(ratio, "-")(value, where))
+    if not found:
+        return build(Friction, {"mean": mean}, where)
+    deviation = found[""].standard_deviation
+    known = build(Friction, {"mean": mean, "standard_deviation": deviation}, where)
+    if isinstance(found[""], Normal):
+        refuse_scatter_about_zero(known, where)
+    return Uncertain(known, found)
 
 
 _CANDIDATE: dict[str, Reader] = {

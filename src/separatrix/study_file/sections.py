@@ -134,10 +134,10 @@ def build_study(document: Document, name: str) -> Study:
     study = None
     if not document.problems:
         origins = _origins(document) | ({"ranking.environment": FROM_BEARING} if fits else {})
-        records = used_records(library, document)
-        made = {"name": name, "title": title or name, "origins": origins, "records": records, **parts}
+        made = {"name": name, "title": title or name, "origins": origins, **parts}
         study = attempt(document, record_of, document, Study, made)
     if study is not None:
+        study = replace(study, records=used_records(library, document))
         study = _with_distributions(document, study)
     if study is None or document.problems:
         raise document.refusal()
@@ -350,7 +350,7 @@ def _cage(document: Document, given: dict[str, Any], refused: list[str]) -> dict
             f"[cage] {land[0]}", "needs guidance: without it the balls guide the cage", cure=cure
         )
     if land and given["guidance"] is Guidance.BALL:
-        place = document.place(f"[cage] {land[0]}")
+        place = document.places.of(f"[cage] {land[0]}")
         sentence = f'{place}: [cage] {", ".join(land)}: not used, because guidance is "ball".'
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
         given = {key: value for key, value in given.items() if key not in land}
@@ -374,7 +374,7 @@ def _origins(document: Document) -> dict[str, str]:
         for key, entry in entries.items():
             plain = not isinstance(entry.value, dict | list) or f"{section}.{key}" in document.distributions
             shown_text = f": {values.written(entry.value)}" if plain else ""
-            origins[f"{section}.{key}"] = document.place(f"[{section}] {key}") + shown_text
+            origins[f"{section}.{key}"] = document.places.of(f"[{section}] {key}") + shown_text
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"
     return origins

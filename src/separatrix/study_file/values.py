@@ -22,8 +22,7 @@ from separatrix.distribution import (
 )
 from separatrix.errors import InputError
 from separatrix.library import Library
-from separatrix.measured_friction import refuse_scatter_about_zero
-from separatrix.study import Friction, Material
+from separatrix.study import Material
 from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ratio, table, text, whole
 from separatrix.units import NUMBER, parse, printable, shown
 
@@ -152,24 +151,26 @@ def _sides(text: str) -> list[str]:
 
 def _table(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
     """Read a table with bounds, with mean and standard deviation, or with samples."""
-    known = {"between": _between, "mean": _moments, "standard_deviation": _moments, "samples": _sampled}
+    forms = {"between": "between", "log": "between", "mean": "mean", "standard_deviation": "mean"}
+    forms["samples"] = "samples"
     for key in value:
-        if key not in (*known, "log"):
-            at = f"{where}.{printable(key) or chr(34) * 2}"
-            raise InputError(
-                at, f"is not a key of a distribution: {_FORMS}", cure=nearest(key, (*known, "log"))
-            )
-    forms = {known[key] for key in value if key in known}
-    if len(forms) != 1:
-        rule = f"must have {_FORMS}" if not forms else f"must have only one of {_FORMS}"
+        if key not in forms:
+            at, cure = f"{where}.{printable(key) or chr(34) * 2}", nearest(key, forms)
+            raise InputError(at, f"is not a key of a distribution: {_FORMS}", cure=cure)
+    found = {forms[key] for key in value if key != "log"}
+    if len(found) != 1:
+        rule = f"must have {_FORMS}" if not found else f"must have only one of {_FORMS}"
         raise InputError(where, rule, written(value))
     if "log" in value and "between" not in value:
         raise InputError(f"{where}.log", "has a meaning only with between")
-    return forms.pop()(value, where, reader, unit)
+    if "samples" in found:
+        if not isinstance(value["samples"], list):
+            raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(value["samples"]))
+        return _samples(value["samples"], f"{where}.samples", reader, written(value))
+    return _between(value, where, reader) if "between" in found else _moments(value, where, reader, unit)
 
 
-def _between(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
-    del unit
+def _between(value: dict[str, Any], where: str, reader: Reader) -> Distribution:
     bounds, log = value["between"], value.get("log", False)
     if not isinstance(log, bool):
         raise InputError(f"{where}.log", "must be true or false", shown(log))
@@ -197,14 +198,6 @@ def _moments(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Di
     else:
         deviation = _not_zero(reader(width, at), width, at)
     return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
-
-
-def _sampled(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
-    del unit
-    items = value["samples"]
-    if not isinstance(items, list):
-        raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(items))
-    return _samples(items, f"{where}.samples", reader, written(value))
 
 
 def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples:
@@ -389,26 +382,3 @@ def material_in_place(value: Any, where: str, name: str = NAMELESS) -> Material 
     given, found = gathered(table(value, where, readers, ("elastic_modulus", "poisson_ratio")))
     made = build(Material, {"name": name, **given}, where)
     return Uncertain(made, found) if found else made
-
-
-def friction(value: Any, where: str) -> Friction | Uncertain:
-    """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
-    if isinstance(value, dict) and not {"between", "samples"} & set(value):
-        readers: dict[str, Reader] = {
-            "mean": ratio,
-            "standard_deviation": ratio,
-            "count": whole,
-            "source": text,
-        }
-        given = {**value, "standard_deviation": friction_deviation(value, where)}
-        kept = {key: item for key, item in given.items() if key in value}
-        stated = build(Friction, table(kept, where, readers, ("mean",)), where)
-        return refuse_scatter_about_zero(stated, where)
-    mean, found = unwrapped(number(ratio, "-")(value, where))
-    if not found:
-        return build(Friction, {"mean": mean}, where)
-    deviation = found[""].standard_deviation
-    known = build(Friction, {"mean": mean, "standard_deviation": deviation}, where)
-    if isinstance(found[""], Normal):
-        refuse_scatter_about_zero(known, where)
-    return Uncertain(known, found)

@@ -38,7 +38,7 @@ from separatrix.study_file.cells import (
 )
 from separatrix.study_file.document import SECTIONS, TOP, Document, Entry, LibraryPlace
 from separatrix.study_numbers import numbers_of
-from separatrix.toml_text import label_of
+from separatrix.toml_text import Places, label_of
 from separatrix.toml_values import nearest
 from separatrix.units import UNITS, missing_unit, printable, shown, unit_of
 
@@ -68,7 +68,8 @@ def document_of(path: Path) -> Document:
     ValidityWarning
         It holds formulas: their saved values are taken.
     """
-    document = Document(label_of(path), folder=path.parent)
+    label = label_of(path)
+    document = Document(label, places=Places(label), folder=path.parent)
     formulas: list[str] = []
     known: dict[str, str] = {}
     for sheet in sheets_of(path, document.label, lambda name: _folded(name) in _NAMES):
@@ -119,9 +120,9 @@ def _add(document: Document, sheet: Sheet, section: str) -> list[str]:
     entries: dict[str, Entry] = {}
     for row in rows:
         path = f"[{section}] {row.key}" if section != STUDY_SHEET else row.key
-        document.places |= {path: row.place, f"{path}, after +-,": row.spread_place}
+        document.places.known |= {path: row.place, f"{path}, after +-,": row.spread_place}
         key, *inside = row.key.split(".")
-        document.places.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.place)
+        document.places.known.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.place)
         if section == STUDY_SHEET and key not in TOP:
             cure = f"On this sheet there are only {', '.join(TOP)}."
             document.problems.append(
@@ -143,7 +144,7 @@ def _add(document: Document, sheet: Sheet, section: str) -> list[str]:
     if section == STUDY_SHEET:
         document.top.update(entries)
     elif entries:
-        document.places[f"[{section}]"] = sheet.place
+        document.places.known[f"[{section}]"] = sheet.place
         document.sections.setdefault(section, {}).update(entries)
     return [formula for row in rows for formula in row.formulas]
 
@@ -211,9 +212,9 @@ def _add_candidates(document: Document, sheet: Sheet) -> list[str]:
             formulas += [cell.formula] if cell.formula else []
             first, *rest = column.path
             names = [f'"{rest[0][:60]}"', *rest[1:]] if first == "friction" else rest
-            document.places[".".join([f"{at}.{first}", *names])] = cell.place
+            document.places.known[".".join([f"{at}.{first}", *names])] = cell.place
             if column.what == "mean":
-                document.places[".".join([f"{at}.{first}", *names[:-1]])] = cell.place
+                document.places.known[".".join([f"{at}.{first}", *names[:-1]])] = cell.place
         if item and "name" not in item:
             number = next((column.number for column in columns if column.what == "name"), 1)
             rule = f"must name the candidate of row {row}"
@@ -222,9 +223,9 @@ def _add_candidates(document: Document, sheet: Sheet) -> list[str]:
             given = item.get("friction", {})
             alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
             items.append(item | ({"friction": alone} if alone else {}))
-            document.places[at] = f"{sheet.place}, row {row}"
+            document.places.known[at] = f"{sheet.place}, row {row}"
     if items:
-        document.places["[ranking] candidates"] = sheet.place
+        document.places.known["[ranking] candidates"] = sheet.place
         document.sections.setdefault("ranking", {})[CANDIDATES] = Entry(items, document.folder)
     return formulas
 
