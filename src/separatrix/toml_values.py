@@ -126,6 +126,8 @@ def build(record: type[Record], values: dict[str, Any], where: str) -> Record:
 def _as_number(value: Any) -> str:
     """What helps where a number is given as text."""
     number = value.replace(",", ".") if isinstance(value, str) else ""
+    if number.endswith("%") and re.fullmatch(NUMBER, share := number.removesuffix("%").strip()):
+        return f"Write {float(share) / 100.0:.12g}."
     if re.fullmatch(NUMBER, number.strip()) is None:
         return ""
     point = " with a decimal point" if "," in value else ""
