@@ -23,7 +23,7 @@ _PUBLIC = {
     "lubrication": "LubricationCurve lubrication_curve",
     "ranking": "Ranking rank",
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
-    "results": "dataset document load save",
+    "present": "dataset document load report save to_dataframe to_xarray",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",

@@ -306,18 +306,15 @@ def _refusal(text: str, unit: str, where: str) -> InputError:
 
 def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     plain = spelling.translate(_SPELLINGS)
-    others = [QUANTITIES[other] for other, known in UNITS.items() if plain in known]
     rule = f"needs a unit of {QUANTITIES[unit]} ({spellings(unit)})"
-    value = shown(text) + (f", which is a {others[0]}" if others else "")
-    return InputError(where, rule, value, "" if others else _near(plain, unit))
-
-
-def _near(spelling: str, unit: str) -> str:
+    others = [QUANTITIES[other] for other, known in UNITS.items() if plain in known]
+    if others:
+        return InputError(where, rule, f"{shown(text)}, which is a {others[0]}")
     from difflib import get_close_matches
 
     known = {name.casefold(): name for name in UNITS[unit]}
-    found = get_close_matches(spelling.casefold(), known, 1, 0.5)
-    return f'Did you mean "{known[found[0]]}"?' if found else ""
+    found = get_close_matches(plain.casefold(), known, 1, 0.5)
+    return InputError(where, rule, shown(text), f'Did you mean "{known[found[0]]}"?' if found else "")
 
 
 _HABITS = {
