@@ -25,10 +25,14 @@ _PUBLIC = {
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
     "results": "dataset document load save",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
+    "stability.map": "stability_map",
+    "stability.map_records": "MapAxis MapPoint MapQuestion StabilityMap",
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
     "traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "tribometer.reading": "read_log",
+    "tribometer.reduction": "reduce_log",
 }
 """Module -> the public names it holds."""
 

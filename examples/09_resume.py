@@ -1,0 +1,34 @@
+"""Interrupt a long job and resume it: finished runs are kept in a file."""
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+import separatrix
+
+study = separatrix.read_study("momentum-wheel")
+quick = replace(study, stability=replace(study.stability, runs=8, duration=0.02))
+
+
+def stop(done: int, _total: int) -> None:
+    """Press Ctrl-C after two pieces of work."""
+    if done == 2:
+        raise KeyboardInterrupt
+
+
+with tempfile.TemporaryDirectory() as folder:
+    ledger = separatrix.Ledger(Path(folder) / "finished-runs.sqlite")
+    part = separatrix.rank(quick, ledger=ledger, progress=stop)
+    resumed = separatrix.rank(quick, ledger=ledger)
+    taken = ledger.taken
+    ledger.close()
+
+print(f"complete: {part.complete}, then {resumed.complete}; {taken} runs were taken from the file")
+same = repr(resumed) == repr(separatrix.rank(quick))
+
+rows = resumed.environments[0].materials
+figure, axes = plt.subplots(layout="constrained")
+axes.bar([row.name for row in rows], [row.probability_stable for row in rows])
+axes.set_ylabel("P(stable) [-]")
