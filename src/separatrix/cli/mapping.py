@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
@@ -10,9 +10,9 @@ from separatrix.errors import InputError
 from separatrix.units import parse
 
 if TYPE_CHECKING:
-    from separatrix.chain import CageState
-    from separatrix.cli.answers import Work
-    from separatrix.stability.map_records import MapAxis, MapQuestion, StabilityMap
+    from separatrix.answers import MapAnswer
+    from separatrix.runner import Runner
+    from separatrix.stability.map_records import MapAxis, MapQuestion
     from separatrix.study import Study
 
 MOST_RUNS = 1_000_000
@@ -29,39 +29,17 @@ class MapOptions:
     kick: str | None = None
     adaptive: bool = False
 
+    def compute(self, study: Study, runner: Runner) -> MapAnswer:
+        """Answer the verb.
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapAnswer:
-    """The map, and the cage of the study itself."""
+        Raises
+        ------
+        InputError
+            An option cannot be understood, or no point can be run.
+        """
+        from separatrix.answers import stability_map
 
-    cage: CageState
-    map: StabilityMap
-
-
-def whole_map(study: Study, work: Work, options: MapOptions | None = None) -> MapAnswer:
-    """Run the points of a map.
-
-    Raises
-    ------
-    InputError
-        An option cannot be understood, or no point can be run.
-    """
-    from separatrix.cage_choice import known_friction
-    from separatrix.chain import cage_state
-    from separatrix.cli.expected import expected_map
-    from separatrix.ranking.friction import cage_seen
-    from separatrix.stability.map import stability_map, value_here
-
-    question = map_question(study, options or MapOptions())
-    study = cage_seen(study)
-    question = replace(question, study=study)
-    state = cage_state(study, friction=known_friction(study) or 0.0)
-    x, y = (replace(axis, here=value_here(study, state, axis.parameter)) for axis in (question.x, question.y))
-    work.expect(lambda: expected_map(question, jobs=work.jobs), at_most=question.adaptive)
-    found = stability_map(
-        replace(question, x=x, y=y), jobs=work.jobs, progress=work.progress, ledger=work.ledger
-    )
-    return MapAnswer(cage=state, map=found)
+        return stability_map(map_question(study, self), runner)
 
 
 def map_question(study: Study, options: MapOptions) -> MapQuestion:
@@ -93,9 +71,9 @@ def _refuse_twice(x: MapAxis, y: MapAxis) -> None:
 def _kick(text: str | None, study: Study, x: MapAxis, y: MapAxis) -> float:
     """Kick of every point; of no meaning where an axis is the kick."""
     if text is None:
-        from separatrix.chain import stability_settings
+        from separatrix.chain import solve
 
-        return stability_settings(study).middle_kick
+        return solve(study).stability.middle_kick
     if "kick" in (x.parameter, y.parameter):
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     return kick_speed(text)

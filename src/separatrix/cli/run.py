@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import xarray as xr
 
     from separatrix.ledger import Ledger
@@ -36,6 +37,7 @@ class Options:
     quiet: bool
     jobs: int
     full: bool = False
+    cluster: str | None = None
 
 
 def run(verb: Verb, name: str, options: Options) -> int:
@@ -55,23 +57,20 @@ def run(verb: Verb, name: str, options: Options) -> int:
     SeparatrixError
         Wrong input, found before anything is computed where it can be.
     """
+    from separatrix.results import document
     from separatrix.study_file import read_study, require
 
     with noted_warnings() as notes:
         study = read_study(name)
         require(study, verb.name, *verb.needs)
         with _folder(verb, study, options) as folder:
-            document = _document(verb, study, options, notes, folder)
-            _deliver(verb, document, folder, options)
-    return _status(document, goes_on=verb.keeps_runs and folder is not None)
-
-
-def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
-    """Return the exit status; an answer cut short says so on standard error."""
-    if document.get("complete", True):
+            record, complete = _record(verb, study, options, folder)
+            answered = document(verb.name, record, study, grouped(notes))
+            _deliver(verb, answered, folder, options)
+    if complete:
         return ANSWERED
-    more = " The same call goes on from there." if goes_on else ""
-    return interrupted(f"what was finished is in the answer, marked complete: false.{more}")
+    more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""
+    return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
 def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:
@@ -83,20 +82,38 @@ def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractCo
     return writable_folder(Path(study.name))
 
 
-def _document(
-    verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None
-) -> dict[str, Any]:
-    """Compute the answer and return it as plain data with its provenance."""
-    from separatrix.results import document
+def _record(verb: Verb, study: Study, options: Options, folder: Path | None) -> tuple[Any, bool]:
+    """Compute the answer, or the part that was finished before an interrupt; return whether it is all."""
+    from separatrix.runner import Interrupted, Runner
 
+    complete = True
     with (
         progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress,
         _ledger(folder if verb.keeps_runs else None) as ledger,
+        _executor(options.cluster) as (executor, threads),
     ):
-        record = verb.compute(study, Work(jobs=options.jobs, progress=progress, ledger=ledger))
+        runner = Runner(jobs=threads or options.jobs, progress=progress, ledger=ledger, executor=executor)
+        try:
+            record = verb.compute(study, runner)
+        except Interrupted as stop:
+            if stop.finished is None:
+                raise
+            record, complete = stop.finished, False
     if ledger is not None and ledger.taken and not options.quiet:
         complain(f"{ledger.taken} runs were taken from {ledger.path}, where an earlier call had kept them.")
-    return document(verb.name, record, study, grouped(notes))
+    return record, complete
+
+
+@contextlib.contextmanager
+def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
+    """Yield what computes runs on a cluster, and how many at once; None and 0 without one."""
+    if address is None:
+        yield None, 0
+        return
+    from separatrix.cluster import cluster
+
+    with cluster(address) as found:
+        yield found
 
 
 @contextlib.contextmanager

@@ -8,21 +8,12 @@ from typing import TYPE_CHECKING
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
-    from separatrix.chain import CageState
-    from separatrix.cli.answers import Work
-    from separatrix.explore.records import UncertainStudy
+    from separatrix.answers import SensitivityAnswer
+    from separatrix.runner import Runner
     from separatrix.study import Study
 
 SAMPLES = 512
 FEWEST, MOST = 64, 65_536
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensitivityAnswer:
-    """The uncertain study, and the cage of its reference candidate for the numbers of the chain."""
-
-    cage: CageState
-    uncertain: UncertainStudy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,27 +35,8 @@ class SensitivityOptions:
             rule = f"must be a power of two from {FEWEST} to {MOST}"
             raise InputError("--samples", rule, got=str(self.samples), cure=cure)
 
-    def compute(self, study: Study, work: Work) -> SensitivityAnswer:
+    def compute(self, study: Study, runner: Runner) -> SensitivityAnswer:
         """Answer the verb."""
-        return sensitivity(study, work, self.samples)
+        from separatrix.answers import sensitivity
 
-
-def sensitivity(study: Study, work: Work, samples: int = SAMPLES) -> SensitivityAnswer:
-    """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
-    from separatrix.cage_choice import reference_candidate, reference_friction, required_environment
-    from separatrix.chain import cage_state
-    from separatrix.cli.expected import expected_uncertain
-    from separatrix.draws import uncertain_inputs
-    from separatrix.explore import uncertain_study
-    from separatrix.ranking import ranking_question
-    from separatrix.ranking.friction import as_pockets_see, cage_seen
-
-    asked = ranking_question(study)
-    required_environment(study, asked)
-    seen = cage_seen(study, marked=True)
-    own = reference_candidate(study, asked)
-    state = cage_state(seen, material=own.material, friction=reference_friction(seen, asked))
-    uncertain_inputs(as_pockets_see(study))  # refused before anything is timed
-    work.expect(lambda: expected_uncertain(study, samples, jobs=work.jobs))
-    found = uncertain_study(study, samples, jobs=work.jobs, progress=work.progress, ledger=work.ledger)
-    return SensitivityAnswer(cage=state, uncertain=found)
+        return sensitivity(study, self.samples, runner)

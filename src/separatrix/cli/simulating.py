@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from separatrix.cli import answers
 from separatrix.cli.console import progress_bar
 from separatrix.cli.mapping import kick_speed
 from separatrix.errors import InputError
@@ -15,6 +14,8 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+    from separatrix.answers import SimulationAnswer
+    from separatrix.runner import Runner
     from separatrix.study import Study
 
 KINDS = ("gif", "mp4")
@@ -52,10 +53,11 @@ class SimulateOptions:
 
             video_encoder()
 
-    def compute(self, study: Study, work: answers.Work) -> answers.SimulationAnswer:
+    def compute(self, study: Study, runner: Runner) -> SimulationAnswer:  # noqa: ARG002
         """Follow the run."""
-        kick = None if self.kick is None else kick_speed(self.kick)
-        return answers.simulate(study, work, kick=kick, run=self.run)
+        from separatrix.answers import simulate
+
+        return simulate(study, kick=None if self.kick is None else kick_speed(self.kick), run=self.run)
 
     def draw(self, data: xr.Dataset, folder: Path, *, quiet: bool) -> None:
         """Write the animation, if one is asked for."""

@@ -18,8 +18,8 @@ from separatrix.units import parse, shown
 if TYPE_CHECKING:
     import xarray as xr
 
-    from separatrix.cli.answers import Work
     from separatrix.explore.sweep import Case, Sweep
+    from separatrix.runner import Runner
     from separatrix.stability.map_parameters import Parameter
     from separatrix.study import Study
 
@@ -39,7 +39,7 @@ class SweepOptions:
     cases: Path | None = None
     verdicts: bool = False
 
-    def compute(self, study: Study, work: Work) -> Sweep:
+    def compute(self, study: Study, runner: Runner) -> Sweep:
         """Answer the verb.
 
         Raises
@@ -49,14 +49,7 @@ class SweepOptions:
         """
         from separatrix.explore.sweep import sweep
 
-        return sweep(
-            study,
-            self.asked(),
-            verdicts=self.verdicts,
-            jobs=work.jobs,
-            progress=work.progress,
-            ledger=work.ledger,
-        )
+        return sweep(study, self.asked(), verdicts=self.verdicts, runner=runner)
 
     def asked(self) -> list[Case]:
         """Return every case: the rows of the table, or all that the ranges give together.

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from separatrix.cli import answers, mapping, sensitivity, sweeping
+from separatrix.cli.mapping import MapOptions
+from separatrix.cli.sensitivity import SensitivityOptions
+from separatrix.cli.simulating import SimulateOptions
+from separatrix.cli.sweeping import SweepOptions, write_tables
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import xarray as xr
 
+    from separatrix.runner import Runner
     from separatrix.study import Study
 
 
@@ -31,85 +36,100 @@ class Verb:
     shown stands under the same name in `separatrix.results`, `separatrix.report` and `separatrix.figures`.
     `keeps_runs` is for an answer whose runs are kept in its folder as they are finished; `draw` is for
     moving pictures and tables beside the figures; `has_workbook` for an answer that is also written as a
-    workbook; `has_more` for one that is longer than a screen, and has an option for all of it.
+    workbook.
     """
 
     name: str
     help: str
-    compute: Callable[[Study, answers.Work], Any]
+    compute: Callable[[Study, Runner], Any]
     needs: tuple[str, ...] = ()
     writes_files: bool = True
     keeps_runs: bool = False
     draw: Draw | None = None
     has_workbook: bool = False
-    has_more: bool = False
+
+
+def _of_chain(name: str) -> Callable[[Study, Runner], Any]:
+    """What answers a verb that runs no cage; imported when it is asked."""
+
+    def compute(study: Study, runner: Runner) -> Any:  # noqa: ARG001
+        return getattr(importlib.import_module("separatrix.answers"), name)(study)
+
+    return compute
+
+
+def _long(name: str) -> Callable[[Study, Runner], Any]:
+    """What answers a verb of many runs; imported when it is asked."""
+
+    def compute(study: Study, runner: Runner) -> Any:
+        return getattr(importlib.import_module("separatrix.answers"), name)(study, runner)
+
+    return compute
 
 
 VERBS: tuple[Verb, ...] = (
     Verb(
         name="check",
         help="Read a study; show what was understood and from where.",
-        compute=answers.check,
+        compute=_of_chain("check"),
         writes_files=False,
-        has_more=True,
     ),
     Verb(
         name="bearing",
         help="Ball loads, contact angles, speeds and contacts.",
-        compute=answers.bearing,
+        compute=_of_chain("bearing"),
     ),
     Verb(
         name="traction",
         help="Traction curves of ball on race, and their slopes.",
-        compute=answers.traction,
+        compute=_of_chain("traction"),
     ),
     Verb(
         name="restitution",
         help="Restitution factor of a ball/cage impact.",
-        compute=answers.restitution,
+        compute=_of_chain("restitution"),
         needs=("cage",),
     ),
     Verb(
         name="stability",
         help="Critical friction against restitution factor.",
-        compute=answers.stability,
+        compute=_long("stability"),
         needs=("cage",),
         keeps_runs=True,
     ),
     Verb(
         name="map",
         help="Where the cage is stable in the plane of two parameters.",
-        compute=mapping.whole_map,
+        compute=MapOptions().compute,
         needs=("cage",),
         keeps_runs=True,
     ),
     Verb(
         name="simulate",
         help="Follow one run of the cage in the bearing plane.",
-        compute=answers.simulate,
+        compute=SimulateOptions().compute,
         needs=("cage",),
     ),
     Verb(
         name="rank",
         help="Rank the cage materials: verdict, margin, reason.",
-        compute=answers.rank,
+        compute=_long("rank"),
         keeps_runs=True,
         has_workbook=True,
-        has_more=True,
         needs=("cage", "ranking"),
     ),
     Verb(
         name="sensitivity",
         help="Verdicts over uncertain inputs, and what to test next.",
-        compute=sensitivity.sensitivity,
+        compute=SensitivityOptions().compute,
         needs=("cage", "ranking"),
         keeps_runs=True,
     ),
     Verb(
         name="sweep",
         help="Chain and verdict of many cases: one table.",
-        compute=sweeping.SweepOptions().compute,
+        compute=SweepOptions().compute,
         keeps_runs=True,
-        draw=sweeping.write_tables,
+        draw=write_tables,
     ),
 )

@@ -110,7 +110,7 @@ def restitution(record: Any) -> Document:
     other = record.lubrication
     curve = {} if other is not None else {"lubrication_reason": "The study names no film material."}
     return (
-        before_cage(record.state)
+        before_cage(record.solution)
         | {"film_thickness_here": record.film_thickness, "lubrication": plain(other, "lubrication")}
         | curve
     )
@@ -118,12 +118,11 @@ def restitution(record: Any) -> Document:
 
 def before_cage(record: Any) -> Document:
     """Return the restitution factor, the damping behind it, and the contacts with their slopes."""
-    links = record.traction
-    races = {"inner": links.inner, "outer": links.outer}
+    races = {"inner": record.traction.inner, "outer": record.traction.outer}
     return (
         plain_record(record.restitution, "restitution")
         | {"stiffness_source": record.stiffness_source}
-        | {race: contact(getattr(links.bearing, race)) | _slope(curve) for race, curve in races.items()}
+        | {race: contact(getattr(record.bearing, race)) | _slope(curve) for race, curve in races.items()}
     )
 
 
@@ -134,7 +133,7 @@ def _slope(curve: Any) -> Document:
 
 def stability(record: Any) -> Document:
     """Return the stability curve with its band, the linear limit, and the cage they hold for."""
-    return plain_record(record.curve, "stability") | cage(record.cage)
+    return plain_record(record.curve, "stability") | cage(record)
 
 
 def cage(state: Any) -> Document:
@@ -142,9 +141,9 @@ def cage(state: Any) -> Document:
     orbits = {
         "half_play": plain(state.cage.half_play),
         "lead_amplitude": plain(state.cage.lead_amplitude),
-        "orbital_share": plain(state.orbital_share),
+        "orbital_share": plain(state.solution.orbital_share),
     }
-    return {"chain": before_cage(state.restitution) | orbits, "cage": plain_record(state.cage, "cage")}
+    return {"chain": before_cage(state.solution) | orbits, "cage": plain_record(state.cage, "cage")}
 
 
 def simulation(record: Any) -> Document:
@@ -159,13 +158,11 @@ def simulation(record: Any) -> Document:
             "outcome_sentence": outcome_sentence(history),
             "largest_offset": plain(np.hypot(*history.position.T).max()),
             "largest_contact_force": plain(np.abs(history.contact_force).max()),
-            "drift_rate_law": plain(drift_rate_law(record.cage.cage)),
-            "rubbing_power": plain(
-                record.cage.cage.land_friction * history.rubbing_force * history.rubbing_speed
-            ),
+            "drift_rate_law": plain(drift_rate_law(record.cage)),
+            "rubbing_power": plain(record.cage.land_friction * history.rubbing_force * history.rubbing_speed),
         }
         | plain_record(history, "history")
-        | cage(record.cage)
+        | cage(record)
     )
 
 
@@ -181,17 +178,17 @@ def outcome_sentence(history: Any) -> str:
 def ranking(record: Any) -> Document:
     """Return verdict, margin, rank and reason of each candidate, with the curve and the chain behind them."""
     answer = plain_record(record.ranking, "ranking")
-    return answer | {"warnings": answer.pop("notes")} | cage(record.cage)
+    return answer | {"warnings": answer.pop("notes")} | cage(record)
 
 
 def stability_map(record: Any) -> Document:
     """Return a map, with the chain and the cage of the study itself."""
-    return maps.stability_map(record.map, cage(record.cage))
+    return maps.stability_map(record.map, cage(record))
 
 
 def uncertain_ranking(record: Any) -> Document:
     """Return probabilities with their intervals, the main sources of uncertainty, and the cage's chain."""
-    return sensitivity.sensitivity(record, cage(record.cage))
+    return sensitivity.sensitivity(record, cage(record))
 
 
 def check(record: Any) -> Document:
