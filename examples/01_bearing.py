@@ -9,7 +9,7 @@ import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
 study = replace(study, operation=replace(study.operation, radial_load=500.0))
-state = separatrix.bearing_state(study)
+state = separatrix.solve(study).bearing
 
 for name, at in (("inner", state.inner), ("outer", state.outer)):
     print(

@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
-outer = separatrix.bearing_state(study).outer
+outer = separatrix.solve(study).bearing.outer
 bare = replace(study.film, material=None, thickness=None)
 films = {"bare": bare} | {f"{um:g} um": replace(study.film, thickness=um * 1e-6) for um in (0.1, 1.0, 3.0)}
 

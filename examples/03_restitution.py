@@ -8,12 +8,12 @@ import numpy as np
 import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
-found = separatrix.restitution_state(study).restitution
+found = separatrix.solve(study).restitution
 print(f"C_mu = {found.race_damping:.0f} N s/m, eta = {found.restitution_factor:.3f}")
 print(f"with free ball spin: eta = {found.restitution_factor_free_spin:.3f}")
 
 # twice the friction on the races: the paper's "insufficient lubrication"
-dry = separatrix.restitution_state(replace(study, film=replace(study.film, race_friction=0.2))).restitution
+dry = separatrix.solve(replace(study, film=replace(study.film, race_friction=0.2))).restitution
 print(f"race friction 0.2: eta = {dry.restitution_factor:.3f}")
 
 # the same by hand: 0.05 kg on 3e6 N/m with C_mu = 2000 N s/m

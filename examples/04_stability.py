@@ -11,7 +11,8 @@ study = separatrix.read_study("cryogenic-turbopump")
 settings = replace(
     study.stability, kicks=(0.5, 2.0), runs=12, duration=0.05, restitution_factors=(0.3, 0.6, 0.9)
 )
-found = separatrix.stability_curve(separatrix.cage_state(study).cage, settings, jobs=2)
+cage = separatrix.solve(study).cage
+found = separatrix.stability_curve(cage, settings, runner=separatrix.Runner(jobs=2))
 
 for point, limit in zip(found.curve, found.linear_limit, strict=True):
     print(

@@ -7,7 +7,7 @@ import separatrix
 
 study = separatrix.read_study("momentum-wheel")
 cases = [{"film.thickness": t} for t in np.geomspace(2e-7, 2e-6, 6)]
-table = separatrix.sweep(study, cases, jobs=2).to_dataframe()
+table = separatrix.sweep(study, cases, runner=separatrix.Runner(jobs=2)).to_dataframe()
 print(table[["film.thickness", "slope_inner", "race_damping", "restitution_factor"]])
 
 factors = table["restitution_factor"].tolist()

@@ -6,7 +6,7 @@ import numpy as np
 import separatrix
 
 study = separatrix.read_study("momentum-wheel")
-cage = separatrix.cage_state(study, friction=0.30).cage  # dry phenolic
+cage = separatrix.solve(study).cage_with(0.30)  # the friction of dry phenolic
 history = separatrix.simulate(cage, kick=0.5, duration=study.stability.duration)
 
 outcome = separatrix.RunOutcome(history.outcome).name

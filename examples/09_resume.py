@@ -20,8 +20,11 @@ def stop(done: int, _total: int) -> None:
 
 with tempfile.TemporaryDirectory() as folder:
     ledger = separatrix.Ledger(Path(folder) / "finished-runs.sqlite")
-    part = separatrix.rank(quick, ledger=ledger, progress=stop)
-    resumed = separatrix.rank(quick, ledger=ledger)
+    try:
+        separatrix.rank(quick, runner=separatrix.Runner(ledger=ledger, progress=stop))
+    except separatrix.Interrupted as interrupted:
+        part = interrupted.finished
+    resumed = separatrix.rank(quick, runner=separatrix.Runner(ledger=ledger))
     taken = ledger.taken
     ledger.close()
 

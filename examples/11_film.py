@@ -6,14 +6,7 @@ import numpy as np
 import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
-state = separatrix.restitution_state(study)
-films = separatrix.lubrication_curve(
-    state.traction.bearing.inner,
-    state.traction.bearing.outer,
-    study.film.material,
-    ball_cage_stiffness=state.restitution.ball_cage_stiffness,
-    cage_mass=state.restitution.cage_mass,
-)
+films = separatrix.solve(study).lubrication
 
 figure, axes = plt.subplots(layout="constrained")
 for friction, factors in zip(films.race_friction, films.restitution_factor, strict=True):

@@ -14,7 +14,7 @@ y = separatrix.MapAxis(
     parameter="ball_cage_friction", unit="-", values=tuple(np.linspace(0.0, 0.5, 11).tolist())
 )
 question = separatrix.MapQuestion(study=quick, x=x, y=y, kick=0.5, runs=8)
-found = separatrix.stability_map(question, jobs=2)
+found = separatrix.stability_map(question, runner=separatrix.Runner(jobs=2))
 
 for change in found.changes:
     print(f"clearance {1e3 * change.x:.2f} mm: f = {change.y_low:.2f} to {change.y_high:.2f}")

@@ -12,7 +12,7 @@ cases = [
     for speed in (5e3, 10e3, 15e3, 20e3, 30e3)
     for load in (1000.0, 3000.0, 6000.0)
 ]
-table = separatrix.sweep(study, cases, jobs=2).to_dataframe()
+table = separatrix.sweep(study, cases, runner=separatrix.Runner(jobs=2)).to_dataframe()
 table["speed [rpm]"] = (table["operation.inner_speed"] / rpm).round()
 table["load [N]"] = table["operation.axial_load"]
 factors = table.pivot_table(index="speed [rpm]", columns="load [N]", values="restitution_factor")

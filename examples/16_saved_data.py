@@ -11,7 +11,7 @@ import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
 study = replace(study, operation=replace(study.operation, radial_load=500.0))
-answer = separatrix.document("bearing", separatrix.bearing_state(study), study, [])
+answer = separatrix.document("bearing", separatrix.solve(study).bearing, study, [])
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "bearing.nc"  # as `separatrix bearing` writes it
     separatrix.save(separatrix.dataset(answer), path)
