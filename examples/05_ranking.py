@@ -22,7 +22,7 @@ quick = replace(
 found = separatrix.rank(replace(study, ranking=question, stability=quick), runner=separatrix.Runner(jobs=2))
 rows = next(one for one in found.environments if one.name == environment).materials
 for row in rows:
-    print(f"{row.rank}  {row.name}: {row.verdict}. {row.reason}")
+    print(f"{row.rank}  {row.name}: {row.judgement.verdict.name}. {row.reason}")
 
 order = [row.name for row in rows]
 thresholds = [row.restitution_threshold for row in rows]

@@ -33,5 +33,5 @@ same = repr(resumed) == repr(separatrix.rank(quick))
 
 rows = resumed.environments[0].materials
 figure, axes = plt.subplots(layout="constrained")
-axes.bar([row.name for row in rows], [row.probability_stable for row in rows])
+axes.bar([row.name for row in rows], [row.judgement.probability_stable for row in rows])
 axes.set_ylabel("P(stable) [-]")

@@ -25,9 +25,9 @@ figure, axes = plt.subplots(layout="constrained")
 probabilities = {}
 for row in found.environments[0].materials:
     share, low, high = (
-        row.uncertain_probability_stable,
-        row.uncertain_probability_low,
-        row.uncertain_probability_high,
+        row.over_inputs.probability_stable,
+        row.over_inputs.probability_low,
+        row.over_inputs.probability_high,
     )
     probabilities[row.name] = share
     print(f"{row.name}: P(stable) {share:.2f} ({low:.2f} to {high:.2f})")

@@ -29,7 +29,7 @@ question = replace(study.ranking, candidates=(*study.ranking.candidates, mine))
 quick = replace(study.stability, runs=8, duration=0.02)
 found = separatrix.rank(replace(study, ranking=question, stability=quick), runner=separatrix.Runner(jobs=2))
 for row in found.environments[0].materials:
-    print(f"{row.rank}  {row.name}: friction {row.friction:.3f}, {row.verdict}")
+    print(f"{row.rank}  {row.name}: friction {row.friction:.3f}, {row.judgement.verdict.name}")
 
 steady = test.friction
 figure, axes = plt.subplots(layout="constrained")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.cage import RunOutcome, judge, run_ensemble
+from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
 from separatrix.chain import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
@@ -124,8 +124,9 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
     certain = study_of(0.05)
     certain = replace(certain, stability=replace(certain.stability, **few))
     row = rank(certain, runner=Runner(jobs=2)).environments[0].materials[0]
-    assert (row.uncertain_verdict, row.uncertain_runs) == (None, None)
+    assert row.over_inputs is None
     uncertain = with_distributions(certain, {"cage.mass": Normal(mean=0.025, standard_deviation=0.002)})
     row = rank(uncertain, runner=Runner(jobs=2)).environments[0].materials[0]
-    assert (row.verdict, row.uncertain_verdict, row.uncertain_runs) == ("STABLE", "STABLE", 4)
-    assert row.uncertain_probability_low < row.uncertain_probability_stable == 1.0
+    both = row.judgement.verdict, row.over_inputs.verdict
+    assert (*both, row.over_inputs.runs) == (Verdict.STABLE, Verdict.STABLE, 4)
+    assert row.over_inputs.probability_low < row.over_inputs.probability_stable == 1.0

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix import answers
+from separatrix import verbs
 from separatrix.chain import solve
 from separatrix.errors import ValidityWarning
 from separatrix.study import BallBearing, Operation, Study
@@ -99,8 +99,8 @@ def test_an_overdamped_impact_is_called_so() -> None:
     """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
     with pytest.warns(ValidityWarning, match=r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every"):
-        found = answers.restitution(slippery).solution.restitution
+        found = verbs.restitution(slippery).solution.restitution
     assert found.race_damping < found.least_damping
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert answers.restitution(SHIPPED).solution.restitution.restitution_factor > 0.0
+        assert verbs.restitution(SHIPPED).solution.restitution.restitution_factor > 0.0

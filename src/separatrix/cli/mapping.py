@@ -37,7 +37,7 @@ class MapOptions:
         InputError
             An option cannot be understood, or no point can be run.
         """
-        from separatrix.answers import stability_map
+        from separatrix.verbs import stability_map
 
         return stability_map(map_question(study, self), runner)
 

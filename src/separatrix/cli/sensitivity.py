@@ -37,6 +37,6 @@ class SensitivityOptions:
 
     def compute(self, study: Study, runner: Runner) -> SensitivityAnswer:
         """Answer the verb."""
-        from separatrix.answers import sensitivity
+        from separatrix.verbs import sensitivity
 
         return sensitivity(study, self.samples, runner)

@@ -55,7 +55,7 @@ class SimulateOptions:
 
     def compute(self, study: Study, runner: Runner) -> SimulationAnswer:  # noqa: ARG002
         """Follow the run."""
-        from separatrix.answers import simulate
+        from separatrix.verbs import simulate
 
         return simulate(study, kick=None if self.kick is None else kick_speed(self.kick), run=self.run)
 

@@ -53,7 +53,7 @@ def _of_chain(name: str) -> Callable[[Study, Runner], Any]:
     """What answers a verb that runs no cage; imported when it is asked."""
 
     def compute(study: Study, runner: Runner) -> Any:  # noqa: ARG001
-        return getattr(importlib.import_module("separatrix.answers"), name)(study)
+        return getattr(importlib.import_module("separatrix.verbs"), name)(study)
 
     return compute
 
@@ -62,7 +62,7 @@ def _long(name: str) -> Callable[[Study, Runner], Any]:
     """What answers a verb of many runs; imported when it is asked."""
 
     def compute(study: Study, runner: Runner) -> Any:
-        return getattr(importlib.import_module("separatrix.answers"), name)(study, runner)
+        return getattr(importlib.import_module("separatrix.verbs"), name)(study, runner)
 
     return compute
 

@@ -20,6 +20,7 @@ from separatrix.units import (
     NewtonPerMetre,
     NewtonSecondPerMetre,
     Pascal,
+    PerSecond,
     Radian,
     RadianPerSecond,
     Ratio,
@@ -66,7 +67,7 @@ class SweptCase:
     probability_high: Ratio | None = None
     cage_motion: str | None = None
     largest_offset: Metre | None = None
-    drift_rate: float | None = None
+    drift_rate: PerSecond | None = None
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
     runs: int | None = None

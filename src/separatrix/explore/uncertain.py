@@ -39,7 +39,7 @@ from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, overall
 from separatrix.ranking.lowest import lowest_among
-from separatrix.ranking.plausible import beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
 from separatrix.runner import Runner
 from separatrix.study import Study
@@ -113,6 +113,11 @@ def _answer(
     undecided = [case for case in decided if judged[case][0].verdict is Verdict.UNDECIDED]
     environment = required_environment(study, ranking)
     own = _rows(drawn, environment, judged)
+    moved = [
+        Moved(row.name, row.largest_contact_force, row.largest_offset, row.by_kick or ())
+        for row in own
+        if row.largest_contact_force is not None and row.largest_offset is not None
+    ]
     reference = reference_candidate(study, ranking)
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
     return UncertainStudy(
@@ -137,7 +142,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*_notes(drawn, asked), *beyond_motion(drawn.central[reference.name], own)),
+        notes=(*_notes(drawn, asked), *beyond_motion(drawn.central[reference.name], moved)),
         complete=True,
     )
 

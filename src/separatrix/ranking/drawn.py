@@ -9,7 +9,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -230,14 +229,3 @@ def _moved(
     speed, pressure = (np.array([getattr(p, key) for p in pockets]) for key in ("slip_speed", "pressure"))
     log = fit.log_mean(slip_speed=speed, pressure=pressure)
     return np.asarray(np.exp(log[1:] - log[0]))
-
-
-def over_inputs(found: Judgement) -> dict[str, Any]:
-    """Return what a row of a ranking takes from the judgement over the uncertain inputs."""
-    return {
-        "uncertain_verdict": found.verdict.name,
-        "uncertain_probability_stable": found.probability_stable,
-        "uncertain_probability_low": found.probability_low,
-        "uncertain_probability_high": found.probability_high,
-        "uncertain_runs": found.runs,
-    }

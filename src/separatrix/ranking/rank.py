@@ -13,13 +13,21 @@ from separatrix.cage_choice import other_than_candidates, reference_candidate, r
 from separatrix.chain import Solution, solve
 from separatrix.draws import Case
 from separatrix.errors import InputError
-from separatrix.ranking.drawn import DrawnBearings, drawn_bearings, over_inputs
+from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, measured, overall
 from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.order import margin_interval, ranks, same_rank
-from separatrix.ranking.plausible import beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
-from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
+from separatrix.ranking.records import (
+    NotFinished,
+    NotMeasured,
+    OwnCurve,
+    Ranked,
+    RankedEnvironment,
+    Ranking,
+    Row,
+)
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.runner import Runner
 from separatrix.stability import (
@@ -42,11 +50,6 @@ Key = tuple[NewtonPerMetre, Ratio]
 
 Piece = tuple[NewtonPerMetre, Ratio | Node] | Case
 """Piece of work: a verdict, or with the pocket stiffness a node of its curve; a case's drawn bearings."""
-
-EVIDENCE = {f.name for f in fields(Judgement)} - {
-    *("verdict", "cage_motion", "reason", "pocket_impact_shares")
-}
-"""What a row takes from its judgement as it is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,15 +147,15 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     return _compute(question, keys, ranking)
 
 
-def _notes(
-    study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[RankedMaterial]
-) -> tuple[str, ...]:
+def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
     other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
     failures = question.drawn.failures if question.drawn else ()
     left_out = f"{len(failures)} of {study.stability.runs} draws of the uncertain inputs make no bearing: "
     said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
-    return (*said, *beyond_motion(question.cages[question.reference], rows))
+    judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
+    moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
+    return (*said, *beyond_motion(question.cages[question.reference], moved))
 
 
 def ranking_question(study: Study) -> RankingQuestion:
@@ -309,44 +312,36 @@ def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
 
 def _ranked(
     question: _Question, found: _Findings, table: Mapping[str, MeanFriction | None], environment: str
-) -> tuple[RankedMaterial, ...]:
+) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
-    rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
     known = {name: friction for name, friction in table.items() if friction is not None}
+    chances = lowest_among(known).probabilities
+    rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
+    judged = [row for row in rows if isinstance(row, Ranked)]
     places = ranks(
-        [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
+        [margin_interval(row) for row in judged],
+        lambda i, leader: same_rank(judged[i], judged[leader], known),
     )
-    lowest = lowest_among(known)
-    chances = [lowest.probabilities.get(row.name) for row in rows]
-    ranked = [
-        replace(row, rank=place, probability_lowest_friction=chance)
-        for row, place, chance in zip(rows, places, chances, strict=True)
-    ]
-    return tuple(sorted(ranked, key=_best_first))
-
-
-def _best_first(row: RankedMaterial) -> tuple[int, float, float]:
-    last = row.rank is None
+    ranked = [replace(row, rank=place) for row, place in zip(judged, places, strict=True)]
     return (
-        10**9 if row.rank is None else row.rank,
-        0.0 if last else -(row.margin or 0.0),
-        row.friction or 0.0,
+        *sorted(ranked, key=lambda row: (row.rank, -row.margin, row.friction)),
+        *sorted((row for row in rows if isinstance(row, NotFinished)), key=lambda row: row.friction),
+        *(NotMeasured(name=n, reason=not_measured(environment)) for n, f in table.items() if f is None),
     )
 
 
 def _row(
-    question: _Question, found: _Findings, name: str, friction: MeanFriction | None, environment: str
-) -> RankedMaterial:
+    question: _Question, found: _Findings, case: Case, friction: MeanFriction, chance: Ratio | None
+) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
-    if friction is None:
-        return RankedMaterial(name=name, reason=not_measured(environment))
-    stiffness = question.stiffness[name]
+    stiffness = question.stiffness[case.candidate]
     eta = _eta(question, stiffness)
-    row = RankedMaterial(
-        name=name,
+    row = NotFinished(
+        name=case.candidate,
         friction=friction.mean,
         friction_error=friction.error,
         friction_deviation=friction.deviation,
+        probability_lowest_friction=chance,
         friction_scatter_assumed=friction.assumed,
         extrapolation=friction.extrapolation,
         ball_cage_stiffness=stiffness,
@@ -358,27 +353,19 @@ def _row(
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    judged = replace(
-        row,
-        verdict=judgement.verdict.name,
-        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.value,
-        reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.",
-        pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
-        **{name: getattr(judgement, name) for name in EVIDENCE},
-    )
-    if drawn := found.drawn.get(Case(name, environment)):
-        judged = replace(judged, **over_inputs(drawn))
+    drawn = found.drawn.get(case)
     threshold = _threshold(found, stiffness, friction)
     if threshold is None:
-        return judged
-    return replace(
-        judged,
+        unfinished = f"{judgement.reason} Its threshold: {NOT_FINISHED}."
+        return replace(row, judgement=judgement, over_inputs=drawn, reason=unfinished)
+    measured = {f.name: getattr(row, f.name) for f in fields(row)}
+    return Ranked(
+        **measured | {"judgement": judgement, "over_inputs": drawn, "reason": reason(threshold, judgement)},
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
-        reason=reason(threshold, judgement),
     )
 
 

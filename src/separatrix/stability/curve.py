@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.drive import drift_rate_law, drifts
@@ -15,7 +16,9 @@ from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, cr
 from separatrix.stability.response import SEARCHED_FRICTION, Side
 from separatrix.stability.tracing import COARSE, finer
 from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, Ratio, Second
+from separatrix.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
+
+ETA = "restitution_factor"
 
 FLAT: Ratio = 0.002
 """Friction by which a line may miss a point however well that is known."""
@@ -59,22 +62,22 @@ class StabilityCurve:
         False if an interrupt left points out.
     """
 
-    curve: tuple[CriticalFriction, ...]
+    curve: Annotated[tuple[CriticalFriction, ...], Rows(ETA, label=ETA)]
     here: CriticalFriction | None = None
-    linear_limit: tuple[LinearLimit, ...]
-    hard_limit: tuple[HardLimit, ...] = ()
+    linear_limit: Annotated[tuple[LinearLimit, ...], Rows(ETA, "linear_limit_", label=ETA)]
+    hard_limit: Annotated[tuple[HardLimit, ...], Rows(ETA, "hard_limit_", label=ETA)] = ()
     hard_limit_closed: Ratio | None = None
     band_few: Ratio
     band_most: Ratio
     band: bool
-    kicks: tuple[MetrePerSecond, ...]
+    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     middle_kick: MetrePerSecond
     runs: int
     duration: Second
     ball_scatter: Ratio
     searched_friction: Ratio
     drifts: bool
-    drift_rate_law: float
+    drift_rate_law: PerSecond
     adaptive: bool
     complete: bool
 
