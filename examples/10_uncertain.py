@@ -24,11 +24,8 @@ with tempfile.TemporaryDirectory() as folder:
 figure, axes = plt.subplots(layout="constrained")
 probabilities = {}
 for row in found.environments[0].materials:
-    share, low, high = (
-        row.over_inputs.probability_stable,
-        row.over_inputs.probability_low,
-        row.over_inputs.probability_high,
-    )
+    drawn = row.over_inputs  # the verdict over the uncertain inputs
+    share, low, high = drawn.probability_stable, drawn.probability_low, drawn.probability_high
     probabilities[row.name] = share
     print(f"{row.name}: P(stable) {share:.2f} ({low:.2f} to {high:.2f})")
     axes.errorbar(row.name, share, yerr=[[share - low], [high - share]], fmt="o", capsize=4)

@@ -16,7 +16,9 @@ for name, design in (("0.30 mm", first), ("0.15 mm", second)):
     rows = separatrix.rank(design, runner=separatrix.Runner(jobs=2)).environments[0].materials
     shares[name] = {row.name: row.judgement.probability_stable for row in rows}
     for row in rows:
-        print(f"pocket clearance {name}: {row.name:<13} margin {row.margin:+.2f}  {row.judgement.verdict.name}")
+        print(
+            f"pocket clearance {name}: {row.name:<13} margin {row.margin:+.2f}  {row.judgement.verdict.name}"
+        )
 
 tight = shares["0.15 mm"]["Vespel SP-3"]
 figure, axes = plt.subplots(layout="constrained")
