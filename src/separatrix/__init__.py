@@ -23,7 +23,7 @@ _PUBLIC = {
     "lubrication": "LubricationCurve lubrication_curve",
     "ranking": "Ranking rank",
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
-    "results": "dataset document load save",
+    "present": "dataset document load report save to_dataframe to_xarray",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "stability.map": "stability_map",
     "stability.map_records": "MapAxis MapPoint MapQuestion StabilityMap",

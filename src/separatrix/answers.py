@@ -89,6 +89,11 @@ class RankingAnswer(OfCage):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensitivityAnswer(OfCage):
-    """The uncertain study, and the cage of its reference candidate."""
+    """The uncertain study, and the cage of its reference candidate.
+
+    `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
+    """
 
     uncertain: UncertainStudy
+    film_thickness: Metre | None
+    race_friction: Ratio

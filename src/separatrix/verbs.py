@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
-
-import numpy as np
+from pathlib import Path
 
 from separatrix.answers import (
     CheckAnswer,
@@ -26,11 +25,16 @@ from separatrix.cage_choice import (
     reference_candidate,
     required_environment,
 )
-from separatrix.chain import BearingState, RaceContact, Solution, solve
+from separatrix.chain import BearingState, Solution, solve
+from separatrix.chain.shown_traction import curves_by_ratio, shear
 from separatrix.draws import uncertain_inputs
-from separatrix.errors import SeparatrixError, ValidityWarning
-from separatrix.explore import uncertain_study
+from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
+from separatrix.explore.cases import asked_cases
 from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
+from separatrix.explore.sweep import Case, Sweep
+from separatrix.explore.sweep import sweep as run_cases
+from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction_fit import TestedFriction
 from separatrix.ranking import rank as rank_materials
 from separatrix.ranking import ranking_question
@@ -39,26 +43,21 @@ from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.restitution import Restitution
 from separatrix.runner import Runner, made_into
 from separatrix.stability import stability_curve
-from separatrix.stability.map import stability_map as find_map
-from separatrix.stability.map import value_here
+from separatrix.stability.map import stability_map, value_here
+from separatrix.stability.map_parameters import KICK
 from separatrix.stability.map_records import MapQuestion
-from separatrix.study import Study
-from separatrix.traction import ShearField, TractionCurve, film_compliance, shear_field, traction_curve
-from separatrix.units import MetrePerSecond, format_quantity
-
-SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
-"""Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
-
-SATURATED = 0.995
-"""Share of the whole friction from which a traction curve counts as flat in a figure."""
-
-STRIPS = 5
-"""Strips in which the shear is shown."""
+from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
+from separatrix.units import MetrePerSecond, format_quantity, parse
 
 SAMPLES_A_WHIRL = 15
 """Samples of a simulated run in a period of the linear whirl."""
 
-MOST_SAMPLES = 20_000
+MOST_SHOWN = 20_000
+"""Samples of a simulated run."""
+
+LAST_RUN = MOST_RUNS = 1_000_000
+SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
+"""Bearings that `sensitivity` draws."""
 
 
 def check(study: Study) -> CheckAnswer:
@@ -99,8 +98,8 @@ def traction(study: Study) -> TractionAnswer:
     """Traction curves, as they are and at other pivoting-to-rolling ratios."""
     solution = solve(study)
     contacts = solution.bearing
-    inner = curves_by_ratio(study, contacts.inner, solution.traction.inner)
-    outer = curves_by_ratio(study, contacts.outer, solution.traction.outer)
+    inner = curves_by_ratio(study.film, contacts.inner, solution.traction.inner)
+    outer = curves_by_ratio(study.film, contacts.outer, solution.traction.outer)
     return TractionAnswer(
         race_friction=study.film.race_friction,
         bearing=contacts,
@@ -108,53 +107,8 @@ def traction(study: Study) -> TractionAnswer:
         outer=outer[0],
         inner_others=inner[1:],
         outer_others=outer[1:],
-        inner_shear=shear(study, contacts.inner),
-        outer_shear=shear(study, contacts.outer),
-    )
-
-
-def curves_by_ratio(study: Study, at: RaceContact, curve: TractionCurve) -> tuple[TractionCurve, ...]:
-    """Traction curves of one contact: at its own ratio, then at `SPIN_ROLL_RATIOS` with its sign.
-
-    The creep increments go a quarter beyond those at which the contact's own curve is saturated.
-    """
-    increments = np.linspace(-1.0, 1.0, 201) * _saturation(study, at, curve)
-    own = at.creep.spin
-    others = (math.copysign(ratio, own) * at.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
-    return tuple(
-        traction_curve(
-            at.ellipse,
-            replace(at.creep, spin=spin),
-            race_friction=study.film.race_friction,
-            film_compliance=film_compliance(study.film),
-            creep_increments=increments,
-        )
-        for spin in (own, *others)
-    )
-
-
-def _saturation(study: Study, at: RaceContact, curve: TractionCurve) -> float:
-    """Creep increment a quarter beyond the one at which a curve has its whole friction, either way."""
-    widest = float(curve.creep_increment[-1])
-    finer = traction_curve(
-        at.ellipse,
-        at.creep,
-        race_friction=study.film.race_friction,
-        film_compliance=film_compliance(study.film),
-        creep_increments=widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0),
-    )
-    rising = np.abs(finer.traction_coefficient) < SATURATED * study.film.race_friction
-    return min(1.25 * float(np.abs(finer.creep_increment[rising]).max()), widest)
-
-
-def shear(study: Study, at: RaceContact) -> ShearField:
-    """Shear in a few strips of a contact in free rolling (the paper's Fig. 6)."""
-    return shear_field(
-        at.ellipse,
-        at.creep,
-        race_friction=study.film.race_friction,
-        film_compliance=film_compliance(study.film),
-        strips=STRIPS,
+        inner_shear=shear(study.film, contacts.inner),
+        outer_shear=shear(study.film, contacts.outer),
     )
 
 
@@ -217,31 +171,96 @@ def _warn_of_extrapolation(solution: Solution) -> None:
         )
 
 
-def stability_map(question: MapQuestion, runner: Runner) -> MapAnswer:
+def map(
+    study: Study,
+    runner: Runner,
+    *,
+    x: str = DEFAULT_X,
+    y: str = DEFAULT_Y,
+    points: int = 100,
+    runs: int = 16,
+    kick: str | MetrePerSecond | None = None,
+    adaptive: bool = False,
+) -> MapAnswer:
     """Verdicts in the plane of two parameters of a study.
+
+    Parameters
+    ----------
+    x, y : str
+        Axes, each ``PARAM=LOW..HIGH[unit][:N][:log]``.
+    points : int
+        Points of an axis that states no number.
+    runs : int
+        Most runs of a point.
+    kick : str or float, optional
+        Initial disturbance at every point, text with a unit or [m/s]; by default the reference kick.
+    adaptive : bool
+        Run only points near a change of the answer.
 
     Raises
     ------
     InputError
-        No point can be run.
+        An axis or a number is wrong, or no point can be run.
     """
-    solution = solve(question.study)
+    checked_points(points, "--points")
+    if not 1 <= runs <= MOST_RUNS:
+        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", got=str(runs))
+    axes = read_axis(x, "--x", points), read_axis(y, "--y", points)
+    names = [axis.parameter for axis in axes]
+    if names[0] == names[1]:
+        cure = f"Without --x it is {DEFAULT_X}, without --y {DEFAULT_Y}."
+        raise InputError("--x and --y", "must be two parameters", got=f"{names[0]} twice", cure=cure)
+    if kick is not None and KICK in names:
+        raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
+    solution = solve(study)
+    speed = solution.stability.middle_kick if kick is None else kick_speed(kick)
+    across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
+    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
     cage = _shown_cage(solution)
-    x, y = (replace(axis, here=value_here(solution, axis.parameter)) for axis in (question.x, question.y))
-    asked = replace(question, x=x, y=y)
-    runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=question.adaptive)
+    runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
         lambda found: MapAnswer(solution=solution, cage=cage, map=found),
-        lambda: find_map(asked, runner=runner),
+        lambda: stability_map(asked, runner=runner),
     )
 
 
-def simulate(study: Study, kick: MetrePerSecond | None = None, run: int = 0) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the reference kick."""
+def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
+    """Speed of a kick, from text with a unit or a number [m/s].
+
+    Raises
+    ------
+    InputError
+        It is not a speed that a study may have.
+    """
+    speed = parse(kick, "m/s", "--kick") if isinstance(kick, str) else float(kick)
+    if not LEAST_KICK < speed < MOST_KICK:
+        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
+        raise InputError("--kick", rule, f"{speed:g}", NO_KICK)
+    return speed
+
+
+def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0) -> SimulationAnswer:
+    """Follow one run of the ensemble, by default the first from the reference kick.
+
+    Parameters
+    ----------
+    kick : str or float, optional
+        Initial disturbance, text with a unit or [m/s].
+    run : int
+        Which run of the ensemble.
+
+    Raises
+    ------
+    InputError
+        The kick or the run's number is wrong.
+    """
+    if not 0 <= run <= LAST_RUN:
+        raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(run))
+    speed = None if kick is None else kick_speed(kick)
     solution = solve(study)
     cage, settings = solution.cage, solution.stability
     _warn_of_extrapolation(solution)
-    speed = settings.middle_kick if kick is None else kick
+    speed = settings.middle_kick if speed is None else speed
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
     history = follow(
         cage,
@@ -250,7 +269,7 @@ def simulate(study: Study, kick: MetrePerSecond | None = None, run: int = 0) -> 
         seed=settings.seed,
         duration=settings.duration,
         ball_scatter=settings.ball_scatter,
-        samples=int(min(max(samples, 1000), MOST_SAMPLES)),
+        samples=int(min(max(samples, 1000), MOST_SHOWN)),
     )
     _warn_if_beyond_model(solution, history)
     return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
@@ -285,12 +304,61 @@ def _reference(study: Study) -> tuple[Solution, PlanarCage]:
     return solution, solution.cage_with(friction.mean if friction else 0.0)
 
 
-def sensitivity(study: Study, samples: int, runner: Runner) -> SensitivityAnswer:
-    """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
+def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> SensitivityAnswer:
+    """Draw bearings from the uncertain inputs and judge the cages of every candidate.
+
+    Parameters
+    ----------
+    samples : int
+        Bearings drawn, a power of two.
+
+    Raises
+    ------
+    InputError
+        It is not a sensible number of bearings, or nothing is uncertain.
+    """
+    if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
+        near = 1 << max(0, samples - 1).bit_length()
+        cure = f"Try {min(max(near, FEWEST_SAMPLES), MOST_SAMPLES)}."
+        rule = f"must be a power of two from {FEWEST_SAMPLES} to {MOST_SAMPLES}"
+        raise InputError("--samples", rule, got=str(samples), cure=cure)
     solution, cage = _reference(study)
     uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
     runner.expect(lambda: expected_uncertain(study, samples, jobs=runner.jobs))
     return made_into(
-        lambda found: SensitivityAnswer(solution=solution, cage=cage, uncertain=found),
+        lambda found: SensitivityAnswer(
+            solution=solution,
+            cage=cage,
+            uncertain=found,
+            film_thickness=study.film.thickness,
+            race_friction=study.film.race_friction,
+        ),
         lambda: uncertain_study(study, samples, runner=runner),
     )
+
+
+def sweep(
+    study: Study,
+    runner: Runner,
+    *,
+    vary: Sequence[str] = (),
+    cases: Path | Sequence[Case] | None = None,
+    verdicts: bool = False,
+) -> Sweep:
+    """Chain and, if asked, verdict of many cases of a study.
+
+    Parameters
+    ----------
+    vary : sequence of str
+        Ranges, each ``PARAM=LOW..HIGH[unit][:N][:log]``; every value of one with every value of the others.
+    cases : Path, or sequence of mapping, optional
+        In their place a CSV file, or values by the names of a study file in SI units.
+    verdicts : bool
+        Whether to run the whole ensemble of each case, too.
+
+    Raises
+    ------
+    InputError
+        A range or the table of cases is wrong.
+    """
+    return run_cases(study, asked_cases(vary, cases), verdicts=verdicts, runner=runner)

@@ -16,8 +16,8 @@ import pytest
 from separatrix import results
 from separatrix.chain import solve
 from separatrix.cli import main
-from separatrix.cli.axes import read_axis
 from separatrix.errors import InputError
+from separatrix.explore.axes import read_axis
 from separatrix.ledger import NAME
 from separatrix.study_file import read_study
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from separatrix.cli import materials
-from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
-from separatrix.cli.mapping import MapOptions
 from separatrix.cli.options import (
     WHOLE,
     Cluster,
@@ -28,11 +27,10 @@ from separatrix.cli.options import (
     threads,
 )
 from separatrix.cli.run import Options, make_study, run
-from separatrix.cli.sensitivity import SAMPLES, SensitivityOptions
-from separatrix.cli.simulating import SimulateOptions
-from separatrix.cli.sweeping import SweepOptions
+from separatrix.cli.simulating import check_animation, write_animation
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
@@ -67,6 +65,7 @@ separatrix rank cryogenic-turbopump
 def _answer(
     verb: Verb,
     study: str,
+    question: Mapping[str, Any] | None = None,
     *,
     json: bool,
     out: str | None,
@@ -78,7 +77,15 @@ def _answer(
     """Answer the question of a verb and return the exit status."""
     if cluster is not None:
         named(cluster, "--cluster", "a scheduler, or local:N")
-    options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs), full=full, cluster=cluster)
+    options = Options(
+        json=json,
+        out=folder(out),
+        quiet=quiet,
+        jobs=threads(jobs),
+        full=full,
+        cluster=cluster,
+        question=question or {},
+    )
     try:
         with Interruptible():
             return run(verb, study, options)
@@ -151,9 +158,8 @@ def _map(
     jobs: Jobs = None,
     cluster: Cluster = None,
 ) -> int:
-    asked = MapOptions(x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
-    verb = replace(VERB["map"], compute=asked.compute)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
+    asked = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
+    return _answer(VERB["map"], study, asked, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
 
 
 def _simulate(
@@ -166,24 +172,32 @@ def _simulate(
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    asked = SimulateOptions(kick=kick, run=number, animate=animate)
-    asked.check(writes=not json or out is not None)
-    verb = replace(VERB["simulate"], compute=asked.compute, draw=asked.draw)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+    verb = VERB["simulate"]
+    if animate is not None:
+        check_animation(animate, writes=not json or out is not None)
+        verb = replace(verb, draw=partial(write_animation, kind=animate))
+    return _answer(verb, study, {"kick": kick, "run": number}, json=json, out=out, quiet=quiet, jobs=jobs)
 
 
 def _sensitivity(
     study: StudyArgument,
-    samples: Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")] = SAMPLES,
+    samples: Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")] = 512,
     json: Json = False,
     out: Out = None,
     quiet: Quiet = False,
     jobs: Jobs = None,
     cluster: Cluster = None,
 ) -> int:
-    asked = SensitivityOptions(samples=samples)
-    verb = replace(VERB["sensitivity"], compute=asked.compute)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
+    return _answer(
+        VERB["sensitivity"],
+        study,
+        {"samples": samples},
+        json=json,
+        out=out,
+        quiet=quiet,
+        jobs=jobs,
+        cluster=cluster,
+    )
 
 
 def _sweep(
@@ -204,9 +218,8 @@ def _sweep(
     cluster: Cluster = None,
 ) -> int:
     table = None if cases is None else Path(named(cases, "--cases", "a file"))
-    asked = SweepOptions(vary=tuple(vary or ()), cases=table, verdicts=verdicts)
-    verb = replace(VERB["sweep"], compute=asked.compute)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
+    asked = {"vary": tuple(vary or ()), "cases": table, "verdicts": verdicts}
+    return _answer(VERB["sweep"], study, asked, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
 
 
 def _compare(

@@ -78,7 +78,7 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     InputError
         One of them is not a saved answer, they answer different questions, or the folder cannot be written.
     """
-    from separatrix.report.compare import compare as in_words
+    from separatrix.present.text.compare import compare as in_words
 
     pair = read(first), read(second)
     if pair[0].verb != pair[1].verb:
@@ -101,13 +101,13 @@ def read(path: Path) -> Saved:
     InputError
         There is none, it answers another question, or it lacks something that such an answer has.
     """
-    from separatrix import results
+    from separatrix.present import load
 
     here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
     if not here or not here[0].exists():
         cure = "Make one with: separatrix simulate STUDY --out DIR, or separatrix rank STUDY --out DIR."
         raise InputError(str(path), "holds no saved simulation or ranking", cure=cure)
-    data = results.load(here[0])
+    data = load(here[0])
     if data.attrs.get("verb") not in VERBS:
         rule = f"must be an answer of {' or '.join(VERBS)}"
         raise InputError(str(path), rule, got=str(data.attrs.get("verb", "none")))
@@ -274,7 +274,7 @@ def _frictions(candidates: list[Any]) -> Iterator[tuple[str, tuple[Any, str | No
 def _write(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) -> None:
     """Write document and text, and the figure of simulations, all or none."""
     from separatrix import figures
-    from separatrix.report.compare import compare as in_words
+    from separatrix.present.text.compare import compare as in_words
 
     with staged(folder) as stage:
         (stage / "compare.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

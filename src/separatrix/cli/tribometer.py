@@ -306,8 +306,8 @@ def _deliver(
 ) -> None:
     """Write the files, then the answer."""
     from separatrix.friction_fit import fit_friction
-    from separatrix.report.tribometer import tribometer as in_words
-    from separatrix.results.tribometer import tribometer as document
+    from separatrix.present.text.tribometer import tribometer as in_words
+    from separatrix.present.tribometer import tribometer as document
 
     fit: FrictionFit | None = None if tests is None else fit_friction(tests)
     written = None if options.out is None else str(options.out)
@@ -337,10 +337,10 @@ def _write(tests: Sequence[FrictionTest], out: Path) -> None:
 
 def _draw(reductions: Sequence[Reduction], options: TribometerOptions, folder: Path) -> None:
     """Write a page of plots for each test, and the data that it is drawn from."""
-    from separatrix import results
-    from separatrix.figures import save
+    from separatrix import figures
     from separatrix.figures.tribometer import page
-    from separatrix.results.friction_tests import page_data
+    from separatrix.present import save
+    from separatrix.present.friction_tests import page_data
 
     names: dict[str, int] = {}
     with staged(folder) as stage, progress_bar("pages of plots", quiet=options.quiet) as progress:
@@ -349,8 +349,8 @@ def _draw(reductions: Sequence[Reduction], options: TribometerOptions, folder: P
             names[name] = number = names.get(name, 0) + 1
             path = stage / (name if number == 1 else f"{name}-{number}")
             data = page_data(one)
-            results.save(data, path.with_name(f"{path.name}.nc"))
-            save(page(data), path.with_name(f"{path.name}.png"))
+            save(data, path.with_name(f"{path.name}.nc"))
+            figures.save(page(data), path.with_name(f"{path.name}.png"))
             if progress is not None:
                 progress(done, len(reductions))
 

@@ -76,7 +76,7 @@ def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     verb : str
         The question.
     data : Dataset
-        From `results.dataset` or `results.load`.
+        From `present.dataset` or `present.load`.
     """
     if verb in NEEDED and NEEDED[verb] not in data.sizes:
         return

@@ -55,7 +55,7 @@ def page(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : Dataset
-        From `separatrix.results.friction_tests.page_data`, or loaded from where that was saved.
+        From `separatrix.present.friction_tests.page_data`, or loaded from where that was saved.
     """
     with journal():
         return settled(_page(data))

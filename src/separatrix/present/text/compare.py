@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from separatrix.report.tables import (
+from separatrix.present.text.tables import (
     ABSENT,
     facts,
     heading,

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from separatrix.results.plain import plain
+from separatrix.present.json import plain
 from separatrix.tribometer import steady
 from separatrix.tribometer.options import AXIS_UNITS
 from separatrix.tribometer.reduction import Reduction

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from separatrix.friction_fit.covariates import in_words
-from separatrix.report.tables import ABSENT, heading, paragraph, quantity, section, table
+from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]
 

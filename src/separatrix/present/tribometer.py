@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from separatrix.friction_fit.fit import FrictionFit, MaterialFit
-from separatrix.results.plain import plain, plain_record
+from separatrix.present.json import plain
 from separatrix.tribometer.log import RawLog
 from separatrix.tribometer.reading import described
 from separatrix.tribometer.reduction import TestFriction
@@ -57,7 +57,7 @@ def _file(log: RawLog) -> Document:
         "format": log.format,
         "rows": log.rows,
         "missing": log.missing,
-        "columns": [plain_record(column, "column") for column in log.columns],
+        "columns": [plain(column, "column") for column in log.columns],
         "metadata": dict(log.metadata),
         "notes": list(log.notes),
         "described": described(log),
@@ -66,7 +66,8 @@ def _file(log: RawLog) -> Document:
 
 def _test(test: TestFriction) -> Document:
     low, high = test.interval
-    return plain_record(test, "test") | {"friction_low": plain(low), "friction_high": plain(high)}
+    known: Document = plain(test, "test")
+    return known | {"friction_low": plain(low), "friction_high": plain(high)}
 
 
 def _fit(material: str, environment: str, fit: MaterialFit) -> Document:
@@ -80,7 +81,7 @@ def _fit(material: str, environment: str, fit: MaterialFit) -> Document:
         "standard_error": at.standard_error,
         "standard_deviation": at.standard_deviation,
         "scatter_source": fit.scatter_source,
-        "slopes": {name: plain_record(slope, "slope") for name, slope in fit.slopes.items()},
+        "slopes": {name: plain(slope, "slope") for name, slope in fit.slopes.items()},
         "tested": {name: None if limits is None else list(limits) for name, limits in fit.ranges.items()},
         "notes": list(fit.covariates.notes),
     }

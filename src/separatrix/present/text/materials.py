@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.report.tables import ABSENT, facts, heading, number, paragraph, quantity, section, table
+from separatrix.present.text.tables import ABSENT, facts, heading, number, paragraph, quantity, section, table
 from separatrix.units import format_quantity
 
 Entry = Mapping[str, Any]
