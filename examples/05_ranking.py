@@ -19,7 +19,7 @@ quick = replace(
     study.stability, kicks=(0.5,), runs=12, duration=0.05, restitution_factors=(0.1, 0.3, 0.5, 0.7, 0.9)
 )
 
-found = separatrix.rank(replace(study, ranking=question, stability=quick), runner=separatrix.Runner(jobs=2))
+found = separatrix.rank(replace(study, ranking=question, stability=quick), jobs=2).ranking
 rows = next(one for one in found.environments if one.name == environment).materials
 for row in rows:
     print(f"{row.rank}  {row.name}: {row.judgement.verdict.name}. {row.reason}")

@@ -1,13 +1,15 @@
 """Follow one run of the cage and plot it yourself: orbit of the centre and kinetic energy."""
 
+from dataclasses import replace
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 import separatrix
 
 study = separatrix.read_study("momentum-wheel")
-cage = separatrix.solve(study).cage_with(0.30)  # the friction of dry phenolic
-history = separatrix.simulate(cage, kick=0.5, duration=study.stability.duration)
+study = replace(study, cage=replace(study.cage, ball_cage_friction=0.30))  # dry phenolic
+history = separatrix.simulate(study, kick="0.5 m/s").history
 
 outcome = separatrix.RunOutcome(history.outcome).name
 offset = np.hypot(*history.position.T)

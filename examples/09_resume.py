@@ -2,7 +2,6 @@
 
 import tempfile
 from dataclasses import replace
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 
@@ -19,19 +18,16 @@ def stop(done: int, _total: int) -> None:
 
 
 with tempfile.TemporaryDirectory() as folder:
-    ledger = separatrix.Ledger(Path(folder) / "finished-runs.sqlite")
     try:
-        separatrix.rank(quick, runner=separatrix.Runner(ledger=ledger, progress=stop))
+        separatrix.rank(quick, folder=folder, progress=stop)
     except separatrix.Interrupted as interrupted:
         part = interrupted.finished
-    resumed = separatrix.rank(quick, runner=separatrix.Runner(ledger=ledger))
-    taken = ledger.taken
-    ledger.close()
+    resumed = separatrix.rank(quick, folder=folder)
 
-print(f"complete: {part.complete}, then {resumed.complete}; {taken} runs were taken from the file")
-same = repr(resumed) == repr(separatrix.rank(quick))
+print(f"complete: {part.ranking.complete}, then {resumed.ranking.complete}")
+same = repr(resumed.ranking) == repr(separatrix.rank(quick).ranking)
 
-rows = resumed.environments[0].materials
+rows = resumed.ranking.environments[0].materials
 figure, axes = plt.subplots(layout="constrained")
 axes.bar([row.name for row in rows], [row.judgement.probability_stable for row in rows])
 axes.set_ylabel("P(stable) [-]")

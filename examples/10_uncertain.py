@@ -19,7 +19,7 @@ duration = "20 ms"
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "uncertain.toml"
     path.write_text(TEXT, encoding="utf-8")
-    found = separatrix.rank(separatrix.read_study(path), runner=separatrix.Runner(jobs=2))
+    found = separatrix.rank(separatrix.read_study(path), jobs=2).ranking
 
 figure, axes = plt.subplots(layout="constrained")
 probabilities = {}

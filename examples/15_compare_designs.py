@@ -13,7 +13,7 @@ second = replace(first, cage=replace(study.cage, pocket_clearance=0.15e-3))
 
 shares = {}
 for name, design in (("0.30 mm", first), ("0.15 mm", second)):
-    rows = separatrix.rank(design, runner=separatrix.Runner(jobs=2)).environments[0].materials
+    rows = separatrix.rank(design, jobs=2).ranking.environments[0].materials
     shares[name] = {row.name: row.judgement.probability_stable for row in rows}
     for row in rows:
         print(

@@ -11,10 +11,10 @@ import separatrix
 
 study = separatrix.read_study("cryogenic-turbopump")
 study = replace(study, operation=replace(study.operation, radial_load=500.0))
-answer = separatrix.document("bearing", separatrix.solve(study).bearing, study, [])
+answer = separatrix.bearing(study)
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "bearing.nc"  # as `separatrix bearing` writes it
-    separatrix.save(separatrix.dataset(answer), path)
+    separatrix.save(answer.to_xarray(), path)
     data = separatrix.load(path)
 
 print(data[["load_inner", "load_outer", "orbital_speed"]])
