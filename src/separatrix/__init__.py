@@ -10,18 +10,19 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
+    "api": "Answer bearing check map rank sensitivity simulate sweep",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
-    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
+    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
     "chain": "BearingState RaceContact RaceTraction Solution solve",
     "creep": "Creep contact_creep",
     "equilibrium": "Equilibrium contact",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
-    "explore.sweep": "Sweep SweptCase sweep",
+    "explore.sweep": "Sweep SweptCase",
     "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
     "ledger": "Ledger",
     "runner": "Interrupted Runner",
     "lubrication": "LubricationCurve lubrication_curve",
-    "ranking": "Ranking rank",
+    "ranking": "Ranking",
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
     "present": "dataset document load report save to_dataframe to_xarray",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
@@ -29,6 +30,8 @@ _PUBLIC = {
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
     "traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "tribometer.reading": "read_log",
+    "tribometer.reduction": "reduce_log",
 }
 """Module -> the public names it holds."""
 

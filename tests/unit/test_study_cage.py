@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 import pytest
+from separatrix.report.study import room, shown
 
 from separatrix.cage import ending
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.report.study import room, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
 from separatrix.study_file import read_study, resolved
 from separatrix.study_file.cautions import LONGEST

@@ -9,12 +9,12 @@ from types import SimpleNamespace
 
 import pytest
 from scipy.stats import lognorm
+from separatrix.report import report
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.ranking.friction import measured
-from separatrix.report import report
 from separatrix.results import document
 from separatrix.stability.map_parameters import varied
 from separatrix.study_file import read_study, resolved
@@ -76,7 +76,7 @@ def test_every_form_is_read(text, study_of):
 
 def test_the_page_on_uncertain_inputs_is_right():
     """The study on the page is read, and so is every form of its table."""
-    page = (Path(__file__).parents[2] / "docs" / "uncertainty.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "distributions.md").read_text(encoding="utf-8")
     page = page.partition("## How to write them")[2].partition("\n## ")[0]
     block = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
     with tempfile.TemporaryDirectory() as folder:
