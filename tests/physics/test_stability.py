@@ -4,11 +4,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from separatrix.report.stability import drift_note
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
-from separatrix.report.stability import drift_note
-from separatrix.runner import PART, Interrupted, Runner
-from separatrix.stability import (
+from separatrix.limits import (
     GrowthCounter,
     cage_at,
     critical_friction,
@@ -19,6 +18,7 @@ from separatrix.stability import (
     stability_curve,
     threshold_points,
 )
+from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05

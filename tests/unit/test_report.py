@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-
 from separatrix.report import ranking, ranking_full, report, whereabouts
 from separatrix.report.sensitivity import _marks
 

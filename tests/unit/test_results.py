@@ -9,12 +9,12 @@ from typing import Annotated
 
 import numpy as np
 import pytest
+from separatrix.results.labels import RECORD_CLASSES, unit_of, units
+from separatrix.results.plain import NotFiniteError, field_units, plain
 
 from separatrix import results
 from separatrix.errors import InputError
 from separatrix.results import documents
-from separatrix.results.labels import RECORD_CLASSES, unit_of, units
-from separatrix.results.plain import NotFiniteError, field_units, plain
 from separatrix.study import Guidance
 from separatrix.study_file import read_study
 from separatrix.units import Newton, Ratio

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from separatrix.results.friction_tests import page_data
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
 from separatrix.results import labelled
-from separatrix.results.friction_tests import page_data
 from separatrix.tribometer import steady
 from separatrix.tribometer.log import Conditions, RawLog
 from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
