@@ -10,9 +10,9 @@ import running_in
 from scipy.stats import binom
 from synthetic_friction import Recipe, made, recipes
 
-from separatrix.tribometer import run_in, steady
-from separatrix.tribometer.log import RawLog
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.friction.logs.log import RawLog
+from separatrix.friction.reduction import run_in, steady
+from separatrix.friction.reduction.reduction import reduce_log
 
 LOGS = 200
 CHANCE = 1e-4

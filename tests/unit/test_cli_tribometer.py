@@ -12,9 +12,9 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.cli.tribometer import file_name
-from separatrix.friction_file import read_friction
+from separatrix.friction.file import read_friction
+from separatrix.friction.logs.column_map import column_map
 from separatrix.study_file import read_study
-from separatrix.tribometer.column_map import column_map
 
 MAP = """
 [test]

@@ -11,8 +11,8 @@ import pytest
 from separatrix.chain import known_friction
 from separatrix.cli import main
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.friction_file import friction_text, read_friction, write_friction
-from separatrix.friction_fit import FrictionTest, TestedFriction
+from separatrix.friction.file import friction_text, read_friction, write_friction
+from separatrix.friction.fit import FrictionTest, TestedFriction
 from separatrix.pocket_contact import PocketConditions
 from separatrix.ranking.friction import cage_seen, friction_seen, frictions_seen
 from separatrix.study import Friction, Operation
@@ -218,7 +218,7 @@ def test_reading_a_friction_file_needs_no_numpy(tmp_path):
     path = tmp_path / "friction.toml"
     path.write_text(SMALL)
     code = (
-        "import sys, json; from pathlib import Path; from separatrix.friction_file import read_friction; "
+        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
         "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)

@@ -12,11 +12,11 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.tribometer.clock import is_clock, seconds
-from separatrix.tribometer.column_map import column_map
-from separatrix.tribometer.reading import read_log
-from separatrix.tribometer.reduction import reduce_log, reduction
-from separatrix.tribometer.siblings import with_outliers
+from separatrix.friction.logs.clock import is_clock, seconds
+from separatrix.friction.logs.column_map import column_map
+from separatrix.friction.logs.reading import read_log
+from separatrix.friction.reduction.reduction import reduce_log, reduction
+from separatrix.friction.reduction.siblings import with_outliers
 
 ROWS = 240
 RNG = np.random.default_rng(6)
@@ -302,7 +302,7 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
 
 def test_a_number_of_many_digits_takes_no_time():
     """Digits and a letter: a pattern that tried every split of them took the square of their number."""
-    from separatrix.tribometer.dialect import is_number
+    from separatrix.friction.logs.dialect import is_number
 
     assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
 

@@ -10,12 +10,12 @@ from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.reduction import steady
+from separatrix.friction.reduction.reduction import ReductionOptions, TestFriction, reduce_log, reduction
+from separatrix.friction.reduction.stick_slip import oscillation
 from separatrix.results import labelled
 from separatrix.results.friction_tests import page_data
-from separatrix.tribometer import steady
-from separatrix.tribometer.log import Conditions, RawLog
-from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
-from separatrix.tribometer.stick_slip import oscillation
 
 QUIET = Recipe(rows=4000, noise=0.004)
 

@@ -3,8 +3,8 @@
 import pytest
 
 from separatrix.errors import InputError
-from separatrix.friction_file import read_friction
-from separatrix.friction_fit import FrictionTest, fit_friction
+from separatrix.friction.file import read_friction
+from separatrix.friction.fit import FrictionTest, fit_friction
 from separatrix.study_file import read_study
 
 GOOD = {

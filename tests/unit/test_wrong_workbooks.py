@@ -1,12 +1,11 @@
 # ruff: noqa: E501 - one case a line
-"""Wrong workbooks and measurement files, studies and logs: each is refused in one line that says where and why."""
+"""Wrong workbooks of studies: each is refused in one line that says where and why."""
 
 import pytest
 from minimal_xlsx import Fault, Formula, Shown, parts, workbook, zipped
 
 from separatrix.errors import InputError
 from separatrix.study_file import read_study
-from separatrix.tribometer import xlsx
 
 HEAD = ["key", "value", "+-", "unit", "meaning"]
 STUDY = {
@@ -160,30 +159,6 @@ FILES = [
     ("bomb", zipped(parts(STUDY) | {"xl/media/a.bin": bytes(9_000_000)}), "would expand by more than 100:1"),
 ]  # fmt: skip
 
-ROWS = [["Time", "COF"], ["s", "-"], *([float(i), 0.1] for i in range(5))]
-
-
-def rows(row, column, value):
-    """Return the sheet of a log with one cell changed."""
-    found = [[*one] for one in ROWS]
-    found[row - 1][column - 1] = value
-    return {"a": found}
-
-
-LOGS = [
-    ("text among numbers", rows(5, 2, "high"), 'sheet a, cell B5 must be a number or empty; got "high"'),
-    ("number as text", rows(5, 2, "0,12"), "cell B5 must be a number or empty; got \"0,12\". Enter it as a number"),
-    ("truth value", rows(5, 2, True), "cell B5 must be a number or empty; got true"),
-    ("formula unsaved", rows(5, 2, Formula("A5/10")), 'cell B5 holds a formula without a saved value; got "=A5/10"'),
-    ("no names", {"a": ROWS[2:]}, "sheet a, row 1 has numbers without names above them"),
-    ("no table", {"a": ROWS[:2]}, "has no sheet with rows of numbers under a row of names"),
-    ("second table", {"a": [*ROWS, ["end of test"], [1.0, 2.0]]}, "row 9 has numbers again, after the table ended with row 8"),
-    ("percentages in part", rows(5, 2, Shown(0.5, 2)), "column B holds both plain numbers and percentages"),
-    ("external link", linked(rows(5, 2, Formula("[1]a!A1", 0.1))), "cell B5 is a formula in a workbook that takes values from other files"),
-    ("dates in part", rows(5, 1, Shown(0.5, 1)), "column A holds both plain numbers and dates"),
-    ("dates with a unit", {"a": [["Time", "COF"], ["min", "-"], [Shown(0.5, 1), 0.1], [Shown(0.6, 1), 0.1]]}, 'column A holds dates or times of day, which have no unit; got "min"'),
-]  # fmt: skip
-
 
 def refusal(read, path):
     """Return the one line with which a file is refused."""
@@ -210,12 +185,10 @@ def cases(table):
 
 
 def test_what_the_cases_begin_with_is_right(tmp_path):
-    """Without the mistakes the study, its candidates and the log are read."""
+    """Without the mistakes the study and its candidates are read."""
     (tmp_path / "case.xlsx").write_bytes(workbook({**STUDY, "candidates": CANDIDATES}))
     found = read_study(tmp_path / "case.xlsx")
     assert (found.cage.mass, found.ranking.candidates[0].friction["air, 440C"].mean) == (0.025, 0.12)
-    (tmp_path / "log.xlsx").write_bytes(workbook({"a": ROWS}))
-    assert len(xlsx.read_tables(tmp_path / "log.xlsx")[0].columns[0]) == 5
 
 
 @cases(STUDIES)
@@ -225,13 +198,6 @@ def test_a_wrong_study_is_refused_by_the_cell(tmp_path, content, words):
 
 
 @cases(FILES)
-@pytest.mark.parametrize("read", [read_study, xlsx.read_tables], ids=["study", "log"])
-def test_a_wrong_file_is_refused_as_study_and_as_log(tmp_path, read, content, words):
-    """What is wrong with the file itself is said in the same words to both readers."""
-    assert words in refusal(read, written(tmp_path, content))
-
-
-@cases(LOGS)
-def test_a_wrong_log_is_refused_by_the_cell(tmp_path, content, words):
-    """What is neither a number nor missing is never left out in silence."""
-    assert words in refusal(xlsx.read_tables, written(tmp_path, content))
+def test_a_wrong_file_is_refused(tmp_path, content, words):
+    """What is wrong with the file itself."""
+    assert words in refusal(read_study, written(tmp_path, content))

@@ -17,12 +17,12 @@ from separatrix.errors import InputError, together
 from separatrix.units import printable, shown
 
 if TYPE_CHECKING:
-    from separatrix.friction_fit import FrictionTest
-    from separatrix.friction_fit.fit import FrictionFit
-    from separatrix.tribometer.column_map import ColumnMap
-    from separatrix.tribometer.log import RawLog
-    from separatrix.tribometer.options import ReductionOptions
-    from separatrix.tribometer.reduction import Reduction
+    from separatrix.friction.fit import FrictionTest
+    from separatrix.friction.fit.fit import FrictionFit
+    from separatrix.friction.logs.column_map import ColumnMap
+    from separatrix.friction.logs.log import RawLog
+    from separatrix.friction.reduction.options import ReductionOptions
+    from separatrix.friction.reduction.reduction import Reduction
 
 _T = TypeVar("_T")
 
@@ -111,19 +111,19 @@ def _refuse_out(out: Path) -> None:
         cure = 'Name a file like "friction.toml".'
         raise InputError("--out", f"must name a file that ends in {SUFFIX}", shown(str(out)), cure)
     if exists:
-        from separatrix.friction_file.refusal import exists_already
+        from separatrix.friction.file.refusal import exists_already
 
         raise exists_already(out)
 
 
 def _column_map(path: Path | None) -> ColumnMap | None:
-    from separatrix.tribometer.column_map import read_column_map
+    from separatrix.friction.logs.column_map import read_column_map
 
     return None if path is None else read_column_map(path)
 
 
 def _reduction_options(options: TribometerOptions) -> ReductionOptions:
-    from separatrix.tribometer.options import ReductionOptions
+    from separatrix.friction.reduction.options import ReductionOptions
 
     try:
         return ReductionOptions(run_in_end=options.run_in)
@@ -139,7 +139,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
     InputError
         A folder holds no file that may be a log.
     """
-    from separatrix.tribometer.joining import in_order
+    from separatrix.friction.logs.joining import in_order
 
     found: list[Path] = []
     for path in paths:
@@ -165,7 +165,7 @@ def _reductions(
     paths: Sequence[Path], chosen: ColumnMap | None, how: ReductionOptions, options: TribometerOptions
 ) -> list[Reduction]:
     """Every test of every file, in their order; or the refusal of the first that is wrong."""
-    from separatrix.tribometer.siblings import with_outliers
+    from separatrix.friction.reduction.siblings import with_outliers
 
     with progress_bar("tribometer", quiet=options.quiet) as progress, _threads(options.jobs) as pool:
 
@@ -191,7 +191,7 @@ def _reductions(
 
 
 def _read(path: Path, chosen: ColumnMap | None) -> tuple[RawLog, ...]:
-    from separatrix.tribometer.reading import read_log
+    from separatrix.friction.logs.reading import read_log
 
     return read_log(path, chosen)
 
@@ -200,7 +200,7 @@ def _tests_of(
     files: Sequence[tuple[Path, Sequence[RawLog]]], options: TribometerOptions
 ) -> list[tuple[Path, RawLog]]:
     """Logs of tests, each with its first file: parts joined as asked, or as their headers say."""
-    from separatrix.tribometer.joining import by_series, joined
+    from separatrix.friction.logs.joining import by_series, joined
 
     home = {log.source: path for path, logs in files for log in logs}
     every = [log for _, logs in files for log in logs]
@@ -242,7 +242,7 @@ def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
 
 
 def _reduced(path: Path, log: RawLog, chosen: ColumnMap | None, how: ReductionOptions) -> Reduction:
-    from separatrix.tribometer.reduction import reduction
+    from separatrix.friction.reduction.reduction import reduction
 
     said = None if chosen is None else chosen.run_in_end(path)
     key = "--run-in" if how.run_in_end is not None else "run_in_end"
@@ -284,7 +284,7 @@ def _tests(reductions: Sequence[Reduction], *, required: bool) -> list[FrictionT
         A friction file is asked for, and a test cannot stand in it.
     """
     from separatrix import __version__
-    from separatrix.friction_file.reduced import friction_test
+    from separatrix.friction.file.reduced import friction_test
 
     found: list[FrictionTest] = []
     wrong: list[InputError] = []
@@ -305,7 +305,7 @@ def _deliver(
     notes: Sequence[str],
 ) -> None:
     """Write the files, then the answer."""
-    from separatrix.friction_fit import fit_friction
+    from separatrix.friction.fit import fit_friction
     from separatrix.report.tribometer import tribometer as in_words
     from separatrix.results.tribometer import tribometer as document
 
@@ -326,8 +326,8 @@ def _deliver(
 
 def _write(tests: Sequence[FrictionTest], out: Path) -> None:
     """Write the friction file aside, then rename it into place; a file that came meanwhile stays."""
-    from separatrix.friction_file import friction_text
-    from separatrix.friction_file.refusal import exists_already
+    from separatrix.friction.file import friction_text
+    from separatrix.friction.file.refusal import exists_already
 
     with staged(out.parent) as stage:
         (stage / out.name).write_text(friction_text(tests), encoding="utf-8")

@@ -15,8 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from separatrix.figures.heading import LINE
 from separatrix.figures.literal import literal
 from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
-from separatrix.tribometer.flags import at
-from separatrix.tribometer.reduction import GIVEN
+from separatrix.friction.reduction.flags import at
+from separatrix.friction.reduction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 
 ROWS = 2.1

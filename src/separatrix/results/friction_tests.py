@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from separatrix.friction.reduction import steady
+from separatrix.friction.reduction.options import AXIS_UNITS
+from separatrix.friction.reduction.reduction import Reduction
 from separatrix.results.plain import plain
-from separatrix.tribometer import steady
-from separatrix.tribometer.options import AXIS_UNITS
-from separatrix.tribometer.reduction import Reduction
 from separatrix.units import Array
 
 COLUMNS = 1200
@@ -41,7 +41,7 @@ def page_data(reduction: Reduction) -> xr.Dataset:
     Parameters
     ----------
     reduction : Reduction
-        From `separatrix.tribometer.reduction.reduction`.
+        From `separatrix.friction.reduction.reduction.reduction`.
     """
     unit = AXIS_UNITS[reduction.test.run_in_axis]
     variables = _numbers(reduction, unit) | _traces(reduction, unit) | _steady(reduction, unit)

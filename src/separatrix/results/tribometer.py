@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from separatrix.friction_fit.fit import FrictionFit, MaterialFit
+from separatrix.friction.fit.fit import FrictionFit, MaterialFit
+from separatrix.friction.logs.log import RawLog
+from separatrix.friction.logs.reading import described
+from separatrix.friction.reduction.reduction import TestFriction
 from separatrix.results.plain import plain, plain_record
-from separatrix.tribometer.log import RawLog
-from separatrix.tribometer.reading import described
-from separatrix.tribometer.reduction import TestFriction
 
 Document = dict[str, Any]
 

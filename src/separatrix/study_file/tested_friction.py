@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError
-from separatrix.friction_file import read_friction
-from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
-from separatrix.friction_fit.records import CONDITIONS
+from separatrix.friction.file import read_friction
+from separatrix.friction.fit import FrictionTest, StatedFriction, TestedFriction
+from separatrix.friction.fit.records import CONDITIONS
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
