@@ -33,8 +33,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.reading import read_log
-from separatrix.friction.reduction.friction_test import TestFriction
-from separatrix.friction.reduction.reduction import ReductionOptions, reduce_log
+from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log
 
 SEED = 20260
 MOST_ROWS = 4000

@@ -7,8 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from separatrix.equilibrium import equilibrium
-from separatrix.friction.fit import FrictionTest, StatedFriction, TestedFriction, fit_friction
-from separatrix.friction.fit.components import LinearModel, conditional, variance_components
+from separatrix.friction.fit import fit_friction
+from separatrix.friction.law import StatedFriction, TestedFriction
+from separatrix.friction.records import FrictionTest
+from separatrix.friction.scatter import LinearModel, conditional, variance_components
 from separatrix.hertz import contact_ellipse
 from separatrix.pocket_contact import contact_radius, impact_force, sliding_speed
 from separatrix.ranking.lowest import lowest_of, probability_lowest

@@ -11,8 +11,7 @@ from scipy.stats import binom
 from synthetic_friction import Recipe, made, recipes
 
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction import run_in, steady
-from separatrix.friction.reduction.reduction import reduce_log
+from separatrix.friction.reduction import reduce_log, run_in, steady
 
 LOGS = 200
 CHANCE = 1e-4

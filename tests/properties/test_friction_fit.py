@@ -5,7 +5,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from separatrix.friction.file import read_friction, write_friction
-from separatrix.friction.fit import FrictionTest, fit_friction
+from separatrix.friction.fit import fit_friction
+from separatrix.friction.records import FrictionTest
 from separatrix.ranking.lowest import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)

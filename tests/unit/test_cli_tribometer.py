@@ -163,7 +163,7 @@ WRONG = {
     "plots is a file": (["a.csv", "--plots", "b.csv"], ("b.csv cannot be written",)),
     "plots is empty": (["a.csv", "--plots", " "], ("--plots needs the name of a folder",)),
     "running-in in newtons": (["a.csv", "--run-in", "5 N"], ("--run-in must be a time", "got")),
-    "running-in beyond": (["a.csv", "--run-in", "5 h"], ("a.csv: --run-in must lie before",)),
+    "running-in beyond": (["a.csv", "--run-in", "5 h"], ("a.csv: the end of running-in must lie before",)),
     "running-in in cycles": (["a.csv", "--run-in", "5 cycles"], ("a.csv", "needs a column of cycles")),
     "no jobs": (["a.csv", "--jobs", "0"], ("--jobs must lie between 1",)),
     "no files": ([], ("Missing argument 'FILES...'",)),
@@ -236,7 +236,7 @@ def test_a_column_map_says_where_running_in_ends_in_each_file(logs, capsys):
     [
         ('"5"', 'map.toml: [files."b.csv"] run_in_end must be a time, a distance'),
         ("5.0", "run_in_end must be a time, a distance"),
-        ('"5 h"', "b.csv: run_in_end must lie before the end of the test"),
+        ('"5 h"', "b.csv: the end of running-in must lie before the end of the test"),
         ('"5 m"', "b.csv needs a column of distance"),
     ],
 )

@@ -15,8 +15,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.clock import is_clock, seconds
 from separatrix.friction.logs.column_map import column_map
 from separatrix.friction.logs.reading import read_log
-from separatrix.friction.reduction.reduction import reduce_log, reduction
-from separatrix.friction.reduction.siblings import with_outliers
+from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 
 ROWS = 240
 RNG = np.random.default_rng(6)

@@ -11,11 +11,10 @@ from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.reduction import steady
-from separatrix.friction.reduction.reduction import ReductionOptions, TestFriction, reduce_log, reduction
+from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log, reduction, steady
 from separatrix.friction.reduction.stick_slip import oscillation
 from separatrix.results import labelled
-from separatrix.results.friction_tests import page_data
+from separatrix.results.tribometer import page_data
 
 QUIET = Recipe(rows=4000, noise=0.004)
 

@@ -7,7 +7,7 @@ import pytest
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.reduction.reduction import ReductionOptions, reduce_log
+from separatrix.friction.reduction import ReductionOptions, reduce_log
 
 NAN = float("nan")
 

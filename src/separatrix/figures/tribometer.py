@@ -15,8 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from separatrix.figures.heading import LINE
 from separatrix.figures.literal import literal
 from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
-from separatrix.friction.reduction.flags import at
-from separatrix.friction.reduction.reduction import GIVEN
+from separatrix.friction.abscissa import in_words
+from separatrix.friction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 
 ROWS = 2.1
@@ -55,7 +55,7 @@ def page(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : Dataset
-        From `separatrix.results.friction_tests.page_data`, or loaded from where that was saved.
+        From `separatrix.results.tribometer.page_data`, or loaded from where that was saved.
     """
     with journal():
         return settled(_page(data))
@@ -121,7 +121,7 @@ def numbers(data: xr.Dataset) -> str:
     """Return the friction of the test with its interval, and what it was made from."""
     mean, half, error = (float(data[name]) for name in ("friction", "half_width", "standard_error"))
     cycles, axis = data.attrs["cycles"], str(data.attrs["axis"])
-    start, end = (at(float(data[name]), axis) for name in ("run_in_end", "steady_end"))
+    start, end = (in_words(float(data[name]), axis) for name in ("run_in_end", "steady_end"))
     start += " (given)" if data.attrs["run_in_method"] == GIVEN else ""
     return (
         f"Friction {format_number(mean)} \N{PLUS-MINUS SIGN} {format_number(half, 2)} (95 %) from {start} "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.friction.fit.covariates import in_words
+from separatrix.friction.law import in_words
 from separatrix.report.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]

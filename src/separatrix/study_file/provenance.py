@@ -9,7 +9,8 @@ from typing import Any
 
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
-from separatrix.friction.fit import FrictionTest, TestedFriction
+from separatrix.friction.law import TestedFriction
+from separatrix.friction.records import FrictionTest
 from separatrix.study import CageDesign, Candidate, Film, Friction, Material, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of

@@ -10,8 +10,8 @@ from typing import Any
 
 from separatrix.errors import InputError
 from separatrix.friction.file import read_friction
-from separatrix.friction.fit import FrictionTest, StatedFriction, TestedFriction
-from separatrix.friction.fit.records import CONDITIONS
+from separatrix.friction.law import StatedFriction, TestedFriction
+from separatrix.friction.records import CONDITIONS, FrictionTest
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values

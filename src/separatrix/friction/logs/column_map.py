@@ -10,11 +10,11 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
+from separatrix.friction.abscissa import place
 from separatrix.friction.logs.dialect import MISSING, SEPARATORS
 from separatrix.friction.logs.encoding import ENCODINGS
 from separatrix.friction.logs.log import MEANINGS
 from separatrix.friction.logs.names import known_units, scale_of
-from separatrix.friction.reduction.options import place
 from separatrix.toml_text import Kind, read_toml
 from separatrix.units import printable, shown
 
@@ -229,10 +229,7 @@ def _condition(key: str, value: object, where: str) -> str | float:
 
 def _end(value: object, where: str) -> str:
     """An end of running-in, as it is written."""
-    try:
-        place(value)  # type: ignore[arg-type]  # it refuses what is no text
-    except InputError as error:
-        raise error.at(where) from None
+    place(value, where)
     return str(value)
 
 

@@ -11,7 +11,7 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.cycles import FEWEST, Spans
-from separatrix.friction.reduction.options import ReductionOptions
+from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.units import Array
 
 SMOOTHED = 5

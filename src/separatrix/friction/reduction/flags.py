@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.friction.reduction.cycles import Spans
-from separatrix.friction.reduction.events import Event
-from separatrix.friction.reduction.options import ReductionOptions
-from separatrix.friction.reduction.run_in import RunIn
-from separatrix.friction.reduction.steady import LONG, SteadyMean
-from separatrix.friction.reduction.stick_slip import Oscillation
-from separatrix.units import Array, format_number, format_quantity
+from separatrix.friction.abscissa import in_words
+from separatrix.friction.reduction.cycles import means
+from separatrix.friction.reduction.events import friction_step, run_in_rise, wear_step
+from separatrix.friction.reduction.steady import LONG
+from separatrix.units import format_number, format_quantity
+
+if TYPE_CHECKING:
+    from separatrix.friction.reduction import Reduction
 
 RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
-"""Size and words in which a drift is told, by the abscissa."""
+"""Size and words of the unit of a drift, by the abscissa."""
 
 CHANCE = 0.01
-"""Probability without any drift below which a drift is told."""
+"""Probability without any drift below which a drift is reported."""
 
 CLEAR = 0.25
-"""Power of an oscillation over that of all the rest from which it is told."""
+"""Power of an oscillation over that of all the rest from which it is reported."""
 
 HALF = 0.5
-"""Share of a test beyond which running-in is told to be long."""
+"""Share of a test beyond which running-in is reported as long."""
 
 FEW_ROWS = 36
-"""Rows below which nothing can be said of running-in."""
+"""Rows below which running-in cannot be judged."""
 
 RESOLVED = 5.0
 """Rows an oscillation below which it may be the image of a faster one."""
@@ -39,160 +41,173 @@ HIGH = 1.0
 """Friction above which a wrong column or unit is likelier than a contact."""
 
 GAP = 0.05
-"""Share of the steady part without a row that is told."""
+"""Share of the steady part without a row that is reported."""
 
 
-def at(value: float, axis: str) -> str:
-    """Return a place along the abscissa as text: ``"12.5 min"``, ``"1.2 km"``, ``"500 cycles"``."""
-    if axis == "cycles":
-        return f"{format_number(value)} cycles"
-    if axis == "distance":
-        return f"{format_number(value / 1e3)} km" if value >= 1e4 else format_quantity(value, "m")
-    for size, name in ((3600.0, "h"), (60.0, "min")):
-        if value >= 3.0 * size:
-            return f"{format_number(value / size)} {name}"
-    return format_quantity(value, "s")
+def flags(one: Reduction) -> Iterator[str]:
+    """Yield what a reader should know about a test."""
+    yield from _events(one)
+    yield from _run_in(one)
+    yield from _rise(one)
+    yield from _drift(one)
+    yield from _oscillation(one)
+    yield from _spikes(one)
+    yield from _steps(one)
+    yield from _length(one)
+    yield from _range(one)
+    yield from _digits(one)
+    yield from _gap(one)
 
 
-def run_in_flags(
-    found: RunIn | None, mean: SteadyMean, start: float, end: float, cut: float, axis: str
-) -> Iterator[str]:
+def _at_row(one: Reduction, row: int) -> str:
+    """Return the place of a row in words."""
+    return in_words(float(one.along[min(row, one.along.size - 1)]), one.test.run_in_axis)
+
+
+def _at(one: Reduction, ruled: float) -> str:
+    """Return a place on the ruler in words."""
+    return in_words(one.stretch.place(ruled), one.test.run_in_axis)
+
+
+def _events(one: Reduction) -> Iterator[str]:
+    """Report what begins or ends the test."""
+    for event in one.events:
+        place, usual = _at_row(one, event.row), format_number(event.usual, 3)
+        force, low = format_quantity(event.usual, "N"), format_quantity(event.size, "N")
+        if event.kind == "loading":
+            yield f"The normal force reaches its {force} only at {place}: what is before is left out."
+        elif event.kind == "force lost":
+            yield f"The normal force falls from {force} to {low} at {place}: the steady part ends before it."
+        elif event.kind == "seizure":
+            yield (
+                f"Seizure or a failed film: friction rises from {usual} to {format_number(event.size, 3)} at "
+                f"{place} and stays up; the steady part ends before it."
+            )
+
+
+def _run_in(one: Reduction) -> Iterator[str]:
     """Report running-in that is long or does not end, and a steady part that is not level."""
-    share = (cut - start) / (end - start)
+    test, found, start = one.test, one.run_in, float(one.stretch.along[0])
+    share = (test.run_in_end - start) / (test.steady_end - start)
+    end = in_words(test.run_in_end, test.run_in_axis)
     rest = 0.0 if found is None else found.rest
-    of_mean = f"{format_number(rest, 2)} ({100 * rest / max(abs(mean.mean), 1e-300):.2g} % of the mean)"
+    of_mean = f"{format_number(rest, 2)} ({100 * rest / max(abs(test.friction), 1e-300):.2g} % of the mean)"
     if found is not None and not found.ends:
         yield (
-            f"Running-in does not end: friction still changes behind {at(cut, axis)}, {100 * share:.0f} % of "
+            f"Running-in does not end: friction still changes behind {end}, {100 * share:.0f} % of "
             f"the test; later parts differ from the mean by up to {of_mean}."
         )
-    elif found is not None and not found.level and rest > mean.standard_error:
+    elif found is not None and not found.level and rest > one.mean.standard_error:
         yield (
             f"The steady part is not level: its later parts differ from its mean by up to {of_mean}, "
             "which is in the interval."
         )
     if share > HALF and (found is None or found.ends):
-        yield f"Running-in takes {100 * share:.0f} % of the test, up to {at(cut, axis)}."
+        yield f"Running-in takes {100 * share:.0f} % of the test, up to {end}."
 
 
-def rise_flag(rise: tuple[str, float] | None, friction: float, *, is_end_given: bool) -> Iterator[str]:
-    """Tell of running-in that ends far above where it began, with its place as text and the level before."""
+def _rise(one: Reduction) -> Iterator[str]:
+    """Report running-in that ends far above where it began."""
+    rise = run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)
     if rise is None:
         return
-    place, before = rise
-    low, high = format_number(before, 3), format_number(friction, 3)
-    cut = "" if is_end_given else "if running-in ends elsewhere, give run_in_end in the column map; "
+    low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
+    cut = "" if one.run_in is None else "if running-in ends elsewhere, give run_in_end in the column map; "
     yield (
-        f"Friction rises from {low} to {high} near {place}, in or next to what is cut as running-in: "
-        f"a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
+        f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
+        f"running-in: a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
         "give the log only up to the rise."
     )
 
 
-def drift_flag(mean: SteadyMean, length: float, axis: str, options: ReductionOptions) -> Iterator[str]:
-    """Tell of a straight drift that noise would hardly make and that counts."""
-    if mean.change_chance >= CHANCE or abs(mean.change) < options.drift_ratio * abs(mean.mean):
+def _drift(one: Reduction) -> Iterator[str]:
+    """Report a straight drift that noise would hardly make and that is large enough."""
+    mean, test = one.mean, one.test
+    if mean.change_chance >= CHANCE or abs(mean.change) < one.options.drift_ratio * abs(mean.mean):
         return
-    size, words = RATES[axis]
-    rate, error = mean.change / length * size, mean.change_error / length * size
-    first, last = mean.mean - mean.change / 2, mean.mean + mean.change / 2
+    size, words = RATES[test.run_in_axis]
+    rate, error = format_number(test.drift_rate * size, 3), format_number(test.drift_error * size, 2)
+    first, last = (format_number(mean.mean + half * mean.change, 3) for half in (-0.5, 0.5))
     yield (
-        f"Friction drifts by {format_number(rate, 3)} {words} (standard error {format_number(error, 2)}), "
-        f"from {format_number(first, 3)} to {format_number(last, 3)} over the steady part: "
-        "its mean stands for that part, not for its end."
+        f"Friction drifts by {rate} {words} (standard error {error}), from {first} to {last} over the steady "
+        "part: its mean is that of this part, not of its end."
     )
 
 
-def oscillation_flag(
-    found: Oscillation,
-    mean: float,
-    axis: str,
-    is_cycle_known: bool,
-    spacing: float,
-    options: ReductionOptions,
-) -> Iterator[str]:
-    """Report an oscillation that is large enough and stands out of the noise, of rows at a spacing."""
-    small = found.amplitude < options.stick_slip_ratio * abs(mean)
+def _oscillation(one: Reduction) -> Iterator[str]:
+    """Report an oscillation that is large enough and exceeds the noise."""
+    found, test = one.oscillation, one.test
+    small = found.amplitude < one.options.stick_slip_ratio * abs(test.friction)
     if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
         return
     rate = format_number(found.frequency, 3)
-    power = format_number(found.signal_to_noise, 2)
     where = {"time": f"at {rate} Hz", "distance": f"{rate} times per m", "cycles": f"{rate} times per cycle"}
-    what = (
-        "stick-slip" if is_cycle_known else "stick-slip, or once per turn or stroke (no cycle time is known)"
-    )
+    what = "stick-slip"
+    if one.cycle is None:
+        what = "stick-slip, or once per turn or stroke (no cycle time is known)"
+    spacing = (test.steady_end - test.run_in_end) / max(test.steady_rows - 1, 1)
     rows = 1.0 / (found.frequency * spacing)
     if rows < RESOLVED:
         what = (
             f"with only {format_number(rows, 2)} rows an oscillation it may be stick-slip, run-out or the "
-            "image of something faster (aliasing); log more rows to tell them apart"
+            "image of something faster (aliasing); log more rows to distinguish them"
         )
     yield (
-        f"Friction oscillates {where[axis]} by {format_number(found.amplitude, 2)} from peak to peak, "
-        f"{100 * found.amplitude / abs(mean):.0f} % of its mean, with {power} times "
-        f"the power of all the rest: {what}."
+        f"Friction oscillates {where[test.run_in_axis]} by {format_number(found.amplitude, 2)} from peak to "
+        f"peak, {100 * found.amplitude / abs(test.friction):.0f} % of its mean, with "
+        f"{format_number(found.signal_to_noise, 2)} times the power of all the rest: {what}."
     )
 
 
-def spike_flag(spikes: Sequence[Event], place: str) -> Iterator[str]:
-    """Tell of friction that rises far in the steady part and comes back; the place is of the largest."""
+def _spikes(one: Reduction) -> Iterator[str]:
+    """Report friction that rises far in the steady part and comes back."""
+    low, high = one.test.run_in_end, one.test.steady_end
+    spikes = [e for e in one.events if e.kind == "spike" and low <= one.along[e.row] <= high]
     if spikes:
-        usual, size = format_number(spikes[0].usual, 3), format_number(max(e.size for e in spikes), 3)
+        largest = max(spikes, key=lambda event: event.size)
         often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
-        yield f"Friction spikes {often} at {place}: from {usual} to {size}, and comes back."
+        sizes = f"{format_number(spikes[0].usual, 3)} to {format_number(largest.size, 3)}"
+        yield f"Friction spikes {often} at {_at_row(one, largest.row)}: from {sizes}, and comes back."
 
 
-def event_flag(event: Event, begin: str) -> str:
-    """Tell of an event that begins or ends the test, at a place along the abscissa."""
-    usual = format_number(event.usual, 3)
-    if event.kind == "loading":
-        force = format_quantity(event.usual, "N")
-        return f"The normal force reaches its {force} only at {begin}: what is before is left out."
-    if event.kind == "force lost":
-        low, force = format_quantity(event.size, "N"), format_quantity(event.usual, "N")
-        return f"The normal force falls from {force} to {low} at {begin}: the steady part ends before it."
-    size = format_number(event.size, 3)
-    return (
-        f"Seizure or a failed film: friction rises from {usual} to {size} at {begin} and stays up; "
-        "the steady part ends before it."
-    )
+def _steps(one: Reduction) -> Iterator[str]:
+    """Report steps in friction or wear depth."""
+    if (step := friction_step(one.spans)) is not None:
+        word = f"{'rises' if step[1] > 0 else 'falls'} in one step by {format_number(abs(step[1]), 2)}"
+        yield f"Friction {word} at {_at(one, step[0])}: a wear event, or a new surface."
+    depth, spans = one.log.wear_depth, one.spans
+    if depth is None or not np.isfinite(depth).all():
+        return
+    jump = wear_step(means(one.stretch.ruler, depth[one.rows], spans.start, spans.end, spans.means.size))
+    if jump is not None:
+        size = format_quantity(abs(jump[1]), "m", 2)
+        yield f"Wear depth jumps by {size} at {_at(one, jump[0])}: a wear event."
 
 
-def step_flags(friction: tuple[str, float] | None, wear: tuple[str, float] | None) -> Iterator[str]:
-    """Tell of steps in friction or wear depth, each with its place as text and its size."""
-    if friction is not None:
-        place, size = friction
-        word = f"{'rises' if size > 0 else 'falls'} in one step by {format_number(abs(size), 2)}"
-        yield f"Friction {word} at {place}: a wear event, or a new surface."
-    if wear is not None:
-        place, size = wear
-        yield f"Wear depth jumps by {format_quantity(abs(size), 'm', 2)} at {place}: a wear event."
-
-
-def length_flags(
-    mean: SteadyMean, error: float, effective: float, rows: int, options: ReductionOptions
-) -> Iterator[str]:
+def _length(one: Reduction) -> Iterator[str]:
     """Report a test too short for its correlation, where the error is not mostly that of running-in."""
-    if rows < FEW_ROWS:
+    test, fewest = one.test, one.options.fewest_effective
+    if test.steady_rows < FEW_ROWS:
         yield (
-            f"The steady part has {rows} rows: too few to see running-in or correlation, and the interval "
-            "assumes none."
+            f"The steady part has {test.steady_rows} rows: too few to see running-in or correlation, and the "
+            "interval assumes none."
         )
-    elif mean.is_long and error < MOSTLY * mean.standard_error:
+    elif one.mean.is_long and test.standard_error < MOSTLY * one.mean.standard_error:
         yield (
             f"Friction is correlated over {100 / (np.pi * LONG):.0f} % of the steady part or longer: the "
             "test is too short for its scatter, and the interval may be too narrow."
         )
-    elif effective < options.fewest_effective:
+    elif test.effective_count < fewest:
         yield (
-            f"The steady part holds {format_number(effective, 2)} independent values, fewer than "
-            f"{format_number(options.fewest_effective)}: the test is short for its scatter."
+            f"The steady part holds {format_number(test.effective_count, 2)} independent values, fewer than "
+            f"{format_number(fewest)}: the test is short for its scatter."
         )
 
 
-def range_flag(mean: float, friction: Array) -> Iterator[str]:
+def _range(one: Reduction) -> Iterator[str]:
     """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
-    low, high = (float(value) for value in np.percentile(friction, (1.0, 99.0)))
+    mean = one.test.friction
+    low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
         numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
@@ -206,26 +221,27 @@ def range_flag(mean: float, friction: Array) -> Iterator[str]:
         )
 
 
-def digit_flag(mean: SteadyMean, step: float, error: float) -> Iterator[str]:
-    """Tell of friction whose noise is lost in the last digit of the log."""
+def _digits(one: Reduction) -> Iterator[str]:
+    """Report friction whose noise is lost in the last digit of the log."""
+    step, error = one.last_digit
     if step == 0.0:
         yield (
-            f"Friction is {format_number(mean.mean)} in every row: the log does not show its noise, and the "
-            "interval holds none."
+            f"Friction is {format_number(one.test.friction)} in every row: the log does not show its noise, "
+            "and the interval holds none."
         )
-    elif error > mean.standard_error:
+    elif error > one.mean.standard_error:
         yield (
             f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
             f"makes a standard error of {format_number(error, 2)}."
         )
 
 
-def gap_flag(spans: Spans) -> Iterator[str]:
-    """Tell of a stretch without rows in the steady part."""
+def _gap(one: Reduction) -> Iterator[str]:
+    """Report a stretch without rows in the steady part."""
     longest = current = 0
-    for count in spans.counts:
+    for count in one.spans.counts:
         current = current + 1 if count == 0 else 0
         longest = max(longest, current)
-    share = longest / spans.counts.size
+    share = longest / one.spans.counts.size
     if share > GAP:
         yield f"No row lies in {100 * share:.0f} % of the steady part in one piece: the mean bridges it."

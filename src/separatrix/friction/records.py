@@ -1,4 +1,4 @@
-"""One friction test as a fit takes it, and the conditions under which it was run."""
+"""A friction test as a fit takes it, its conditions, and the friction that tests predict."""
 
 from __future__ import annotations
 

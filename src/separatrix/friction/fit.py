@@ -15,17 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.errors import InputError
-from separatrix.friction.fit.components import LinearModel, VarianceComponents, variance_components
-from separatrix.friction.fit.covariates import (
+from separatrix.friction.law import (
+    SLACK,
     Covariates,
     Range,
     covariates,
+    held,
+    other_medium,
     tested_range,
     values_of,
 )
-from separatrix.friction.fit.extrapolation import SLACK, held, other_medium
-from separatrix.friction.fit.posterior import Posterior, posteriors
-from separatrix.friction.fit.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
+from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
+from separatrix.friction.scatter import (
+    LinearModel,
+    Posterior,
+    VarianceComponents,
+    posteriors,
+    variance_components,
+)
 from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
@@ -78,7 +85,7 @@ class MaterialFit:
         The medium may be given by several names: a test under any of them was run in it.
 
         Outside the tests the mean stays that of the nearest tested condition, the standard deviation
-        grows by a stated rule (`separatrix.friction.fit.extrapolation`), and `extrapolation` says so.
+        grows by a stated rule (`separatrix.friction.law`), and `extrapolation` says so.
         """
         asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
         within = held(asked, self.ranges, self._exponents())
