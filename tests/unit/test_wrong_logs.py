@@ -156,7 +156,7 @@ WRONG = {
     ),
     "friction in percent without saying so": (
         csv(columns={"time [s]": TIME, "COF": FRICTION * 100}),
-        "above 5 in more than a tenth of its rows; got a median of 10.95. If it is in percent",
+        "above 5 in more than a tenth of its rows: not a ratio of forces; got a median of 10.95. If it is in percent",
     ),
     "a tangential force alone": (
         csv(columns={"time [s]": TIME, "Ff [N]": FORCE}),
@@ -176,7 +176,7 @@ WRONG = {
     ),
     "a normal force of both signs": (
         csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}),
-        "has a normal force of both signs, so that compression cannot be told; got 10 rows above zero, 10 below",
+        "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below",
     ),
     "no abscissa": (
         csv(columns={"a": TIME, "COF": FRICTION}),
@@ -184,7 +184,7 @@ WRONG = {
     ),
     "time without unit": (
         csv(columns={"time": TIME, "COF": FRICTION}),
-        'column "time" has no unit, so that its meaning is not sure. Below [columns] in a column map, with the '
+        'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the '
         'true unit: time = { name = "time", unit = "s" }.',
     ),
     "time in an unknown unit": (

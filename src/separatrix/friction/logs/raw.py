@@ -9,16 +9,16 @@ import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Chosen, Understood, understand
+from separatrix.friction.logs.columns import Meant, Understood, understand
 from separatrix.friction.logs.conditions import KEYS, conditions_of
 from separatrix.friction.logs.dialect import is_number
 from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, RawLog, RawTable
-from separatrix.friction.logs.names import header_parts, looks_extreme, plain
+from separatrix.friction.logs.names import Scale, header_parts, looks_extreme, plain
 from separatrix.friction.logs.sliding import sliding_rows
 from separatrix.units import Array, format_quantity, printable
 
 HIGHEST = 5.0
-"""Friction above which a value is no ratio of forces in sliding: a code for a missing value, or no load."""
+"""Friction above which a value is not a ratio of forces in sliding: a code for a missing value, or unloaded."""
 
 Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
@@ -37,13 +37,13 @@ def raw_log(
     columns: ColumnMap,
     given: Mapping[str, str | float],
 ) -> RawLog:
-    """Log of one table, with the conditions that the column map gives its file.
+    """Log of one table, with the conditions that the column map states for its file.
 
     Raises
     ------
     InputError
-        A column that is needed cannot be told or has no unit, time runs backwards, fewer than two complete
-        rows: file, line and cure.
+        A column that is needed cannot be identified or has no unit, time runs backwards, fewer than two
+        complete rows: file, line and cure.
     """
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
@@ -51,24 +51,34 @@ def raw_log(
         table.headers, table.units, source, columns, table.layout, constant_force=force is not None
     )
     _check_twins(table, understood, source)
-    notes = _extreme(table, understood)
+    notes: list[str] = []
+    mean = understood.used.get("friction")
+    if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
+        notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
     absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
-    arrays = {meaning: _in_si(table, chosen, absent) for meaning, chosen in understood.used.items()}
-    arrays = _without_empty_abscissae(arrays, source, notes)
+    arrays = {meaning: _in_si(table, one, absent) for meaning, one in understood.used.items()}
+    _drop_empty_abscissae(arrays, source, notes)
     _mend_sign(arrays, understood, source, notes)
     signed = _friction(arrays, force, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
-    kept, missing = _complete(arrays, source, notes)
+    kept = _complete(arrays, source)
+    missing = int(len(kept) - kept.sum())
+    if missing:
+        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
     _check_order(arrays, kept, table, source)
     kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
     notes += [left_out] if left_out else []
-    arrays = {meaning: column if kept.all() else column[kept] for meaning, column in arrays.items()}
-    rotation = _speed_from_rotation(arrays, given, notes)
+    if not kept.all():
+        arrays = {meaning: column[kept] for meaning, column in arrays.items()}
+    rotation = arrays.pop("rotational_speed", None)
+    turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
+    radius = given.get("track_radius")
+    if turns and isinstance(radius, float) and "slip_speed" not in arrays:
+        arrays["slip_speed"] = turns["rotational_speed"] * radius
+        notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = _without_stroke_speed(table, arrays, notes)
-    conditions, sentences = conditions_of(given, metadata, arrays | rotation, source)
-    fields: dict[str, Any] = {
-        meaning: column for meaning, column in arrays.items() if meaning != "rotational_speed"
-    }
+    conditions, sentences = conditions_of(given, metadata, arrays | turns, source)
+    fields: dict[str, Any] = dict(arrays)
     return RawLog(
         source=source,
         checksum=checksum,
@@ -82,15 +92,6 @@ def raw_log(
     )
 
 
-def _extreme(table: RawTable, understood: Understood) -> list[str]:
-    """A note on a friction that is a largest, smallest or static one by its name."""
-    chosen = understood.used.get("friction")
-    header = "" if chosen is None else table.headers[chosen.index].strip()
-    if not looks_extreme(header):
-        return []
-    return [f'the column of friction, "{printable(header)}", is not a mean friction by its name']
-
-
 def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
     """Refuse columns of one name that hold different numbers, where one of them is needed."""
     for meaning, others in understood.twins.items():
@@ -98,8 +99,8 @@ def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
             continue
         places = [understood.used[meaning].index, *others]
         columns = [table.columns[i] for i in places]
-        there = np.isfinite(columns).all(axis=0)
-        if any(not np.array_equal(columns[0][there], one[there]) for one in columns[1:]):
+        both = np.isfinite(columns).all(axis=0)
+        if any(not np.array_equal(columns[0][both], one[both]) for one in columns[1:]):
             header = table.headers[places[0]].strip()
             rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
             listed = ", ".join(f'"{printable(header)}"' for _ in places)
@@ -108,10 +109,9 @@ def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
             raise InputError(source, rule, f"columns {listed}", cure)
 
 
-def _in_si(table: RawTable, chosen: Chosen, absent: Sequence[float]) -> Array:
+def _in_si(table: RawTable, one: Meant, absent: Sequence[float]) -> Array:
     """A column in SI units; NaN for what is not finite or a number that means a missing value."""
-    scale = chosen.scale
-    column = table.columns[chosen.index]
+    scale, column = one.scale or Scale(), table.columns[one.index]
     if absent:
         column = np.where(np.isin(column, absent), np.nan, column)
     if scale.factor != 1.0:
@@ -120,18 +120,19 @@ def _in_si(table: RawTable, chosen: Chosen, absent: Sequence[float]) -> Array:
         column = column / scale.divisor
     if scale.offset != 0.0:
         column = column + scale.offset
-    if chosen.sign < 0:
+    if one.sign < 0:
         column = -column
     return column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
 
 
-def _without_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str]) -> dict[str, Array]:
-    empty = [meaning for meaning in ABSCISSAE if meaning in arrays and np.isnan(arrays[meaning]).all()]
-    kept = {meaning: column for meaning, column in arrays.items() if meaning not in empty}
-    if not any(meaning in kept for meaning in ABSCISSAE):
+def _drop_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str]) -> None:
+    there = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
+    if empty == there:
         raise InputError(source, f"has no value of {' or '.join(empty)} in any row")
-    notes += [f"the column of {meaning} is empty and not used" for meaning in empty]
-    return kept
+    for meaning in empty:
+        del arrays[meaning]
+        notes.append(f"the column of {meaning} is empty and not used")
 
 
 def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, notes: list[str]) -> None:
@@ -144,11 +145,11 @@ def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, no
         arrays["normal_force"] = -column
         notes.append("the normal force is negative in the file: compression counts negative there")
     elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
-        rule = "has a normal force of both signs, so that compression cannot be told"
-        value = f"{positive} rows above zero, {negative} below"
+        rule = "has a normal force of both signs, so that the sign of compression is not certain"
+        got = f"{positive} rows above zero, {negative} below"
         cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
         if understood.used["normal_force"].why != "column map":
-            raise InputError(source, rule, value, cure)
+            raise InputError(source, rule, got, cure)
 
 
 def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
@@ -157,31 +158,31 @@ def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]
         return arrays["friction"]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
-        normal = np.float64(force if force is not None else np.nan)
-        notes.append(
-            f"friction is |tangential force| / {format_quantity(float(normal), 'N')}, the constant given"
-        )
+        normal = np.nan if force is None else force
+        notes.append(f"friction is |tangential force| / {format_quantity(normal, 'N')}, the constant given")
         return np.asarray(tangential / normal)
     notes.append("friction is |tangential force| / normal force, row by row")
     normal_force = arrays["normal_force"]
-    pressed = normal_force > 0.0
     released = int((normal_force <= 0.0).sum())
     if released:
         notes.append(f"{released} rows without compression (normal force zero or pulling) are left out")
     friction = np.full(len(tangential), np.nan)
-    np.divide(tangential, normal_force, out=friction, where=pressed)
+    np.divide(tangential, normal_force, out=friction, where=normal_force > 0.0)
     return np.where(np.isfinite(friction), friction, np.nan)
 
 
 def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
-    """Magnitude of the friction, without the values that no ratio of forces in sliding has."""
+    """Magnitude of the friction, without values that cannot be a ratio of forces in sliding."""
     size = np.abs(friction)
     beyond = size > HIGHEST
+    if beyond.sum() > FEW * np.isfinite(size).sum():
+        cure = 'If it is in percent: friction = { name = "...", unit = "%" } below [columns] in a column map.'
+        rule = f"has a friction above {HIGHEST:g} in more than a tenth of its rows: not a ratio of forces"
+        raise InputError(source, rule, f"a median of {float(np.nanmedian(size)):.4g}", cure)
     if beyond.any():
-        _check_share(size, beyond, source)
         notes.append(
             f"friction is above {HIGHEST:g} in {int(beyond.sum())} of {len(size)} rows (up to "
-            f"{np.max(size[beyond]):.4g}), which is no ratio of forces in sliding: these rows are left out"
+            f"{np.max(size[beyond]):.4g}), which is not a ratio of forces in sliding: these rows are left out"
         )
         size[beyond] = np.nan
     negative = int(((friction < 0.0) & ~beyond).sum())
@@ -193,29 +194,16 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
     return size
 
 
-def _complete(arrays: Mapping[str, Array], source: str, notes: list[str]) -> tuple[Rows, int]:
-    """Rows that have friction and every abscissa, and how many have not."""
+def _complete(arrays: Mapping[str, Array], source: str) -> Rows:
+    """Rows that have friction and every abscissa."""
     kept = np.isfinite(arrays["friction"])
     for meaning in ABSCISSAE:
         if meaning in arrays:
             kept &= np.isfinite(arrays[meaning])
-    missing = int(len(kept) - kept.sum())
     if kept.sum() < 2:
-        value = f"{int(kept.sum())} of {len(kept)} rows"
-        raise InputError(source, "needs at least two rows with a friction and its abscissa", value)
-    if missing:
-        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
-    return kept, missing
-
-
-def _check_share(size: Array, beyond: Rows, source: str) -> None:
-    """Refuse a column of which more than a few rows are no ratio of forces."""
-    if beyond.sum() > FEW * np.isfinite(size).sum():
-        cure = 'If it is in percent: friction = { name = "...", unit = "%" } below [columns] in a column map.'
-        rule = (
-            f"has a friction that is no ratio of forces: above {HIGHEST:g} in more than a tenth of its rows"
-        )
-        raise InputError(source, rule, f"a median of {float(np.nanmedian(size)):.4g}", cure)
+        got = f"{int(kept.sum())} of {len(kept)} rows"
+        raise InputError(source, "needs at least two rows with a friction and its abscissa", got)
+    return kept
 
 
 def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
@@ -227,39 +215,23 @@ def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, sourc
         back = np.flatnonzero(np.diff(column) < 0.0)
         if len(back):
             i = int(back[0]) + 1
-            line = table.lines[rows[i]] if table.lines is not None else rows[i] + 1
-            unit = MEANINGS[meaning]
-            here, before = (format_quantity(float(column[j]), unit, 8) for j in (i, i - 1))
+            row = f"table row {rows[i] + 1}" if table.lines is None else f"line {table.lines[rows[i]]}"
+            here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
             cure = "Split the file there; or, if this column is another, say so in a column map."
-            where = f"{source}: line {line}" if table.lines is not None else f"{source}: table row {line}"
-            raise InputError(where, f"{meaning} must not run backwards", f"{here} after {before}", cure)
+            rule = f"{meaning} must not run backwards"
+            raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
 
 
 def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list[str]) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
     strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
-    speeds = [
-        key for key in table.metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"].split("; ")
-    ]
-    if strokes and (speeds or "slip_speed" in arrays):
-        arrays.pop("slip_speed", None)
-        notes.append(
-            "these are strokes there and back: the file gives their greatest speed, which is not used; give "
-            "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
-        )
-        return {key: value for key, value in table.metadata.items() if key not in speeds}
-    return dict(table.metadata)
-
-
-def _speed_from_rotation(
-    arrays: dict[str, Array], given: Mapping[str, str | float], notes: list[str]
-) -> dict[str, Array]:
-    """A column of rotational speed as magnitude; with the radius of the track it gives the slip speed."""
-    rotation = arrays.get("rotational_speed")
-    if rotation is None:
-        return {}
-    radius = given.get("track_radius")
-    if isinstance(radius, float) and "slip_speed" not in arrays:
-        arrays["slip_speed"] = np.abs(rotation) * radius
-        notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    return {"rotational_speed": np.abs(rotation)}
+    names = KEYS["slip_speed"].split("; ")
+    speeds = [key for key in table.metadata if plain(header_parts(key)[0][0]) in names]
+    if not strokes or not (speeds or "slip_speed" in arrays):
+        return dict(table.metadata)
+    arrays.pop("slip_speed", None)
+    notes.append(
+        "these are strokes there and back: the file gives their greatest speed, which is not used; give "
+        "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
+    )
+    return {key: value for key, value in table.metadata.items() if key not in speeds}
