@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 
 from separatrix import _check
@@ -26,10 +26,6 @@ MEANINGS = {
 
 ABSCISSAE = ("time", "distance", "cycles")
 """The columns of which a log has at least one."""
-
-
-Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
-"""From the headers and units of a table to the numbers of some of its columns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

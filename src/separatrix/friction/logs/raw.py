@@ -18,7 +18,7 @@ from separatrix.friction.logs.sliding import sliding_rows
 from separatrix.units import Array, format_quantity, printable
 
 HIGHEST = 5.0
-"""Friction above which a value is not a ratio of forces in sliding: a code for a missing value, or unloaded."""
+"""Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
 
 Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
