@@ -10,9 +10,9 @@ ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "
 """What `[format] encoding` of a column map may be."""
 
 _MARKS = {
-    codecs.BOM_UTF8: ("utf-8", 3),
-    codecs.BOM_UTF16_LE: ("utf-16-le", 2),
-    codecs.BOM_UTF16_BE: ("utf-16-be", 2),
+    codecs.BOM_UTF8: "utf-8",
+    codecs.BOM_UTF16_LE: "utf-16-le",
+    codecs.BOM_UTF16_BE: "utf-16-be",
 }
 _OTHERS = {
     b"\xd0\xcf\x11\xe0": ("an old Excel workbook", "Save it as .xlsx or as CSV."),
@@ -42,45 +42,31 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
     InputError
         Not a text file, or none of these encodings.
     """
-    if encoding is None:
-        _refuse_binary(raw, source)
-    body, known = _without_mark(raw)
-    chosen = encoding or known or _by_rule(body, source)
+    for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
+        if raw.startswith(magic):
+            raise InputError(source, f"is {what}, not text", cure=cure)
+    mark = next((mark for mark in _MARKS if raw.startswith(mark)), b"")
+    body = raw.removeprefix(mark)
+    chosen = encoding or (_MARKS[mark] if mark else _by_rule(body, source))
     text = _in_utf8(body, chosen, source).rstrip(_END_OF_FILE)
     if not text.isascii():
         text = text.replace(_MINUS, b"-")
     if text[:65536].translate(None, _CONTROLS) != text[:65536]:
         raise _binary(source)
-    return _line_feeds(text), chosen
-
-
-def _without_mark(raw: bytes) -> tuple[bytes, str | None]:
-    for mark, (name, length) in _MARKS.items():
-        if raw.startswith(mark):
-            return raw[length:], name
-    return raw, None
-
-
-def _refuse_binary(raw: bytes, source: str) -> None:
-    for magic, (what, cure) in _OTHERS.items():
-        if raw.startswith(magic):
-            raise InputError(source, f"is {what}, not text", cure=cure)
+    returns = text.count(b"\r")
+    if returns == text.count(b"\r\n"):
+        return (text.translate(None, b"\r") if returns else text), chosen
+    return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n"), chosen
 
 
 def _by_rule(raw: bytes, source: str) -> str:
-    if b"\0" in raw:
-        return _utf16_without_mark(raw, source)
-    if raw.isascii():
+    if b"\0" not in raw:
+        try:
+            raw.decode("utf-8")
+        except UnicodeDecodeError:
+            return "cp1252"
         return "utf-8"
-    try:
-        raw.decode("utf-8")
-    except UnicodeDecodeError:
-        return "cp1252"
-    return "utf-8"
-
-
-def _utf16_without_mark(raw: bytes, source: str) -> str:
-    """Little or big endian by the side of the NUL bytes, if they are on one side and in most letters."""
+    # UTF-16, little or big endian by the side of the NUL bytes, if they are on one side and in most letters
     head = raw[: min(len(raw), 65536) // 2 * 2]
     low, high = head[0::2].count(0), head[1::2].count(0)
     most = 0.8 * len(head) / 2
@@ -96,16 +82,9 @@ def _in_utf8(raw: bytes, encoding: str, source: str) -> bytes:
     if encoding not in _ASCII_BELOW:
         return _recoded(raw, encoding, source)
     cut = raw.find(b"\n", 16384) + 1
-    if cut == 0 or not _ascii_from(raw, cut):
+    if cut == 0 or not raw[cut:].isascii():
         return _recoded(raw, encoding, source)
     return _recoded(raw[:cut], encoding, source) + raw[cut:]
-
-
-def _ascii_from(raw: bytes, start: int) -> bool:
-    import numpy as np
-
-    rest = np.frombuffer(raw, np.uint8)[start:]
-    return bool(len(rest) == 0 or rest.max() < 128)
 
 
 def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
@@ -117,15 +96,6 @@ def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
         rule = f"cannot be read as {encoding} text"
         cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
         raise InputError(f"{source}: line {line}", rule, f"byte {raw[place]:#04x}", cure) from None
-
-
-def _line_feeds(text: bytes) -> bytes:
-    returns = text.count(b"\r")
-    if returns == 0:
-        return text
-    if returns == text.count(b"\r\n"):
-        return text.translate(None, b"\r")
-    return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def _binary(source: str) -> InputError:

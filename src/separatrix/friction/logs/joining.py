@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -49,45 +49,39 @@ def joined(parts: Sequence[RawLog]) -> RawLog:
         return parts[0]
     parts = sorted(parts, key=lambda part: in_order(part.source))
     source = f"{parts[0].source} and {len(parts) - 1} more"
-    axes = [name for name in ABSCISSAE if all(getattr(part, name) is not None for part in parts)]
-    if not axes:
+    columns: dict[str, Any] = {}
+    for name in (f.name for f in fields(RawLog) if f.name in MEANINGS):
+        pieces = [getattr(part, name) for part in parts]
+        if any(piece is None for piece in pieces):
+            columns[name] = None
+            continue
+        for i in range(1, len(pieces) if name in ABSCISSAE else 0):  # one that begins anew goes on
+            last, piece = pieces[i - 1][-1], pieces[i]
+            if piece[0] < last:
+                pieces[i] = piece + (last - piece[0] + float(np.median(np.diff(piece))))
+        columns[name] = np.concatenate(pieces)
+    if all(columns[name] is None for name in ABSCISSAE):
         raise InputError(source, "have no column of time, distance or cycles in common to be joined by")
-    names = [f.name for f in fields(RawLog) if f.name in MEANINGS and f.name not in ABSCISSAE]
-    names = [name for name in names if all(getattr(part, name) is not None for part in parts)]
-    columns: dict[str, Any] = {
-        name: np.concatenate([getattr(part, name) for part in parts]) for name in names
-    }
-    columns |= {name: np.concatenate(list(_following(parts, name))) for name in axes}
-    columns |= {name: None for name in ABSCISSAE if name not in axes}
-    columns |= {f.name: None for f in fields(RawLog) if f.name in MEANINGS and f.name not in columns}
     if len({part.series for part in parts}) == 1 and parts[0].series and columns["cycles"] is None:
-        columns["cycles"] = _strokes(parts)
+        # a cycle is a stroke there and the one back
+        strokes = [(k + np.arange(part.rows) / part.rows) / 2.0 for k, part in enumerate(parts)]
+        columns["cycles"] = np.concatenate(strokes)
+    means = [format_number(float(part.friction.mean()), 3) for part in parts]
+    more = "" if len(means) <= LISTED else f" and {len(means) - LISTED} more"
+    note = (
+        f"{len(parts)} parts of one test are joined, {parts[0].source} to {parts[-1].source}; "
+        f"their frictions: {', '.join(means[:LISTED])}{more}"
+    )
     return replace(
         parts[0],
         source=source,
         checksum=hashlib.sha256("".join(part.checksum for part in parts).encode()).hexdigest(),
         missing=sum(part.missing for part in parts),
         conditions=_conditions(parts, source),
-        notes=(_note(parts), *parts[0].notes),
+        notes=(note, *parts[0].notes),
         series="",
         **columns,
     )
-
-
-def _following(parts: Sequence[RawLog], name: str) -> Iterator[np.ndarray[tuple[int], np.dtype[np.float64]]]:
-    """Yield an abscissa of each part; one that begins anew is moved behind the part before it."""
-    last = -np.inf
-    for part in parts:
-        column = getattr(part, name)
-        if column[0] < last:
-            column = column + (last - column[0] + float(np.median(np.diff(column))))
-        last = float(column[-1])
-        yield column
-
-
-def _strokes(parts: Sequence[RawLog]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Cycles done at each row, where a cycle is a stroke there and the one back."""
-    return np.concatenate([(k + np.arange(part.rows) / part.rows) / 2.0 for k, part in enumerate(parts)])
 
 
 def _conditions(parts: Sequence[RawLog], source: str) -> Conditions:
@@ -109,12 +103,3 @@ def _conditions(parts: Sequence[RawLog], source: str) -> Conditions:
             rule = f"cannot be one test: their {f.name.replace('_', ' ')} differs"
             raise InputError(source, rule, " and ".join(texts), "Name the parts of one test only.")
     return Conditions(**found)  # type: ignore[arg-type]
-
-
-def _note(parts: Sequence[RawLog]) -> str:
-    means = [format_number(float(part.friction.mean()), 3) for part in parts]
-    more = "" if len(means) <= LISTED else f" and {len(means) - LISTED} more"
-    return (
-        f"{len(parts)} parts of one test are joined, {parts[0].source} to {parts[-1].source}; "
-        f"their frictions: {', '.join(means[:LISTED])}{more}"
-    )

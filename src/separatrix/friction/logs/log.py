@@ -1,8 +1,8 @@
-"""What a raw tribometer log is, whatever format it came from: friction, its abscissa, its conditions."""
+"""A log of a tribometer, whatever format it came from: friction, its abscissa, its conditions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 
 from separatrix import _check
@@ -137,7 +137,18 @@ class RawLog:
     """What the reading did that a user should know, a sentence each."""
 
     def __post_init__(self) -> None:
-        _check.settle(_enough(self), _same_length(self))
+        problems = []
+        if not self.abscissae:
+            problems.append(InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}"))
+        if len(self.friction) < 2:
+            got = str(len(self.friction))
+            problems.append(InputError(self.source, "needs at least two rows with a friction", got))
+        for name in sorted(MEANINGS.keys() & {f.name for f in fields(self)}):
+            column = getattr(self, name)
+            if column is not None and len(column) != len(self.friction):
+                got = str(len(column))
+                problems.append(InputError(f"RawLog.{name}", "must have as many rows as friction", got))
+        _check.settle(problems)
 
     @property
     def rows(self) -> int:
@@ -148,18 +159,3 @@ class RawLog:
     def abscissae(self) -> tuple[str, ...]:
         """Which of time, distance and cycles the log has."""
         return tuple(name for name in ABSCISSAE if getattr(self, name) is not None)
-
-
-def _enough(log: RawLog) -> Iterator[InputError]:
-    if not log.abscissae:
-        yield InputError(f"{log.source}", f"needs one of {', '.join(ABSCISSAE)}")
-    if len(log.friction) < 2:
-        yield InputError(f"{log.source}", "needs at least two rows with a friction", str(len(log.friction)))
-
-
-def _same_length(log: RawLog) -> Iterator[InputError]:
-    names = {f.name for f in fields(log)} & MEANINGS.keys()
-    for name in sorted(names):
-        column = getattr(log, name)
-        if column is not None and len(column) != len(log.friction):
-            yield InputError(f"RawLog.{name}", "must have as many rows as friction", str(len(column)))
