@@ -8,9 +8,10 @@ tested). Nothing here imports numpy: a study is read without fitting anything.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot, log, sqrt
+from statistics import correlation
 from typing import TYPE_CHECKING
 
 from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest, Prediction
@@ -49,9 +50,19 @@ class Covariates:
 
 def covariates(tests: Sequence[FrictionTest]) -> Covariates:
     """Slopes that these tests can tell: all state the condition and span it, and a test is left over."""
-    notes = list(_unstated(tests))
+    notes = []
+    for name in ("slip_speed", "pressure"):
+        missing = sum(getattr(test, name) is None for test in tests)
+        if 0 < missing < len(tests):
+            notes.append(f"{WORDS[name]} is not stated for {missing} of {len(tests)} tests: no slope on it")
+    if _spread(tests, "temperature") >= log(LEAST_SPAN):
+        span = in_words(tested_range(tests, "temperature") or (0.0, 0.0), "K")
+        notes.append(
+            f"tests from {span} are taken together here; a study takes those nearest its temperature"
+        )
     spanned = [name for name in ("slip_speed", "pressure") if _spans(tests, name)]
-    along = _correlation(tests) if len(spanned) == 2 else 0.0
+    logs = [[centre(getattr(test, name)) for test in tests] for name in spanned]
+    along = correlation(*logs) if len(spanned) == 2 else 0.0
     if along > TOGETHER:
         spanned = [PRODUCT]
         notes.append("slip speed and pressure went together: slope on their product pV")
@@ -64,10 +75,8 @@ def covariates(tests: Sequence[FrictionTest]) -> Covariates:
     if spanned and len(tests) < len(spanned) + 2:
         notes.append(f"{len(tests)} tests are too few for a slope")
         spanned = []
-    logs = {name: [centre(getattr(test, name)) for test in tests] for name in spanned}
-    return Covariates(
-        names=tuple(spanned), centres=tuple(sum(x) / len(x) for x in logs.values()), notes=tuple(notes)
-    )
+    centres = tuple(sum(centre(getattr(test, name)) for test in tests) / len(tests) for name in spanned)
+    return Covariates(names=tuple(spanned), centres=centres, notes=tuple(notes))
 
 
 def at_temperature(tests: Sequence[FrictionTest], temperature: Kelvin | None) -> tuple[FrictionTest, ...]:
@@ -84,14 +93,14 @@ def at_temperature(tests: Sequence[FrictionTest], temperature: Kelvin | None) ->
             group = test.material, test.environment
             found = nearest.setdefault(group, test.temperature)
             nearest[group] = min(found, test.temperature, key=lambda it: (_apart(it, temperature), it))
-    return tuple(test for test in tests if _serves(test, temperature, nearest))
-
-
-def _serves(test: FrictionTest, temperature: Kelvin, nearest: Mapping[tuple[str, str], Range]) -> bool:
-    if test.temperature is None:
-        return True
-    low, high = nearest[test.material, test.environment]
-    return _apart(test.temperature, min(max(temperature, low), high)) <= log(LEAST_SPAN)
+    serving = []
+    for test in tests:
+        if test.temperature is not None:
+            low, high = nearest[test.material, test.environment]
+            if _apart(test.temperature, min(max(temperature, low), high)) > log(LEAST_SPAN):
+                continue
+        serving.append(test)
+    return tuple(serving)
 
 
 def _apart(limits: Range, value: float) -> float:
@@ -115,16 +124,6 @@ def tested_range(tests: Sequence[FrictionTest], name: str) -> Range | None:
     return (min(low for low, _ in stated), max(high for _, high in stated)) if stated else None
 
 
-def _unstated(tests: Sequence[FrictionTest]) -> Iterator[str]:
-    for name in ("slip_speed", "pressure"):
-        missing = sum(getattr(test, name) is None for test in tests)
-        if 0 < missing < len(tests):
-            yield f"{WORDS[name]} is not stated for {missing} of {len(tests)} tests: no slope on it"
-    if _spread(tests, "temperature") >= log(LEAST_SPAN):
-        span = in_words(tested_range(tests, "temperature") or (0.0, 0.0), "K")
-        yield f"tests from {span} are taken together here; a study takes those nearest its temperature"
-
-
 def _spans(tests: Sequence[FrictionTest], name: str) -> bool:
     stated = all(getattr(test, name) is not None for test in tests)
     return stated and _spread(tests, name) >= log(LEAST_SPAN)
@@ -134,15 +133,6 @@ def _spread(tests: Sequence[FrictionTest], name: str) -> float:
     """Logarithm of the largest over the smallest middle of a condition in the tests that state it."""
     middles = [centre(limits) for test in tests if (limits := getattr(test, name)) is not None]
     return max(middles) - min(middles) if middles else 0.0
-
-
-def _correlation(tests: Sequence[FrictionTest]) -> float:
-    """Correlation of ln speed and ln pressure; both are spanned."""
-    x, y = ([centre(getattr(test, name)) for test in tests] for name in ("slip_speed", "pressure"))
-    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
-    xy = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True))
-    xx, yy = (sum((a - m) ** 2 for a in values) for values, m in ((x, mean_x), (y, mean_y)))
-    return xy / math.sqrt(xx * yy)
 
 
 def in_words(limits: Range, unit: str) -> str:
@@ -191,14 +181,21 @@ def held(
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
     for name in (*asked, PRODUCT):
-        value, limits = _product(values) if name == PRODUCT else asked[name], ranges.get(name)
+        value, limits = asked.get(name), ranges.get(name)
+        if name == PRODUCT and {"slip_speed", "pressure"} <= values.keys():
+            value = (
+                values["slip_speed"] * values["pressure"]
+            )  # each may have been tested, and both together not
         if value is None or (limits is None and name == PRODUCT):
             continue
         if limits is None:
             sentences.append(f"test {WORDS[name]} unknown (pocket: {_text(value, name)})")
             continue
         values[name] = min(max(value, limits[0]), limits[1])
-        if _counts_as_tested(value, limits, name):
+        low, high = limits
+        near = (low - TEMPERATURE_SLACK, high + TEMPERATURE_SLACK)
+        near = near if name == "temperature" else (low / SLACK, high * SLACK)
+        if near[0] <= value <= near[1]:
             continue
         sentences.append(_sentence(value, limits, name))
         exponent = max(exponents.get(name, 0.0), EXPONENTS[name])
@@ -212,19 +209,6 @@ def other_medium(asked: str | Sequence[str] | None, tested: Iterable[str]) -> tu
     if not names or {name.strip().casefold() for name in names} & {one.strip().casefold() for one in tested}:
         return ()
     return (f"tested in {', '.join(tested)}, not in {names[0]}",)
-
-
-def _product(values: Mapping[str, float]) -> float | None:
-    """PV of the held speed and pressure: each may have been tested, and both together not."""
-    both = {"slip_speed", "pressure"} <= values.keys()
-    return values["slip_speed"] * values["pressure"] if both else None
-
-
-def _counts_as_tested(value: float, limits: Range, name: str) -> bool:
-    low, high = limits
-    if name == "temperature":
-        return low - TEMPERATURE_SLACK <= value <= high + TEMPERATURE_SLACK
-    return low / SLACK <= value <= high * SLACK
 
 
 def _sentence(value: float, limits: Range, name: str) -> str:

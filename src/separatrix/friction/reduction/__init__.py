@@ -96,7 +96,13 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     events = row_events(log, options)
     kept = slice(*kept_rows(events, log.rows))
     clock = cycles.clock(log, along, options)
-    stretch, cut, found, notes = _steady(log, clock.stretch(log, along, kept), kept, options)
+    rows = cycles.Stretch(
+        source=log.source,
+        along=along[kept],
+        friction=log.friction[kept],
+        done=None if clock.done is None else clock.done[kept],
+    )
+    stretch, cut, found, notes = _steady(log, rows, kept, options)
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
     friction = stretch.within(spans)

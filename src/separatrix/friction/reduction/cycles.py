@@ -22,13 +22,13 @@ FEWEST_ROWS = 4
 """Rows without which there are no statistics."""
 
 FEWEST_CYCLES = 4
-"""Whole cycles below which means are over rows instead, which is told."""
+"""Whole cycles below which means are over rows instead, which is reported."""
 
 ROWS_OF_A_SPAN = 3
 """Rows in a span, at least, where no cycle is known."""
 
 ROWS_OF_A_CYCLE = 4.0
-"""Rows in a cycle below which its mean is no mean over the turn."""
+"""Rows in a cycle below which its mean is not a mean over the turn."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,7 +59,7 @@ class Stretch:
 
     source: str
     along: Array
-    """Abscissa in which ends are told, shape (row,); it does not fall."""
+    """Abscissa of ends and drift, shape (row,); it does not fall."""
     friction: Array
     """Shape (row,) [-]."""
     done: Array | None
@@ -73,31 +73,54 @@ class Stretch:
     def spans(self, start: float | None = None) -> Spans:
         """Return the means over equal spans from a place of the ruler on, or of everything.
 
+        As many spans as the rows fill, up to `MOST`; of few rows, one each. Where cycles are known, the last
+        span ends where they do; those that fill no span of their own are left out at the start, where a test
+        is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
+
         Raises
         ------
         InputError
             There are too few rows.
         """
         if self.done is None:
-            first = float(self.along[0]) if start is None else start
-            return even_spans(self.along, self.friction, first, float(self.along[-1]), self.source)
+            begin, end = float(self.along[0]) if start is None else start, float(self.along[-1])
+            low, high = np.searchsorted(self.along, begin), np.searchsorted(self.along, end, side="right")
+            rows = int(high - low)
+            count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST)))
+            if count < FEWEST_ROWS:
+                rule = f"needs at least {FEWEST_ROWS} rows of steady friction"
+                raise InputError(self.source, rule, str(rows), "Take a longer log, or an earlier run_in_end.")
+            return means(self.along, self.friction, begin, end, count)
         first, last = self.cycles(start)
-        return cycle_spans(self.done, self.friction, first, last)
+        count = last - first
+        if count < FEWEST:
+            return means(self.done, self.friction, float(first), float(last), count * -(-FEWEST // count))
+        size = -(-count // MOST)
+        begin = float(last - count // size * size)
+        return means(self.done, self.friction, begin, float(last), count // size)
 
     def holds_cycles(self, start: float | None = None) -> bool:
         """Return whether there are enough whole cycles from a place of the ruler on."""
         first, last = self.cycles(start)
-        return self.done is not None and last - first >= FEWEST_CYCLES
+        return last - first >= FEWEST_CYCLES
 
     def of_rows(self) -> Stretch:
         """Return the same rows, with means over rows and not over whole cycles."""
         return replace(self, done=None)
 
     def cycles(self, start: float | None = None) -> tuple[int, int]:
-        """Return the first whole cycle from a place of the ruler on, and the one after the last."""
-        if self.done is None:
+        """Return the first whole cycle from a place of the ruler on, and the one after the last.
+
+        A cycle is whole if the rows around it are no farther from its ends than one and a half times the
+        usual step; a column that counts whole cycles covers all of them but those it begins and ends in.
+        """
+        done = self.done
+        if done is None:
             return 0, 0
-        first, last = whole_cycles(self.done)
+        step = 1.5 * (done[-1] - done[0]) / max(done.size - 1, 1)
+        first, last = int(np.ceil(done[0] - step)), int(np.floor(done[-1] + step))
+        if np.all(done == np.floor(done)):
+            first, last = int(done[0]) + 1, int(done[-1])
         return (first if start is None else max(first, int(np.ceil(start - 1e-9)))), last
 
     def cycle_means(self, spans: Spans) -> Array:
@@ -129,60 +152,43 @@ class Clock:
     """Length of a cycle in the unit of the abscissa."""
     notes: tuple[str, ...] = ()
 
-    def stretch(self, log: RawLog, along: Array, rows: slice) -> Stretch:
-        """Return some rows of the log with this clock."""
-        done = None if self.done is None else self.done[rows]
-        return Stretch(source=log.source, along=along[rows], friction=log.friction[rows], done=done)
-
-
-_SILENT: tuple[str, ...] = ()
-
 
 def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
-    """Return the cycle of a log, given or, if the options ask, found in its spectrum."""
-    done, notes = turns(log), _SILENT
-    if done is None and options.find_cycle:
-        done, notes = _found(along, log.friction)
-    if done is None or done[-1] <= done[0]:
-        return Clock(done=None, cycle=None, notes=notes)
-    cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
-    if not options.whole_cycles:
-        return Clock(done=None, cycle=cycle, notes=notes)
-    rows = rows_of_a_cycle(done)
-    if rows < ROWS_OF_A_CYCLE:
-        count = format_number(rows, 2)
-        note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
-        return Clock(done=None, cycle=cycle, notes=(*notes, note))
-    return Clock(done=done, cycle=cycle, notes=notes)
-
-
-def _found(along: Array, friction: Array) -> tuple[Array | None, tuple[str, ...]]:
-    """Return the cycles of the strongest line in the second half of a test, and what to say of it."""
-    half = along.size // 2
-    found = oscillation(along[half:], friction[half:], None)
-    if found.frequency <= 0.0:
-        return None, ("No line stands out of the spectrum: no cycle was found, and none is averaged over.",)
-    rate = format_number(1.0 / found.frequency)
-    note = f"The cycle was found in the spectrum, as asked: one in {rate} of the abscissa's SI unit."
-    return np.asarray((along - along[0]) * found.frequency, dtype=float), (note,)
-
-
-def turns(log: RawLog) -> Array | None:
-    """Return how many cycles were done at each row, shape (row,) [-]; None where that is not known.
-
-    From the column of cycles, or else from the time and the time of one cycle.
+    """Return the cycle of a log: by its column, by the time of one cycle, or in its spectrum.
 
     Raises
     ------
     InputError
         The column of cycles falls.
     """
+    done: Array | None = None
+    notes: tuple[str, ...] = ()
     if log.cycles is not None:
-        return rising(log, "cycles")
-    if log.time is not None and log.conditions.cycle_time is not None:
+        done = rising(log, "cycles")
+    elif log.time is not None and log.conditions.cycle_time is not None:
         time = rising(log, "time")
-        return np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
-    return None
+        done = np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
+    elif options.find_cycle:  # the strongest line in the second half of the test
+        half = along.size // 2
+        frequency = oscillation(along[half:], log.friction[half:], None).frequency
+        notes = ("No line exceeds the noise of the spectrum: no cycle was found, and none is averaged over.",)
+        if frequency > 0.0:
+            done = np.asarray((along - along[0]) * frequency, dtype=float)
+            rate = format_number(1.0 / frequency)
+            notes = (
+                f"The cycle was found in the spectrum, as asked: one in {rate} of the abscissa's SI unit.",
+            )
+    if done is None or done[-1] <= done[0]:
+        return Clock(done=None, cycle=None, notes=notes)
+    cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
+    if not options.whole_cycles:
+        return Clock(done=None, cycle=cycle, notes=notes)
+    rows = float(done.size / max(done[-1] - done[0], 1e-300))
+    if rows < ROWS_OF_A_CYCLE:
+        count = format_number(rows, 2)
+        note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
+        return Clock(done=None, cycle=cycle, notes=(*notes, note))
+    return Clock(done=done, cycle=cycle, notes=notes)
 
 
 def rising(log: RawLog, axis: str) -> Array:
@@ -201,31 +207,12 @@ def rising(log: RawLog, axis: str) -> Array:
     falls = np.flatnonzero(np.diff(values) < 0.0)
     if falls.size:
         i = int(falls[0])
+        got = f"{values[i + 1]:g} after {values[i]:g} in row {i + 2}"
         cure = "One log holds one test; split it where it begins anew."
-        raise InputError(
-            where, "must not fall", f"{values[i + 1]:g} after {values[i]:g} in row {i + 2}", cure
-        )
+        raise InputError(where, "must not fall", got, cure)
     if values[-1] <= values[0]:
         raise InputError(where, "must rise", f"{values[0]:g} in every row")
     return values
-
-
-def rows_of_a_cycle(done: Array) -> float:
-    """Return how many rows a cycle has on average [-]."""
-    return float(done.size / max(done[-1] - done[0], 1e-300))
-
-
-def whole_cycles(done: Array) -> tuple[int, int]:
-    """Return the first cycle and the one after the last that the rows cover from end to end.
-
-    A cycle is covered if the rows around it are no farther from its ends than one and a half times the
-    usual step; a column that counts whole cycles covers all of them but those it begins and ends in.
-    """
-    step = 1.5 * (done[-1] - done[0]) / max(done.size - 1, 1)
-    counted = bool(np.all(done == np.floor(done)))
-    if counted:
-        return int(done[0]) + 1, int(done[-1])
-    return int(np.ceil(done[0] - step)), int(np.floor(done[-1] + step))
 
 
 def means(abscissa: Array, values: Array, start: float, end: float, count: int) -> Spans:
@@ -247,44 +234,9 @@ def means(abscissa: Array, values: Array, start: float, end: float, count: int) 
     place = np.clip(((abscissa[first:last] - start) / width).astype(np.int64), 0, count - 1)
     held = np.asarray(np.bincount(place, minlength=count), dtype=np.float64)
     sums = np.asarray(np.bincount(place, weights=values[first:last], minlength=count), dtype=np.float64)
-    return Spans(start=start, width=width, means=_bridged(sums, held), counts=held)
-
-
-def _bridged(sums: Array, counts: Array) -> Array:
-    """Return the means; the straight line between neighbours where a span holds no row."""
-    held = counts > 0
-    if not held.any():
-        return np.zeros_like(sums)
-    means = np.divide(sums, counts, out=np.zeros_like(sums), where=held)
-    place = np.arange(sums.size)
-    return np.asarray(np.interp(place, place[held], means[held]), dtype=float)
-
-
-def even_spans(abscissa: Array, values: Array, start: float, end: float, source: str) -> Spans:
-    """Return as many equal spans as the rows from `start` to `end` fill, up to `MOST`; of few rows, one each.
-
-    Raises
-    ------
-    InputError
-        There are too few rows.
-    """
-    first, last = np.searchsorted(abscissa, start), np.searchsorted(abscissa, end, side="right")
-    rows = int(last - first)
-    count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST)))
-    if count < FEWEST_ROWS:
-        rule = f"needs at least {FEWEST_ROWS} rows of steady friction"
-        raise InputError(source, rule, str(rows), "Take a longer log, or an earlier run_in_end.")
-    return means(abscissa, values, start, end, count)
-
-
-def cycle_spans(done: Array, values: Array, first: int, last: int) -> Spans:
-    """Return equal spans of whole cycles, from cycle `first` up to, but without, cycle `last`.
-
-    The last span ends where the cycles do; those that fill no span of their own are left out at the start,
-    where a test is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
-    """
-    count = last - first
-    if count < FEWEST:
-        return means(done, values, float(first), float(last), count * -(-FEWEST // count))
-    size = -(-count // MOST)
-    return means(done, values, float(last - count // size * size), float(last), count // size)
+    full = held > 0
+    found = np.divide(sums, held, out=np.zeros_like(sums), where=full)
+    if full.any():  # a span without a row is bridged
+        spans = np.arange(count)
+        found = np.asarray(np.interp(spans, spans[full], found[full]), dtype=float)
+    return Spans(start=start, width=width, means=found, counts=held)
