@@ -8,7 +8,6 @@ and does not fluctuate where nothing slides.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +43,7 @@ RAMP = 0.9
 """Share of the speed behind a ramp at which the ramp ends."""
 
 BEHIND = 0.05
-"""Share of the rows, 20 at least, behind which as many say to which speed a ramp leads."""
+"""Share of the rows, 20 at least, behind which as many show to which speed a ramp leads."""
 
 LONGEST_RAMP = 0.2
 """Share of the rows that a ramp has at most."""
@@ -59,30 +58,27 @@ SMOOTH = 0.3
 """Step between rows, over the usual one, below which friction does not fluctuate: it is held at rest."""
 
 WINDOW = 7
-"""Rows over which that is asked."""
+"""Rows of the running median of such steps."""
 
 FEWEST = 0.2
-"""Share of the rows that must slide, or the column says nothing of it."""
+"""Share of the rows that must slide, or the column does not show it."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Signal:
-    """What says which rows slide."""
-
-    rows: Rows
-    words: str
+def _kind(header: str, unit: str) -> str:
+    """What a column shows of the motion by its name: speed, position or force; empty for nothing."""
+    name = header.strip().rpartition(".")[2] or header  # without what loggers put before it: Rotary.Position
+    names = {plain(part) for part, _ in header_parts(name)}
+    meanings = {meaning for part in names for meaning in ranks(part)}
+    if unit.casefold() in ("v", "a"):
+        return ""
+    if names & POSITIONS:
+        return "position"
+    return "speed" if meanings & {*SPEEDS} else "force" if "tangential_force" in meanings else ""
 
 
 def motion_columns(headers: Sequence[str], units: Sequence[str]) -> list[int]:
-    """Numbers of the columns that may say which rows slide: speeds, positions, forces with a sign."""
-    found = []
-    for i, (header, unit) in enumerate(zip(headers, units, strict=True)):
-        names = {plain(name) for name, _ in header_parts(_last_part(header))}
-        meanings = {meaning for name in names for meaning in ranks(name)}
-        moves = names & POSITIONS or meanings & {*SPEEDS, "tangential_force"}
-        if moves and unit.casefold() not in ("v", "a"):
-            found.append(i)
-    return found
+    """Numbers of the columns that may show which rows slide: speeds, positions, forces with a sign."""
+    return [i for i, one in enumerate(zip(headers, units, strict=True)) if _kind(*one)]
 
 
 def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
@@ -99,43 +95,28 @@ def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Row
     kept : ndarray
         Rows that have friction and abscissa; the others do not count.
     """
-    found = next(_signals(table, friction, time, kept), None)
-    if found is None:
-        return kept, ""
-    out = int(kept.sum() - (kept & found.rows).sum())
+    rows, words = next(_signals(table, friction, time, kept), (kept, ""))
+    out = int(kept.sum() - (kept & rows).sum())
     if not out:
         return kept, ""
     share = f"{out} of {int(kept.sum())} rows"
-    return kept & found.rows, f"{share} are left out: standstill, reversals or ramps by {found.words}"
+    return kept & rows, f"{share} are left out: standstill, reversals or ramps by {words}"
 
 
-def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> Iterator[_Signal]:
-    """Yield what says which rows slide, the surest first."""
-    numbers = motion_columns(table.headers, table.units)
+def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> Iterator[tuple[Rows, str]]:
+    """Yield which rows slide, and by what; the most reliable first."""
+    kinds = [_kind(*one) for one in zip(table.headers, table.units, strict=True)]
     for wanted in ("speed", "position"):
-        for i in numbers:
-            column, header = table.columns[i], table.headers[i]
-            if _kind(header) != wanted or not np.isfinite(column[kept]).all() or not kept.any():
+        for kind, column, header in zip(kinds, table.columns, table.headers, strict=True):
+            if kind != wanted or not np.isfinite(column[kept]).all() or not kept.any():
                 continue
             speed = np.abs(column) if wanted == "speed" else _slope(column, time, kept)
             if speed is not None and (rows := _by_speed(speed, kept)) is not None:
-                yield _Signal(rows, f'the {wanted} in column "{printable(header.strip())}"')
-    signed = [table.columns[i] for i in numbers if _kind(table.headers[i]) == "force"]
+                yield rows, f'the {wanted} in column "{printable(header.strip())}"'
+    signed = [column for kind, column in zip(kinds, table.columns, strict=True) if kind == "force"]
     for column in (friction, *signed):
         if (rows := _by_force(column, np.abs(friction), kept)) is not None:
-            yield _Signal(rows, "the sign and the fluctuation of the friction")
-
-
-def _last_part(header: str) -> str:
-    """A name without what loggers put before it: ``Rotary.Position`` is a position."""
-    return header.strip().rpartition(".")[2] or header
-
-
-def _kind(header: str) -> str:
-    names = {plain(name) for name, _ in header_parts(_last_part(header))}
-    if names & POSITIONS:
-        return "position"
-    return "speed" if any(meaning in SPEEDS for name in names for meaning in ranks(name)) else "force"
+            yield rows, "the sign and the fluctuation of the friction"
 
 
 def _slope(position: Array, time: Array | None, kept: Rows) -> Array | None:
@@ -154,7 +135,7 @@ def _slope(position: Array, time: Array | None, kept: Rows) -> Array | None:
 
 
 def _by_speed(speed: Array, kept: Rows) -> Rows | None:
-    """Rows that slide, by a speed in any unit; None where it says nothing."""
+    """Rows that slide, by a speed in any unit; None where it does not show it."""
     v = speed[kept]
     fastest = float(v.max(initial=0.0))
     if fastest <= 0.0:

@@ -76,11 +76,6 @@ class SteadyMean:
     """Spectral density at zero frequency, in units of `power`."""
 
     @property
-    def half_width(self) -> float:
-        """Half the 95 % interval by Student's t."""
-        return half_width(self.standard_error, self.degrees_of_freedom)
-
-    @property
     def change_chance(self) -> float:
         """Probability of a change at least as large without any drift."""
         t = abs(self.change) / max(self.change_error, 1e-300)
@@ -159,7 +154,7 @@ def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
         Spectra at cosines 2, 3, ..., shape (corner, floor, cosine - 1); Whittle's likelihood of each, its
         height at its best, all together one, shape (corner, floor); place of the largest.
     """
-    shapes = spectra(np.arange(2.0, power.size + 1.0))
+    shapes = spectrum(np.arange(2.0, power.size + 1.0), CORNERS[:, None, None], FLOORS[:, None])
     height = np.maximum((power[1:] / shapes).mean(axis=-1), 1e-300)
     loss = np.log(height) * (power.size - 1) + np.log(shapes).sum(axis=-1)
     weights = np.exp(-0.5 * (loss - loss.min()))
@@ -167,15 +162,9 @@ def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
     return shapes, np.asarray(weights / weights.sum(), dtype=float), (int(corner), int(floor))
 
 
-def spectra(cosine: Array) -> Array:
-    """Return the spectra tried, one at zero frequency, shape (corner, floor, cosine)."""
-    fall = 1.0 / (1.0 + (cosine / CORNERS[:, None, None]) ** 2)
-    return np.asarray(FLOORS[:, None] + (1.0 - FLOORS[:, None]) * fall, dtype=float)
-
-
-def spectrum(cosine: Array, corner: float, floor: float) -> Array:
-    """Return the spectrum of a corner and a floor at some cosines, one at zero, shape (cosine,)."""
-    return np.asarray(floor + (1.0 - floor) / (1.0 + (cosine / corner) ** 2), dtype=float)
+def spectrum(cosine: Array, corner: Array | float, floor: Array | float) -> Array:
+    """Return the spectrum of a corner and a floor at some cosines, one at zero; the shapes are broadcast."""
+    return np.asarray(floor + (1.0 - floor) * (1.0 / (1.0 + (cosine / corner) ** 2)), dtype=float)
 
 
 def last_digit(rows: Array) -> tuple[Ratio, Ratio]:

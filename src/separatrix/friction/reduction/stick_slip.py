@@ -1,8 +1,8 @@
-"""Oscillation of friction that stands out of its noise: stick-slip, or a cycle that nobody told of."""
+"""Oscillation of friction that exceeds its noise: stick-slip, or a cycle of unknown length."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ CHANCE = 1e-4
 """Probability with which noise alone would show a line as strong somewhere in the spectrum."""
 
 BESIDE = 8
-"""Places on each side of a line from which the noise is told; the two next to it are left out."""
+"""Places on each side of a line from which the noise is estimated; the two next to it are left out."""
 
 LOWEST = 12
 """First place of a spectrum where a line is looked for: below there is no noise to its left."""
@@ -39,9 +39,9 @@ class Oscillation:
     """The strongest line of the spectrum of friction."""
 
     frequency: float
-    """In cycles per SI unit of the abscissa; 0 if no line stands out."""
+    """In cycles per SI unit of the abscissa; 0 if no line exceeds the noise."""
     amplitude: Ratio
-    """Peak to peak of the sine with its power [-]; 0 if no line stands out."""
+    """Peak to peak of the sine with its power [-]; 0 if no line exceeds the noise."""
     signal_to_noise: float
     """Its power over all other power but the cycle's."""
     frequencies: Array
@@ -75,20 +75,18 @@ def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillati
     other = np.where(_own(frequencies, density, cycle), np.minimum(density, noise), density)
     line = _line(other, noise, averages=2 * even.size / length - 1)
     if line is None or np.ptp(even) <= ROUNDING * np.abs(even).max():
-        return _of(0.0, 0.0, 0.0, frequencies, density)
-    power = _power(other, noise, line) * frequencies[1]
+        return replace(NONE, frequencies=frequencies, density=density)
+    reach = 3 + line // 20  # of the places next to the line that belong to it
+    part = slice(max(0, line - reach), line + reach + 1)
+    power = float(np.maximum(other[part] - noise[line], 0.0).sum()) * frequencies[1]
     rest = max(float(other.sum() * frequencies[1]) - power, 1e-300)
     frequency = float(np.average(frequencies[line - 1 : line + 2], weights=density[line - 1 : line + 2]))
-    return _of(frequency, float(np.sqrt(8.0 * power)), power / rest, frequencies, density)
-
-
-def _of(frequency: float, amplitude: float, ratio: float, frequencies: Array, density: Array) -> Oscillation:
     return Oscillation(
         frequency=frequency,
-        amplitude=amplitude,
-        signal_to_noise=ratio,
-        frequencies=np.asarray(frequencies, dtype=float),
-        density=np.asarray(density, dtype=float),
+        amplitude=float(np.sqrt(8.0 * power)),
+        signal_to_noise=power / rest,
+        frequencies=frequencies,
+        density=density,
     )
 
 
@@ -105,8 +103,14 @@ def beside(density: Array) -> Array:
 
 
 def _line(density: Array, noise: Array, averages: float) -> int | None:
-    """Return the place of the strongest line, if noise alone would hardly make it."""
-    limit = _limit(density.size, averages)
+    """Return the place of the strongest line, if noise alone would hardly make it.
+
+    The limit is the density over the noise that one of all places exceeds with the probability `CHANCE`. The
+    mean of n overlapping spectra is a chi-square with about 1.9 n degrees of freedom (Welch's window).
+    """
+    half = max(1.0, 0.95 * averages)
+    ratios = np.geomspace(1.0, 60.0, 400)
+    limit = float(ratios[np.argmax(density.size * gammaincc(half, half * ratios) < CHANCE)])
     ratio = density / noise
     ratio[:LOWEST] = ratio[-1] = 0.0
     strongest = int(np.argmax(density * (ratio > limit)))
@@ -114,7 +118,7 @@ def _line(density: Array, noise: Array, averages: float) -> int | None:
 
 
 def _own(frequencies: Array, density: Array, cycle: float | None) -> NDArray[np.bool_]:
-    """Return where the lines of the cycle and its multiples stand, with their feet.
+    """Return where the lines of the cycle and its multiples are, with their feet.
 
     A strong line has feet wider than the window; they reach down to where the density stops falling. A
     multiple above half the logging rate shows itself mirrored below.
@@ -134,20 +138,3 @@ def _own(frequencies: Array, density: Array, cycle: float | None) -> NDArray[np.
             end += 1
         own[min(first, left) : max(end, right) + 1] = True
     return own
-
-
-def _limit(places: int, averages: float) -> float:
-    """Return the density over the noise that one of so many places passes with the probability `CHANCE`.
-
-    The mean of n overlapping spectra is a chi-square with about 1.9 n degrees of freedom (Welch's window).
-    """
-    half = max(1.0, 0.95 * averages)
-    ratios = np.geomspace(1.0, 60.0, 400)
-    return float(ratios[np.argmax(places * gammaincc(half, half * ratios) < CHANCE)])
-
-
-def _power(density: Array, noise: Array, line: int) -> float:
-    """Return the density above the noise of a line and of those next to it that belong to it."""
-    reach = 3 + line // 20
-    part = slice(max(0, line - reach), line + reach + 1)
-    return float(np.maximum(density[part] - noise[line], 0.0).sum())
