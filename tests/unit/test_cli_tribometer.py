@@ -112,7 +112,7 @@ def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, 
     assert "Nothing written; use --out friction.toml" in capsys.readouterr().out
     assert main(["tribometer", "a.csv", "b.csv", "--out", "friction.toml"]) == 2
     line = capsys.readouterr().err
-    assert line.startswith("separatrix: a.csv does not say: material, counterface, medium.")
+    assert line.startswith("separatrix: a.csv does not state: material, counterface, medium.")
     assert line.endswith("--map map.toml. 1 other file is refused too.\n")
     assert names(logs) == ["a.csv", "b.csv", "map.toml"]
 

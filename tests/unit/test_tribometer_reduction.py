@@ -160,7 +160,7 @@ def test_no_cycle_is_found_in_noise():
     """White noise has no line: that is told, and means are over rows."""
     test = reduce_log(log(knows_cycle=False), ReductionOptions(find_cycle=True))
     assert test.cycles == 0
-    assert told(test, "No line stands out")
+    assert told(test, "No line exceeds the noise")
 
 
 def test_too_slow_sampling_of_cycles_is_told():
@@ -299,7 +299,7 @@ def test_a_test_short_for_its_scatter_is_told():
 def test_friction_that_no_contact_has_is_told():
     """A mean of -0.1 is a wrong zero or sign."""
     test = reduce_log(log(friction=lambda t: -0.1 + 0.004 * _noise(t.size)))
-    assert "check zero, sign and units" in told(test, "Friction lies outside 0 to 2")
+    assert "check zero, sign and units" in told(test, "Friction is outside 0 to 2")
 
 
 def test_a_gap_is_told():

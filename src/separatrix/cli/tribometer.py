@@ -35,7 +35,7 @@ class TribometerOptions:
 
     @property
     def plots_folder(self) -> Path | None:
-        """Folder of the pages: as asked for, or beside the friction file."""
+        """Folder of the pages: as named, or beside the friction file."""
         beside = None if self.out is None else self.out.with_name(f"{self.out.stem}-plots")
         return beside if self.plots is None else self.plots
 

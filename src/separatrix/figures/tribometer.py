@@ -29,7 +29,7 @@ MOST_LINES = 3
 """Lines that one flag may take."""
 
 WHITE: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
-"""Look of a legend that lies over lines."""
+"""Look of a legend over lines."""
 
 NAMES = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}
 
@@ -194,7 +194,7 @@ def _distribution(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _correlation(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the correlation of spans against their distance, with the length that the spectrum gives."""
+    """Draw the correlation of spans against their distance, with the length from the spectrum."""
     size, label = scale(data)
     lag = np.asarray(data["lag"].values) / size
     bound = 2.0 / np.sqrt(data.sizes["span"])

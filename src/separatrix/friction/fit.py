@@ -20,7 +20,7 @@ from separatrix.friction.law import (
     Covariates,
     Range,
     covariates,
-    held,
+    limited,
     other_medium,
     tested_range,
     values_of,
@@ -80,15 +80,15 @@ class MaterialFit:
         temperature: Kelvin | None = None,
         medium: str | Sequence[str] | None = None,
     ) -> Prediction:
-        """Friction foretold for these conditions; a condition that is None is not asked about.
+        """Friction predicted for these conditions; one that is None stays at the middle of the tests.
 
         The medium may be given by several names: a test under any of them was run in it.
 
         Outside the tests the mean stays that of the nearest tested condition, the standard deviation
-        grows by a stated rule (`separatrix.friction.law`), and `extrapolation` says so.
+        grows by a stated rule (`separatrix.friction.law`), and `extrapolation` reports it.
         """
-        asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        within = held(asked, self.ranges, self._exponents())
+        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
+        within = limited(conditions, self.ranges, self._exponents())
         log_mean, error = self.posterior.moments(self._contrast(within.values))
         mean = exp(log_mean)
         media = tuple(dict.fromkeys(test.medium for test in self.tests))
@@ -102,7 +102,7 @@ class MaterialFit:
         )
 
     def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
-        """Logarithm of the mean that `at` foretells, for many conditions; held within the tests as there.
+        """Logarithm of the mean that `at` predicts, for many conditions, each limited to its tested range.
 
         Parameters
         ----------
@@ -122,16 +122,16 @@ class MaterialFit:
 
     def tested_at(self, *, slip_speed: Array, pressure: Array) -> NDArray[np.bool_]:
         """Whether conditions count as tested in speed and in pressure, as for `at`; shape (sample,)."""
-        asked = (("slip_speed", slip_speed), ("pressure", pressure))
+        conditions = (("slip_speed", slip_speed), ("pressure", pressure))
         inside = np.ones(slip_speed.shape, dtype=np.bool_)
-        for name, values in asked:
+        for name, values in conditions:
             limits = self.ranges[name]
             if limits is not None:
                 inside &= (values >= limits[0] / SLACK) & (values <= limits[1] * SLACK)
         return inside
 
     def _contrast(self, values: Mapping[str, float]) -> Array:
-        """Row of the design for held conditions; those not asked about stay at their centre."""
+        """Row of the design for conditions; those not given stay at their centre."""
         middle = {n: exp(c) for n, c in zip(self.covariates.names, self.covariates.centres, strict=True)}
         return np.array(self.covariates.row({**middle, **values}))
 
@@ -163,7 +163,7 @@ class FrictionFit:
         Raises
         ------
         InputError
-            There is no test of it.
+            It has no test.
         """
         if (material, environment) not in self.groups:
             rule = f'holds no test of "{material}" in "{environment}"'
@@ -190,7 +190,7 @@ def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT
         raise InputError("The friction file", "holds no test")
     if not LEAST_SCATTER <= default_scatter <= MOST_SCATTER:
         rule = f"must lie between {LEAST_SCATTER:g} and {MOST_SCATTER:g} [-]"
-        raise InputError("friction_scatter", rule, f"{default_scatter:g}", "0.09 stands for 9 %.")
+        raise InputError("friction_scatter", rule, f"{default_scatter:g}", "0.09 is 9 %.")
     return _fit(tuple(tests), default_scatter)
 
 
@@ -202,7 +202,7 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     chosen = {key: covariates(group) for key, group in grouped.items()}
     models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
     found = posteriors(list(models.values()), default_scatter)
-    some = any(model.tells_scatter for model in models.values())
+    some = any(model.shows_scatter for model in models.values())
     return FrictionFit(
         groups={
             key: _material_fit(grouped[key], chosen[key], posterior, _source(models[key], some))
@@ -225,7 +225,7 @@ def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearMod
 
 
 def _source(model: LinearModel, some: bool) -> str:
-    if model.tells_scatter:
+    if model.shows_scatter:
         return OWN
     return OTHERS if some else ASSUMED
 

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 
 LEAST_SPAN = 1.2
-"""Ratio of the largest to the smallest value from which tests are said to span a condition; nearer than that
+"""Ratio of the largest to the smallest value from which tests span a condition; nearer than that
 tests were run at one temperature."""
 
 TOGETHER = 0.95
-"""Correlation of ln speed and ln pressure from which their slopes cannot be told apart."""
+"""Correlation of ln speed and ln pressure from which their slopes cannot be separated."""
 
 Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Covariates:
-    """Names of the slopes of a group, their centres, and what is to be said about those that it lacks.
+    """Names of the slopes of a group, their centres, and notes on those that it lacks.
 
     A slope is on ln(slip_speed), ln(pressure) or, where these went together, ln(pressure_velocity), each
     counted from its `centres`, the mean over the tests.
@@ -49,7 +49,7 @@ class Covariates:
 
 
 def covariates(tests: Sequence[FrictionTest]) -> Covariates:
-    """Slopes that these tests can tell: all state the condition and span it, and a test is left over."""
+    """Slopes that these tests can show: all state the condition and span it, and a test is left over."""
     notes = []
     for name in ("slip_speed", "pressure"):
         missing = sum(getattr(test, name) is None for test in tests)
@@ -156,23 +156,23 @@ TEMPERATURE_SLACK = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Held:
-    """Conditions as they are put to the fit, what is said of them, and the widening that they cost."""
+class Limited:
+    """Conditions within the tested ranges, sentences on those outside, and the widening that these cost."""
 
     values: Mapping[str, float]
     sentences: tuple[str, ...]
     widening: Ratio
 
 
-def held(
-    asked: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
-) -> Held:
-    """Conditions held within the tested ranges; then also pV, where speed and pressure are both known.
+def limited(
+    conditions: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
+) -> Limited:
+    """Conditions, each limited to its tested range; then also pV, where speed and pressure are both known.
 
     Parameters
     ----------
-    asked : mapping
-        Condition to the value asked for, or None where nobody asks.
+    conditions : mapping
+        Condition to its value, or None where it is not known.
     ranges : mapping
         Condition to the tested range, or None where no test states it.
     exponents : mapping
@@ -180,8 +180,8 @@ def held(
     """
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
-    for name in (*asked, PRODUCT):
-        value, limits = asked.get(name), ranges.get(name)
+    for name in (*conditions, PRODUCT):
+        value, limits = conditions.get(name), ranges.get(name)
         if name == PRODUCT and {"slip_speed", "pressure"} <= values.keys():
             value = (
                 values["slip_speed"] * values["pressure"]
@@ -200,12 +200,12 @@ def held(
         sentences.append(_sentence(value, limits, name))
         exponent = max(exponents.get(name, 0.0), EXPONENTS[name])
         widening = hypot(widening, exponent * log(value / values[name]))
-    return Held(values=values, sentences=tuple(sentences), widening=widening)
+    return Limited(values=values, sentences=tuple(sentences), widening=widening)
 
 
-def other_medium(asked: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
-    """What is said of a medium in which no test was run, by all its names; no number can be put on it."""
-    names = (asked,) if isinstance(asked, str) else tuple(asked or ())
+def other_medium(medium: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
+    """Sentence on a medium in which no test was run, given by all its names; its effect has no number."""
+    names = (medium,) if isinstance(medium, str) else tuple(medium or ())
     if not names or {name.strip().casefold() for name in names} & {one.strip().casefold() for one in tested}:
         return ()
     return (f"tested in {', '.join(tested)}, not in {names[0]}",)
@@ -236,7 +236,7 @@ class TestedFriction:
     """What a candidate of a study carries: all tests of its file, which of them are its own, the scatter.
 
     All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called. Of
-    tests at different temperatures those nearest the one asked for serve.
+    tests at different temperatures those nearest to the requested one serve.
     """
 
     __test__ = False
@@ -271,7 +271,7 @@ class TestedFriction:
         temperature: Kelvin | None = None,
         medium: str | Sequence[str] | None = None,
     ) -> Prediction:
-        """Friction foretold for these conditions, as `MaterialFit.at`."""
+        """Friction predicted for these conditions, as `MaterialFit.at`."""
         fitted = self.fitted(temperature)
         return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
 
@@ -281,7 +281,7 @@ class StatedFriction:
     """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
 
     Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
-    Outside its conditions that is said, and its scatter left as it is: nobody knows the tests behind it.
+    Outside its conditions a sentence reports that, and its scatter is unchanged: the tests behind it are unknown.
     """
 
     mean: Ratio
@@ -299,9 +299,9 @@ class StatedFriction:
         temperature: Kelvin | None = None,
         medium: str | Sequence[str] | None = None,
     ) -> Prediction:
-        """Friction foretold for these conditions: the printed mean, and what of them was not tested."""
-        asked = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        within = held(asked, self.ranges, {})
+        """Friction predicted for these conditions: the printed mean, and what of them was not tested."""
+        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
+        within = limited(conditions, self.ranges, {})
         stated = self.standard_deviation
         scatter = self.default_scatter * self.mean if stated is None else stated
         other = () if self.medium is None else other_medium(medium, (self.medium,))

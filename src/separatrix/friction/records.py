@@ -18,7 +18,7 @@ WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "
 
 _LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
 NAMES = ("material", "counterface", "medium")
-"""What a test must say: what slid on what, in what."""
+"""What a test must state: what slid on what, in what."""
 
 _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 
@@ -38,7 +38,7 @@ class FrictionTest:
     effective_count : float or None
         How many independent values the standard error rests on.
     temperature, slip_speed, pressure : tuple of float or None
-        Lowest and highest during the test, or over the tests that a printed mean stands for [K, m/s, Pa];
+        Lowest and highest during the test, or over the tests behind a printed mean [K, m/s, Pa];
         None where not known. The pressure is the mean contact pressure.
     sample : str or None
         Of which specimen; tests of one sample share its deviation. None: one of its own.
@@ -118,7 +118,7 @@ def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[I
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prediction:
-    """Friction that the tests foretell for stated conditions: log-normal about `mean`.
+    """Friction that the tests predict for stated conditions: log-normal about `mean`.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class Prediction:
     widening : float
         What the conditions not tested add to the standard deviation, in quadrature [-].
     assumed_scatter : bool
-        Whether no repeated test of this material in this environment tells the scatter.
+        Whether no repeated test of this material in this environment shows the scatter.
     """
 
     mean: Ratio

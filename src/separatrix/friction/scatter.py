@@ -37,8 +37,8 @@ class LinearModel:
         return int(len(self.y) - self.design.shape[1])
 
     @property
-    def tells_scatter(self) -> bool:
-        """Whether the tests tell how samples scatter: two samples, and a test beyond the coefficients."""
+    def shows_scatter(self) -> bool:
+        """Whether the tests show how samples scatter: two samples, and a test beyond the coefficients."""
         return self.freedom > 0 and bool(np.any(self.sample != self.sample[0]))
 
     @property
@@ -149,7 +149,7 @@ OF_THE_ASSUMPTION = 0.3
 _LOGS = np.linspace(-4.0, 4.0, 65)
 _LEAST = 1e-300
 _SHARES = np.sqrt((np.arange(8) + 0.5) / 8.0)
-"""Shares of the variance that lie between samples, all as likely beforehand: one specimen run again differs
+"""Shares of the variance between samples, all as likely beforehand: one specimen run again differs
 less than two specimens do (density proportional to the share; a guess)."""
 
 

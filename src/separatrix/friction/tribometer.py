@@ -35,7 +35,7 @@ MOST_FILES = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ReducedLogs:
-    """What logs of tribometers show: each test, and what all of them say of each material.
+    """What logs of tribometers show: each test, and the friction of each material from all of them.
 
     Attributes
     ----------
@@ -201,7 +201,7 @@ def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> 
 def _tests_of(
     files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
 ) -> list[tuple[Path, RawLog]]:
-    """Logs of tests, each with its first file: parts joined as asked, or as their headers state."""
+    """Logs of tests, each with its first file: parts joined on request, or as their headers state."""
     home = {log.source: path for path, logs in files for log in logs}
     if join:
         folders: dict[Path, list[RawLog]] = {}
@@ -258,7 +258,7 @@ def friction_test(test: TestFriction) -> FrictionTest:
     known = test.conditions
     if missing := [name for name in NAMES if getattr(known, name) is None]:
         cure = "Give it under [test] of a column map: --map map.toml."
-        raise InputError(test.source, f"does not say: {', '.join(missing)}", cure=cure)
+        raise InputError(test.source, f"does not state: {', '.join(missing)}", cure=cure)
     points = {name: getattr(known, name) for name in ("temperature", "slip_speed", "pressure")}
     return FrictionTest(
         material=str(known.material),

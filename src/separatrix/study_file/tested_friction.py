@@ -102,7 +102,7 @@ def _candidate(
 
 
 def _friction(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until the law is asked for what the pocket sees."""
+    """Mean over the tests, until the law predicts that at the pocket's conditions."""
     own = law.serving(values.current_temperature())
     if others := len(law.own) - len(own):
         source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"

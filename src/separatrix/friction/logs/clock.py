@@ -16,7 +16,7 @@ CLOCK = "clock"
 """Unit of a column of times as text."""
 
 SHORT_CLOCKS = ("hh:mm", "h:min", "mm:ss", "min:s", "m:s")
-"""Units that say what two numbers of a time are."""
+"""Units that state what the two numbers of a time are."""
 
 _MONTHS = {
     "jan": 1,
@@ -90,7 +90,7 @@ def _time(found: re.Match[str], *, of_minutes: bool) -> float:
 
 
 def _days(found: Sequence[re.Match[str] | None]) -> Array:
-    """Return the days of dates; of day and month in doubt, the order in which the test is shortest."""
+    """Return the days of dates; where day and month are ambiguous, the order in which the test is shortest."""
     orders = [
         np.array([np.nan if one is None else _day(one, swap=swap) for one in found]) for swap in (False, True)
     ]

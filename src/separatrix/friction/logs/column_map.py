@@ -178,7 +178,7 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
         got = "" if name is None else shown(name)
         cure = f'Write {meaning} = "Fz", or {meaning} = {{ name = "Fz", unit = "N" }}.'
-        raise InputError(where, "must name a column, or give its number", got, cure)
+        raise InputError(where, "must be the name or the number of a column", got, cure)
     if isinstance(name, int) and not 1 <= name <= MOST:
         raise InputError(where, "must be the number of a column, counted from 1", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):

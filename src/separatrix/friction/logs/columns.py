@@ -104,7 +104,7 @@ def understand(
         for meaning in ABSCISSAE:
             _refuse_unsettled(meaning, result, table, options)
         rule = "has no column that is known to be time, distance or cycles"
-        cure = 'Say which below [columns] in a column map: time = { name = "...", unit = "s" }.'
+        cure = 'State which below [columns] in a column map: time = { name = "...", unit = "s" }.'
         raise InputError(source, rule, table.listed(range(len(headers))), cure)
     by_index = {one.index: one for one in result.used.values()}
     result.columns = tuple(
@@ -173,7 +173,7 @@ class _Table:
         if choice.number is not None:
             if choice.number > len(self.headers):
                 rule = f"has {len(self.headers)} columns, not {choice.number}"
-                raise InputError(self.source, f"{rule}, as the column map says for {meaning}")
+                raise InputError(self.source, f"{rule}, as the column map states for {meaning}")
             return choice.number - 1
         name = choice.name or ""
         found = [i for i, header in enumerate(self.headers) if header.strip() == name.strip()]
@@ -183,10 +183,10 @@ class _Table:
         if len(found) == 1:
             return found[0]
         if not found:
-            rule = f"has no column {shown(name)}, which the column map says is {meaning}"
+            rule = f"has no column {shown(name)}, which the column map names as {meaning}"
             raise InputError(self.source, rule, cure=f"It has {self.listed(range(len(self.headers)))}.")
         numbers = " or ".join(str(i + 1) for i in found)
-        cure = f"Below [columns], give its number instead: {meaning} = {numbers}."
+        cure = f"Below [columns], write its number instead: {meaning} = {numbers}."
         raise InputError(self.source, f"has {len(found)} columns {shown(name)}", cure=cure)
 
     def options(self, i: int) -> list[Meant]:
@@ -254,7 +254,7 @@ def _no_friction(table: _Table, result: Understood) -> InputError:
     if "tangential_force" in result.used:
         cure = f'{IN_MAP}: normal_force = "...", or below [test]: normal_force = "... N".'
         return InputError(table.source, "has a tangential force but no normal force", cure=cure)
-    rule = "has no column that is known to be the friction, nor two forces that give it"
+    rule = "has no column that is known to be the friction, nor two forces from which it follows"
     every = range(len(table.headers))
     near = [i for i in every if looks_like_friction(table.headers[i])]
     near.sort(key=lambda i: looks_extreme(table.headers[i]))
@@ -263,7 +263,7 @@ def _no_friction(table: _Table, result: Understood) -> InputError:
         line = _forces_line(table, forces[0], with_load="normal_force" not in result.used)
         return InputError(table.source, rule, table.listed(forces), line)
     name = table.name(near[0]) if near else '"..."'
-    cure = f"Say which below [columns] in a column map: friction = {name}."
+    cure = f"State which below [columns] in a column map: friction = {name}."
     cure += "" if near else " A log without friction is of no use here: leave it out."
     return InputError(table.source, rule, table.listed(near or every), cure)
 
@@ -303,7 +303,7 @@ def _refuse_unsettled(
     twice = len({table.headers[i].strip() for i in places}) < len(places)
     choice = str(first + 1) if twice else table.name(first)
     rule = f"has {len(places)} columns that could be the {_words(meaning)}"
-    cure = f"Say which below [columns] in a column map: {meaning} = {choice}."
+    cure = f"State which below [columns] in a column map: {meaning} = {choice}."
     raise InputError(table.source, rule, table.listed(places), cure)
 
 

@@ -32,7 +32,7 @@ MISSING = frozenset(
     | {"inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf"}
     | {"1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "nan(ind)", "-nan(ind)"}
 )
-"""How files write that there is no value, in small letters."""
+"""How files write a missing value, in small letters."""
 
 SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
@@ -65,7 +65,7 @@ class Dialect:
     """How a file writes a row of numbers."""
 
     separator: str
-    """One character; a blank stands for runs of blanks and tabs."""
+    """One character; a blank means runs of blanks and tabs."""
     decimal: str
     missing: frozenset[str] = MISSING
 
@@ -101,7 +101,7 @@ def dialect_of(
 
     The separator is the one with which most lines are rows of numbers; of equals, tab before semicolon
     before comma before blanks. The decimal sign is the one found in the numbers; where all of them
-    might as well be groups of thousands, it is asked for.
+    might as well be groups of thousands, the column map must state it.
     """
     chosen = separator or _separator(lines, missing, source)
     rows = [row for row in (fields(line, chosen) for line in lines) if _is_data(row, missing, chosen)]
@@ -123,7 +123,7 @@ def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> st
                 scores[candidate] += _is_data(fields(line, candidate), missing, candidate)
     best = max(scores, key=lambda candidate: scores[candidate])
     if scores[best] == 0:
-        cure = "It needs a line of column names above at least two rows; say where with a column map."
+        cure = "It needs a line of column names above at least two rows; a column map can state where."
         if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
             cure = NO_MOMENTS
         raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
@@ -168,11 +168,13 @@ def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
     both = commas and points
     if both or any(_several_signs(field) for field in tokens):
         shown = " and ".join(f'"{printable(found[0])}"' for found in (commas, points) if found)
-        cure = "Export the file without marks between thousands, or say below [format]: decimal = ..."
+        cure = "Export the file without marks between thousands, or write below [format]: decimal = ..."
         raise InputError(source, "has points and commas in its numbers", shown, cure)
     marked = commas or points
     if marked and all(_GROUPED.fullmatch(field) for field in marked):
         cure = f'Add to the column map, below [format]: decimal = "{"," if commas else "."}".'
         value = f'"{printable(marked[0])}"'
-        raise InputError(source, "does not tell decimals from thousands", value, cure)
+        raise InputError(
+            source, "does not show whether its marks are decimal signs or between thousands", value, cure
+        )
     return "," if commas else "."

@@ -72,7 +72,7 @@ def find_header(before: Sequence[str], count: int, dialect: Dialect) -> Header |
 def header_at(
     line: Callable[[int], str], form: TextFormat, count: int, source: str, dialect: Dialect
 ) -> Header:
-    """Header where the column map says it is."""
+    """Header in the lines that the column map names."""
     rows, lines = [], []
     for key, number in (("header_line", form.header_line), ("units_line", form.units_line)):
         row = [""] * count if number is None else _row(line(number - 1), count, dialect)
@@ -85,7 +85,7 @@ def header_at(
 
 
 def is_names(line: str, dialect: Dialect) -> bool:
-    """True for a line of names or units; a row of the table is none."""
+    """True for a line of names or units; a row of the table is not one."""
     row = dialect.fields(line)
     filled = [field for field in row if field.casefold() not in dialect.missing]
     return bool(filled) and not dialect.is_data(line) and _is_words(row, dialect)
@@ -128,7 +128,7 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
 
 
 def _splits(line: str, dialect: Dialect) -> list[list[str]]:
-    """Ways to divide a line of names, the likelier first; a mark of a remark before them is no part of it."""
+    """Ways to divide a line of names, the likelier first; the mark of a remark before them is left out."""
     bare = re.sub(r"^\s*[#%]+\s*", "", line)
     if dialect.separator != " ":
         return [dialect.fields(bare)]

@@ -84,18 +84,18 @@ class ColumnRead:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RawTable:
-    """One table as it stands in a file, before anyone has said what its columns mean."""
+    """One table as a file holds it, before its columns have a meaning."""
 
     name: str
     """Of the sheet, channel group or section; empty where the file has one table only."""
     headers: tuple[str, ...]
     units: tuple[str, ...]
-    """As written; empty where the table gives none."""
+    """As written; empty where the table has none."""
     columns: list[Array]
     """One per header, shape (row,) each, in the units written; NaN where the file has nothing."""
     metadata: Mapping[str, str] = field(default_factory=dict)
     lines: Sequence[int] | Array | None = None
-    """Line of the file (from 1) in which each row stands, for messages; None where it has no lines."""
+    """Line of the file (from 1) of each row, for messages; None where it has no lines."""
     layout: Layout = PLAIN
 
     def __post_init__(self) -> None:
@@ -132,7 +132,7 @@ class RawLog:
     metadata: Mapping[str, str] = field(default_factory=dict)
     conditions: Conditions = field(default_factory=Conditions)
     series: str = ""
-    """What the header says of the test that this is a part of; empty where it says nothing."""
+    """What the header states about the test that this is a part of; empty if nothing."""
     notes: tuple[str, ...] = ()
     """What the reading did that a user should know, a sentence each."""
 

@@ -106,16 +106,16 @@ SYMBOLS = {
     "distance": ("s", "l"),
     "slip_speed": ("v",),
 }
-"""Signs that may stand behind a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
+"""Signs that may follow a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
 
 CLOCKS = frozenset({CLOCK, *SHORT_CLOCKS, "hh:mm:ss", "h:mm:ss", "h:m:s", "hms"})
-"""Units of a column of times as text, which the reader gives in seconds."""
+"""Units of a column of times as text, which the reader converts to seconds."""
 
 MANGLED = frozenset({"?", "??", "\ufffd", "\ufffd\ufffd"})
 """What a Greek letter becomes where a program could not write it; as a name most likely that of friction."""
 
 FORCES = ("force", "kraft", "load", "newton", "torque", "moment")
-"""Parts of names of what is no ratio of forces."""
+"""Parts of names of what is not a ratio of forces."""
 
 NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 _COUNTS = frozenset(
@@ -205,7 +205,7 @@ def header_parts(header: str) -> list[tuple[str, str]]:
 
 
 def ranks(name: str) -> dict[str, int]:
-    """Meanings that a name may have, each with how far down its list the name stands."""
+    """Meanings that a name may have, each with its place in the list of names."""
     words = plain(name)
     found = {}
     for meaning, groups in NAMES.items():
@@ -238,7 +238,7 @@ def looks_extreme(header: str) -> bool:
 
 
 def looks_like_force(header: str) -> bool:
-    """True for a name or a unit of a force: its column is no coefficient, whatever else it is."""
+    """True for a name or a unit of a force: its column is not a coefficient."""
     words = plain(header)
     coefficient = any(part in words for part in ("coef", "cof", "beiwert"))
     units_of_force = any(scale_in(unit, "N") is not None for _, unit in header_parts(header) if unit)

@@ -217,7 +217,7 @@ def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, sourc
             i = int(back[0]) + 1
             row = f"table row {rows[i] + 1}" if table.lines is None else f"line {table.lines[rows[i]]}"
             here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
-            cure = "Split the file there; or, if this column is another, say so in a column map."
+            cure = "Split the file there; or, if this column has another meaning, state it in a column map."
             rule = f"{meaning} must not run backwards"
             raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
 
@@ -231,7 +231,7 @@ def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list
         return dict(table.metadata)
     arrays.pop("slip_speed", None)
     notes.append(
-        "these are strokes there and back: the file gives their greatest speed, which is not used; give "
+        "these are strokes there and back: the file has their greatest speed, which is not used; write "
         "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
     )
     return {key: value for key, value in table.metadata.items() if key not in speeds}

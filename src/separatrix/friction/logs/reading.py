@@ -207,7 +207,7 @@ def _by_step(table: RawTable) -> list[RawTable]:
 
 
 def _logs(tables: Sequence[RawTable], file: _File, format_name: str) -> tuple[RawLog, ...]:
-    """The log of each table; where only some are logs, the refusal says how to leave out the others."""
+    """The log of each table; where only some are logs, the refusal states how to leave out the others."""
     found: list[tuple[str, RawLog]] = []
     wrong: InputError | None = None
     for table in _named_tables([part for whole in tables for part in _by_step(whole)], file):

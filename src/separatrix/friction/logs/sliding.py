@@ -52,10 +52,10 @@ REST = 0.2
 """Share of the usual friction below which a log begins at rest."""
 
 STRETCH = 8
-"""Rows of one direction, in the middle, from which strokes can be told."""
+"""Rows of one direction, in the middle, from which strokes can be detected."""
 
 SMOOTH = 0.3
-"""Step between rows, over the usual one, below which friction does not fluctuate: it is held at rest."""
+"""Step between rows, over the usual one, below which friction does not fluctuate: nothing slides."""
 
 WINDOW = 7
 """Rows of the running median of such steps."""

@@ -151,7 +151,7 @@ def _waveform_time(channels: Sequence[Any], where: str) -> Array | None:
     if not tracks:
         return None
     if len(tracks) > 1:
-        cure = "Export one of them, or give the channels one rate."
+        cure = "Export one of them, or log the channels at one rate."
         raise InputError(where, "has waveforms of one length but of different times", cure=cure)
     start, increment = tracks.pop()
     if not (np.isfinite(start) and np.isfinite(increment) and increment > 0.0):

@@ -254,7 +254,7 @@ class _Text:
 
     def _no_header(self, before: list[int], start: int, n: int, found: list[_Found]) -> InputError:
         if found:
-            cure = "Delete it, or give the second table a line of column names."
+            cure = "Delete it, or write a line of column names above the second table."
             where = f"{self.source}: line {before[0] + 1}"
             return InputError(where, "breaks the table", f'"{printable(self[before[0]])}"', cure)
         above = fields(self[before[-1]], self.dialect.separator) if before else []
@@ -359,7 +359,7 @@ def _loaded(body: bytes, separator: str, needed: list[int]) -> Array:
 
 
 def _with_missing(body: bytes, dialect: Dialect) -> bytes:
-    """The body with ``nan`` for every field that is empty or means that there is no value."""
+    """The body with ``nan`` for every field that is empty or means a missing value."""
     words = sorted((word for word in dialect.missing if word and not is_number(word)), key=len, reverse=True)
     words = [word for word in words if "#" not in word or b"#" in body]
     marks = b"|".join(re.escape(word.encode()) for word in words)

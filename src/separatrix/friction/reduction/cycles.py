@@ -176,7 +176,7 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
             done = np.asarray((along - along[0]) * frequency, dtype=float)
             rate = format_number(1.0 / frequency)
             notes = (
-                f"The cycle was found in the spectrum, as asked: one in {rate} of the abscissa's SI unit.",
+                f"The cycle was found in the spectrum, as requested: one in {rate} of the abscissa's SI unit.",
             )
     if done is None or done[-1] <= done[0]:
         return Clock(done=None, cycle=None, notes=notes)

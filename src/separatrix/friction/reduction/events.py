@@ -15,29 +15,29 @@ from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.units import Array
 
 SMOOTHED = 5
-"""Rows of the running median: fewer in a row are no event."""
+"""Rows of the running median: fewer in a row are not an event."""
 
 LASTING = 0.1
 """Share of the rows through which a state must last to count as staying, if not to the end."""
 
 CHUNKS = 256
-"""Stretches whose means say what the usual friction is."""
+"""Stretches from whose means the usual friction is taken."""
 
 NOISE = 7.0
 """Standard deviations above its mean that noise does not reach."""
 
 ONSET = 0.1
-"""Share of the rise to the limit at which a seizure is said to begin."""
+"""Share of the rise to the limit at which a seizure begins."""
 
 STEP_GAIN, STEP_SIZE = 0.4, 0.1
 """A step leaves less than this share of the scatter around a straight line, and is larger than this share
 of the mean."""
 
 EDGE = 0.05
-"""Share of the steady part at its ends, or three spans, within which no step is told."""
+"""Share of the steady part at its ends, or three spans, within which no step is reported."""
 
 RISE = 2.0
-"""Steady friction over that before a rise in running-in from which the rise is told."""
+"""Steady friction over that before a rise in running-in from which the rise is reported."""
 
 JUMP = 10.0
 """A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
@@ -105,9 +105,9 @@ def _friction_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
 
 
 def _reach_of_noise(smooth: Array) -> float:
-    """Return the friction that noise does not reach, told from the lower fifth: no seizure can lift it.
+    """Return the friction that noise does not reach, estimated from the lower fifth: no seizure can lift it.
 
-    The quantiles of 2.5 % and 20 % of a normal distribution lie 1.96 and 0.84 standard deviations below
+    The quantiles of 2.5 % and 20 % of a normal distribution are 1.96 and 0.84 standard deviations below
     its mean.
     """
     low, fifth = np.percentile(smooth, (2.5, 20.0))
@@ -158,7 +158,7 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
 def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float] | None:
     """Return place and level before a rise in running-in to far above it; else None.
 
-    The place is that of the rising step that explains the means best; it must lie in what is cut, or so
+    The place is that of the rising step that explains the means best; it must be in what is cut, or so
     near behind that `friction_step` does not look there. The level is the lower of the medians of both
     halves before it: neither a fall that comes first nor a slow rise lifts it.
 
@@ -186,7 +186,7 @@ def wear_step(spans: Spans) -> tuple[float, float] | None:
     """Return place and size of a sudden change of wear depth; else None."""
     if spans.means.size < FEWEST:
         return None
-    increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may lie
+    increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may be
     excess = increments - np.median(increments)
     scatter = 1.4826 * float(np.median(np.abs(excess)))
     k = int(np.argmax(np.abs(excess)))

@@ -112,16 +112,16 @@ def _rise(one: Reduction) -> Iterator[str]:
     if rise is None:
         return
     low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
-    cut = "" if one.run_in is None else "if running-in ends elsewhere, give run_in_end in the column map; "
+    cut = "" if one.run_in is None else "if running-in ends elsewhere, write run_in_end in the column map; "
     yield (
         f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
         f"running-in: a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
-        "give the log only up to the rise."
+        "use the log only up to the rise."
     )
 
 
 def _drift(one: Reduction) -> Iterator[str]:
-    """Report a straight drift that noise would hardly make and that is large enough."""
+    """Report a straight drift that is significant and large enough."""
     mean, test = one.mean, one.test
     if mean.change_chance >= CHANCE or abs(mean.change) < one.options.drift_ratio * abs(mean.mean):
         return
@@ -211,7 +211,7 @@ def _range(one: Reduction) -> Iterator[str]:
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
         numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
-            "Friction lies outside 0 to 2 (mean {}, 98 % of its rows from {} to {}): "
+            "Friction is outside 0 to 2 (mean {}, 98 % of its rows from {} to {}): "
             "check zero, sign and units of the forces.".format(*numbers)
         )
     elif mean > HIGH:

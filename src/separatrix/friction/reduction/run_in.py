@@ -3,7 +3,7 @@
 No shape of running-in is assumed. Let the tail begin at some span. Its mean is compared with the means of all
 shorter tails. Without running-in they differ by noise alone, and the variance of the difference of two nested
 means is the difference of their variances. The noise is taken from the shorter, later tail, by its lowest
-cosines, so that neighbouring values may be alike and running-in is no part of it. The steady part begins at
+cosines, so that neighbouring values may be alike and running-in is not part of it. The steady part begins at
 the earliest place where no difference exceeds noise and `WORTH` together: the method of Lepski [1]_, which
 keeps as much of a series as its bias allows. What the later tails still differ by goes into the error. A test
 that as a whole is a straight line and noise has a drift, and no running-in.
@@ -82,7 +82,7 @@ class RunIn:
     ends: bool
     """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
     level: bool
-    """Whether what may be left is no more than `LEVEL` of the mean."""
+    """Whether what may be left is at most `LEVEL` of the mean."""
 
 
 def run_in(values: Array) -> RunIn:

@@ -1,8 +1,8 @@
 """Mean of a steady stretch and its standard error, when neighbouring values are alike and drift.
 
 The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns
-over the stretch. Each projection has the variance of the spectral density at its frequency, and hardly any is
-correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
+over the stretch. Each projection has the variance of the spectral density at its frequency, and is
+hardly correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
 the mean, with as many degrees of freedom as there are of them, less one for the line [1]_. How many are low
 enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part with one
 time of correlation. What these spectra still fall over the cosines used is corrected, each with the weight of
@@ -47,7 +47,7 @@ ROUNDING = 1e-12
 """Share of friction below which differences are those of rounding."""
 
 MIXED = 0.2
-"""White part from which the correlated one is no more than a guess."""
+"""White part from which the correlated one is only a guess."""
 
 LIKELY = 0.5
 """Weight of the spectra of a long correlation from which it counts as long: more likely than not."""
@@ -129,7 +129,7 @@ def steady_mean(values: Array) -> SteadyMean:
 def cosines(values: Array) -> Array:
     """Return the projections on cosines 1, 2, ... of a stretch, straight line taken off, shape (span - 1,).
 
-    White noise gives each its own variance, save the first, of which the line takes nearly all.
+    Under white noise each has the noise's variance, save the first, of which the line takes nearly all.
     """
     x = _places(values.size)
     level = values - values.mean()
@@ -170,7 +170,7 @@ def spectrum(cosine: Array, corner: Array | float, floor: Array | float) -> Arra
 def last_digit(rows: Array) -> tuple[Ratio, Ratio]:
     """Return the step in which a log writes friction, and the error that it leaves in a mean.
 
-    A value stands for all within half a step of it: a standard error of the step over root 12 [1]_. Noise
+    A value represents all within half a step of it: a standard error of the step over root 12 [1]_. Noise
     that reaches several steps averages that away: what is left is the characteristic function of a normal
     distribution at one turn in a step [2]_. Both are zero where all rows are the same.
 

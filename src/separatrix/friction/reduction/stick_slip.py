@@ -25,7 +25,7 @@ BESIDE = 8
 """Places on each side of a line from which the noise is estimated; the two next to it are left out."""
 
 LOWEST = 12
-"""First place of a spectrum where a line is looked for: below there is no noise to its left."""
+"""First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
 
 ROUNDING = 1e-12
 """Share of friction below which differences are those of rounding."""
@@ -55,7 +55,7 @@ NONE = Oscillation(
 
 
 def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
-    """Return the strongest oscillation that is none of the cycle's.
+    """Return the strongest oscillation that is not one of the cycle's.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def beside(density: Array) -> Array:
 
 
 def _line(density: Array, noise: Array, averages: float) -> int | None:
-    """Return the place of the strongest line, if noise alone would hardly make it.
+    """Return the place of the strongest line, if noise alone is unlikely to make it.
 
     The limit is the density over the noise that one of all places exceeds with the probability `CHANCE`. The
     mean of n overlapping spectra is a chi-square with about 1.9 n degrees of freedom (Welch's window).
