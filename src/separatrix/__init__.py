@@ -18,6 +18,7 @@ _PUBLIC = {
     "equilibrium": "Equilibrium contact",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase sweep",
+    "friction.tribometer": "ReducedLogs tribometer",
     "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
     "ledger": "Ledger",
     "lubrication": "LubricationCurve lubrication_curve",

@@ -44,7 +44,7 @@ class PredictedFriction(Protocol):
 
 
 class FrictionLaw(Protocol):
-    """Friction as a function of the conditions, from tests, as `separatrix.friction.law.TestedFriction`."""
+    """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""
 
     def at(
         self,

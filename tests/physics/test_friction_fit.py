@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from separatrix.equilibrium import equilibrium
-from separatrix.friction.fit import fit_friction
-from separatrix.friction.law import StatedFriction, TestedFriction
+from separatrix.friction.fit import TestedFriction, fit_friction
+from separatrix.friction.law import StatedFriction
 from separatrix.friction.records import FrictionTest
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
 from separatrix.hertz import contact_ellipse

@@ -12,7 +12,7 @@ from separatrix.chain import known_friction
 from separatrix.cli import main
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.friction.file import friction_text, read_friction, write_friction
-from separatrix.friction.law import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.friction.records import FrictionTest
 from separatrix.pocket_contact import PocketConditions
 from separatrix.ranking.friction import cage_seen, friction_seen, frictions_seen

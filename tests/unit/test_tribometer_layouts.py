@@ -161,8 +161,8 @@ FORCE_ONLY = "Laps\tFrictionForce\t?\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\
 
 
 def test_a_force_without_unit_is_not_offered_as_the_friction(tmp_path):
-    """The mangled letter is; who names the force all the same is refused, and told the two forces."""
-    with pytest.raises(InputError, match=r'got columns "\?"\. Say which .* friction = "\?"') as refusal:
+    """The mangled letter is; naming the force all the same is refused, with the two forces to name."""
+    with pytest.raises(InputError, match=r'got columns "\?"\. State which .* friction = "\?"') as refusal:
         read(tmp_path, FORCE_ONLY)
     assert "FrictionForce" not in str(refusal.value)
     (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": "?"}})

@@ -116,7 +116,7 @@ def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one
     flag = told(
         reduce_log(failed(0.1, 3.125), ReductionOptions(run_in_end="60 s")), "Friction rises from 0.0"
     )
-    assert flag.endswith("Look at the plot; if the film failed, give the log only up to the rise.")
+    assert flag.endswith("Look at the plot; if the film failed, use the log only up to the rise.")
     assert "run_in_end" not in flag
 
 

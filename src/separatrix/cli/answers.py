@@ -128,7 +128,7 @@ def check(study: Study, work: Work) -> CheckAnswer:  # noqa: ARG001
 
 def _foretold_friction(study: Study) -> None:
     """Warn where `sensitivity` refuses the friction that tests foretell in the pocket."""
-    from separatrix.friction.law import TestedFriction
+    from separatrix.friction.fit import TestedFriction
 
     candidates = study.ranking.candidates if study.ranking and study.cage else ()
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):

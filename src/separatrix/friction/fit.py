@@ -7,7 +7,7 @@ speed, pressure or pV is a straight line (docs/theory/friction.md).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from math import exp, hypot, sqrt
 
@@ -19,6 +19,7 @@ from separatrix.friction.law import (
     SLACK,
     Covariates,
     Range,
+    at_temperature,
     covariates,
     limited,
     other_medium,
@@ -250,3 +251,46 @@ def _estimate(posterior: Posterior, contrast: Array) -> Estimate:
     value, error = posterior.moments(contrast)
     low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
     return Estimate(value=value, standard_error=error, low=low, high=high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestedFriction:
+    """What a candidate of a study carries: all tests of its file, which of them are its own, the scatter.
+
+    All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called. Of
+    tests at different temperatures those nearest to the requested one serve.
+    """
+
+    __test__ = False
+
+    material: str
+    environment: str
+    tests: tuple[FrictionTest, ...] = field(repr=False)
+    default_scatter: Ratio
+
+    @property
+    def own(self) -> tuple[FrictionTest, ...]:
+        """Tests of this material in this environment."""
+        mine = (self.material, self.environment)
+        return tuple(test for test in self.tests if (test.material, test.environment) == mine)
+
+    def serving(self, temperature: Kelvin | None) -> tuple[FrictionTest, ...]:
+        """Those of its own tests that serve at a temperature."""
+        return at_temperature(self.own, temperature)
+
+    def fitted(self, temperature: Kelvin | None) -> MaterialFit:
+        """Fit of its own tests that serve at a temperature, with the scatter pooled over all materials."""
+        tests = at_temperature(self.tests, temperature)
+        return fit_friction(tests, self.default_scatter).of(self.material, self.environment)
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None = None,
+        pressure: Pascal | None = None,
+        temperature: Kelvin | None = None,
+        medium: str | Sequence[str] | None = None,
+    ) -> Prediction:
+        """Friction predicted for these conditions, as `MaterialFit.at`."""
+        fitted = self.fitted(temperature)
+        return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)

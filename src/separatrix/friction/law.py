@@ -12,14 +12,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
-from typing import TYPE_CHECKING
 
 from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest, Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
-
-if TYPE_CHECKING:
-    from separatrix.friction.fit import MaterialFit
-
 
 LEAST_SPAN = 1.2
 """Ratio of the largest to the smallest value from which tests span a condition; nearer than that
@@ -232,56 +227,11 @@ def _text(value: float, name: str) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TestedFriction:
-    """What a candidate of a study carries: all tests of its file, which of them are its own, the scatter.
-
-    All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called. Of
-    tests at different temperatures those nearest to the requested one serve.
-    """
-
-    __test__ = False
-
-    material: str
-    environment: str
-    tests: tuple[FrictionTest, ...] = field(repr=False)
-    default_scatter: Ratio
-
-    @property
-    def own(self) -> tuple[FrictionTest, ...]:
-        """Tests of this material in this environment."""
-        mine = (self.material, self.environment)
-        return tuple(test for test in self.tests if (test.material, test.environment) == mine)
-
-    def serving(self, temperature: Kelvin | None) -> tuple[FrictionTest, ...]:
-        """Those of its own tests that serve at a temperature."""
-        return at_temperature(self.own, temperature)
-
-    def fitted(self, temperature: Kelvin | None) -> MaterialFit:
-        """Fit of its own tests that serve at a temperature, with the scatter pooled over all materials."""
-        from separatrix.friction.fit import fit_friction
-
-        tests = at_temperature(self.tests, temperature)
-        return fit_friction(tests, self.default_scatter).of(self.material, self.environment)
-
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None = None,
-        pressure: Pascal | None = None,
-        temperature: Kelvin | None = None,
-        medium: str | Sequence[str] | None = None,
-    ) -> Prediction:
-        """Friction predicted for these conditions, as `MaterialFit.at`."""
-        fitted = self.fitted(temperature)
-        return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class StatedFriction:
     """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
 
     Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
-    Outside its conditions a sentence reports that, and its scatter is unchanged: the tests behind it are unknown.
+    Outside its conditions a sentence reports that, and its scatter is unchanged: its tests are unknown.
     """
 
     mean: Ratio

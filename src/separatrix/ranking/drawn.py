@@ -18,7 +18,7 @@ from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
 from separatrix.chain import CageState, cage_state
 from separatrix.draws import UncertainInput, sample
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.friction.law import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.ranking.friction import as_pockets_see, conditions_of
 from separatrix.runner import Runner, joined
 from separatrix.study import Friction, Study

@@ -10,7 +10,7 @@ from math import hypot, sqrt
 from separatrix.cage_choice import cage_candidate, cage_friction, environment_of
 from separatrix.chain import CageState, cage_state, impact_speed
 from separatrix.errors import ValidityWarning
-from separatrix.friction.law import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.pocket_contact import PocketConditions, pocket_conditions
 from separatrix.study import Candidate, Friction, Operation, Study
 from separatrix.units import Ratio

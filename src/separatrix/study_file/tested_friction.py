@@ -6,11 +6,11 @@ import hashlib
 from dataclasses import replace
 from math import exp, log
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.errors import InputError
 from separatrix.friction.file import read_friction
-from separatrix.friction.law import StatedFriction, TestedFriction
+from separatrix.friction.law import StatedFriction
 from separatrix.friction.records import CONDITIONS, FrictionTest
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
@@ -19,6 +19,9 @@ from separatrix.study_file.document import Document
 from separatrix.study_file.records import where
 from separatrix.toml_values import folded, nearest
 from separatrix.units import shown
+
+if TYPE_CHECKING:
+    from separatrix.friction.fit import TestedFriction
 
 SUFFIX = ".toml"
 DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].default
@@ -88,6 +91,8 @@ def _source(path: Path) -> str:
 def _candidate(
     name: str, environments: tuple[str, ...], tests: tuple[FrictionTest, ...], scatter: float, source: str
 ) -> Candidate:
+    from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
+
     tested = {test.environment for test in tests if test.material == name}
     laws = {
         env: TestedFriction(material=name, environment=env, tests=tests, default_scatter=scatter)

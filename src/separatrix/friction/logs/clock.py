@@ -90,7 +90,7 @@ def _time(found: re.Match[str], *, of_minutes: bool) -> float:
 
 
 def _days(found: Sequence[re.Match[str] | None]) -> Array:
-    """Return the days of dates; where day and month are ambiguous, the order in which the test is shortest."""
+    """Return the days of dates; of ambiguous day and month the order with the shortest test."""
     orders = [
         np.array([np.nan if one is None else _day(one, swap=swap) for one in found]) for swap in (False, True)
     ]

@@ -105,7 +105,7 @@ def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
             rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
             listed = ", ".join(f'"{printable(header)}"' for _ in places)
             numbers = " or ".join(str(i + 1) for i in places)
-            cure = f"Say which below [columns] in a column map: {meaning} = {numbers}."
+            cure = f"State which below [columns] in a column map: {meaning} = {numbers}."
             raise InputError(source, rule, f"columns {listed}", cure)
 
 

@@ -175,9 +175,7 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
         if frequency > 0.0:
             done = np.asarray((along - along[0]) * frequency, dtype=float)
             rate = format_number(1.0 / frequency)
-            notes = (
-                f"The cycle was found in the spectrum, as requested: one in {rate} of the abscissa's SI unit.",
-            )
+            notes = (f"The cycle was found in the spectrum: one in {rate} of the abscissa's SI unit.",)
     if done is None or done[-1] <= done[0]:
         return Clock(done=None, cycle=None, notes=notes)
     cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))

@@ -1,8 +1,8 @@
 """Mean of a steady stretch and its standard error, when neighbouring values are alike and drift.
 
 The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns
-over the stretch. Each projection has the variance of the spectral density at its frequency, and is
-hardly correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
+over the stretch. Each projection has the variance of the spectral density at its frequency, and is hardly
+correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
 the mean, with as many degrees of freedom as there are of them, less one for the line [1]_. How many are low
 enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part with one
 time of correlation. What these spectra still fall over the cosines used is corrected, each with the weight of
