@@ -21,7 +21,8 @@ with tempfile.TemporaryDirectory() as folder:
     found = rank(read_study(path), jobs=2)
 
 for row in found.environments[0].materials:
-    low, high = row.uncertain_probability_low, row.uncertain_probability_high
-    print(f"{row.name}: P(stable) {row.uncertain_probability_stable:.2f} ({low:.2f} to {high:.2f})")
+    drawn = row.over_inputs
+    low, high = drawn.probability_low, drawn.probability_high
+    print(f"{row.name}: P(stable) {drawn.probability_stable:.2f} ({low:.2f} to {high:.2f})")
 
-probabilities = {row.name: row.uncertain_probability_stable for row in found.environments[0].materials}
+probabilities = {row.name: row.over_inputs.probability_stable for row in found.environments[0].materials}

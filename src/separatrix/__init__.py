@@ -12,8 +12,7 @@ from typing import Any
 _PUBLIC = {
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
-    "chain": "BearingState CageState RaceContact RestitutionState TractionState bearing_state cage_state "
-    "restitution_state traction_state",
+    "chain": "BearingState RaceContact RaceTraction Solution solve",
     "creep": "Creep contact_creep",
     "equilibrium": "Equilibrium contact",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
@@ -21,10 +20,11 @@ _PUBLIC = {
     "friction.tribometer": "ReducedLogs tribometer",
     "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
     "ledger": "Ledger",
+    "runner": "Interrupted Runner",
     "lubrication": "LubricationCurve lubrication_curve",
     "ranking": "Ranking rank",
     "restitution": "Restitution damping_ratio race_damping restitution_factor",
-    "results": "dataset document load save",
+    "present": "dataset document load report save to_dataframe to_xarray",
     "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 
@@ -52,10 +52,24 @@ class LubricationCurve:
         Whose modulus the film has.
     """
 
-    film_thickness: Array
-    race_friction: Array
-    restitution_factor: Array
-    restitution_factor_free_spin: Array
+    film_thickness: Annotated[Array, "m", ("film_thickness",)]
+    race_friction: Annotated[Array, "-", ("race_friction",)]
+    restitution_factor: Annotated[
+        Array,
+        "-",
+        (
+            "race_friction",
+            "film_thickness",
+        ),
+    ]
+    restitution_factor_free_spin: Annotated[
+        Array,
+        "-",
+        (
+            "race_friction",
+            "film_thickness",
+        ),
+    ]
     film_material: str
 
 

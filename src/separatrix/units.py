@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Annotated, get_type_hints
+from typing import TYPE_CHECKING, Annotated, NamedTuple, get_type_hints
 
 from separatrix.errors import InputError
 
@@ -33,6 +33,7 @@ else:
 
 Ratio = Annotated[float, "-"]
 Metre = Annotated[float, "m"]
+PerSecond = Annotated[float, "1/s"]
 PerMetre = Annotated[float, "1/m"]
 PerMetre2 = Annotated[float, "1/m2"]
 Second = Annotated[float, "s"]
@@ -54,6 +55,20 @@ Pascal = Annotated[float, "Pa"]
 Kelvin = Annotated[float, "K"]
 Joule = Annotated[float, "J"]
 Watt = Annotated[float, "W"]
+
+
+class Rows(NamedTuple):
+    """In the type of a field with records: how these become labelled arrays.
+
+    They lie along `dimension`, and `label` is the field that names the places on it; a single record has
+    neither. `prefix` goes before the names of their fields. A field with an array has its unit and its axes
+    there: ``Annotated[Array, "Pa", ("strip", "node")]``.
+    """
+
+    dimension: str = ""
+    prefix: str = ""
+    label: str = ""
+
 
 QUANTITIES = {
     "m": "length",

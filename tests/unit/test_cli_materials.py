@@ -174,9 +174,10 @@ def test_add_makes_a_library_that_a_study_then_reads(folder, ask):
 
 def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     """Dataset, figures and report of a saved answer come from the record inside it; a new answer differs."""
-    from separatrix.figures import figures
     from separatrix.report import report
     from separatrix.results import dataset, load
+
+    from separatrix.figures import draw
 
     assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
     capsys.readouterr()
@@ -195,8 +196,8 @@ def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     assert report("restitution", document) == before["restitution.txt"].decode("ascii")
     saved = load(folder / "old" / "restitution.nc")
     assert "fitted to test 12" in json.dumps(dict(saved.attrs), default=str)
-    assert [name for name, _ in figures("restitution", saved)] == [
-        name for name, _ in figures("restitution", dataset(document))
+    assert [name for name, _ in draw("restitution", saved)] == [
+        name for name, _ in draw("restitution", dataset(document))
     ]
 
 

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 
 import pytest
 from scipy.stats import lognorm
+from separatrix.report import report
+from separatrix.results import document
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.ranking.friction import measured
-from separatrix.report import report
-from separatrix.results import document
 from separatrix.stability.map_parameters import varied
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (
@@ -228,12 +228,12 @@ def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
     shown = report("check", document("check", SimpleNamespace(static=None, static_reason=""), study, []))
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-    from separatrix.chain import bearing_state
+    from separatrix.chain import solve
 
-    told = report("bearing", document("bearing", bearing_state(study), study, []))
+    told = report("bearing", document("bearing", solve(study).bearing, study, []))
     assert "An uncertain input stands at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = report("bearing", document("bearing", bearing_state(certain), certain, []))
+    told = report("bearing", document("bearing", solve(certain).bearing, certain, []))
     assert "uncertain" not in told
 
 

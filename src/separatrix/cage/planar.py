@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import Enum, IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _cage_rules, _check, pocket_shape
 from separatrix.errors import InputError
@@ -140,15 +140,15 @@ class PlanarCage:
     pocket_axial_clearance: Metre | None = None
     pocket_axial_offset: Metre = 0.0
     hertz_coefficient: NewtonPerMetre1_5 | None = None
-    pocket_angles: tuple[Radian, ...] = ()
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()
     pocket_spacing_scatter: Ratio = 0.0
     ball_diameter_scatter: Metre = 0.0
     pocket_position_scatter: Metre = 0.0
     land_count: int = 1
     land_out_of_round: Metre = 0.0
     land_lobes: int = 2
-    orbital_cosines: tuple[MetrePerSecond, ...] = ()
-    orbital_sines: tuple[MetrePerSecond, ...] = ()
+    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
     ramp_time: Second = 0.0
     ramp_start: Ratio = 0.1
 

@@ -113,11 +113,11 @@ def _head(verb: str) -> dict[str, Any]:
 
 
 def _deliver(document: dict[str, Any], report: str, *, as_json: bool) -> int:
-    """Answer with the document, or with the text of it that `report.materials` makes under this name."""
+    """Answer with the document, or with the text of it that `text.materials` makes under this name."""
     if as_json:
         answer(plain_json.dumps(document, indent=1, allow_nan=False) + "\n")
         return ANSWERED
-    from separatrix.report import materials
+    from separatrix.present.text import materials
 
     answer(getattr(materials, report)(document))
     return ANSWERED

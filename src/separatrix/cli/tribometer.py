@@ -101,8 +101,8 @@ def _refuse_out(out: Path) -> None:
 def _deliver(found: ReducedLogs, options: TribometerOptions) -> None:
     """Write the files, then the answer."""
     from separatrix.friction.file import exists_already, friction_text
-    from separatrix.report.tribometer import tribometer as in_words
-    from separatrix.results.tribometer import tribometer as document
+    from separatrix.present.text.tribometer import tribometer as in_words
+    from separatrix.present.tribometer import tribometer as document
 
     out, plots = options.out, options.plots_folder
     answered = document(found, written=None if out is None else str(out))
@@ -121,10 +121,10 @@ def _deliver(found: ReducedLogs, options: TribometerOptions) -> None:
 
 def _draw(found: ReducedLogs, options: TribometerOptions, folder: Path) -> None:
     """Write a page of plots for each test, and the data that it is drawn from."""
-    from separatrix import results
-    from separatrix.figures import save
+    from separatrix import figures
     from separatrix.figures.tribometer import page
-    from separatrix.results.tribometer import page_data
+    from separatrix.present import save
+    from separatrix.present.tribometer import page_data
 
     names: dict[str, int] = {}
     with staged(folder) as stage, progress_bar("pages of plots", quiet=options.quiet) as progress:
@@ -133,8 +133,8 @@ def _draw(found: ReducedLogs, options: TribometerOptions, folder: Path) -> None:
             names[name] = number = names.get(name, 0) + 1
             path = stage / (name if number == 1 else f"{name}-{number}")
             data = page_data(one)
-            results.save(data, path.with_name(f"{path.name}.nc"))
-            save(page(data), path.with_name(f"{path.name}.png"))
+            save(data, path.with_name(f"{path.name}.nc"))
+            figures.save(page(data), path.with_name(f"{path.name}.png"))
             if progress is not None:
                 progress(done, len(found.reductions))
 

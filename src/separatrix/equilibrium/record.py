@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,24 +34,31 @@ class Equilibrium:
     """
 
     model: KinematicModel
-    azimuth: Array
-    contact_angle_inner: Array
-    contact_angle_outer: Array
-    load_inner: Array
-    load_outer: Array
-    inner_contact: NDArray[np.bool_]
-    outer_contact: NDArray[np.bool_]
-    orbital_speed: Array
-    pitch_angle: Array
-    yaw_angle: Array
-    ball_spin: Array
-    spin_roll_ratio_inner: Array
-    spin_roll_ratio_outer: Array
-    rolling_speed_inner: Array
-    rolling_speed_outer: Array
-    centrifugal_force: Array
-    gyroscopic_moment: Array
-    race_control: tuple[Race, ...]
+    azimuth: Annotated[Array, "rad", ("ball",)]
+    contact_angle_inner: Annotated[Array, "rad", ("ball",)]
+    contact_angle_outer: Annotated[Array, "rad", ("ball",)]
+    load_inner: Annotated[Array, "N", ("ball",)]
+    load_outer: Annotated[Array, "N", ("ball",)]
+    inner_contact: Annotated[NDArray[np.bool_], ("ball",)]
+    outer_contact: Annotated[NDArray[np.bool_], ("ball",)]
+    orbital_speed: Annotated[Array, "rad/s", ("ball",)]
+    pitch_angle: Annotated[Array, "rad", ("ball",)]
+    yaw_angle: Annotated[Array, "rad", ("ball",)]
+    ball_spin: Annotated[
+        Array,
+        "rad/s",
+        (
+            "ball",
+            "axis",
+        ),
+    ]
+    spin_roll_ratio_inner: Annotated[Array, "-", ("ball",)]
+    spin_roll_ratio_outer: Annotated[Array, "-", ("ball",)]
+    rolling_speed_inner: Annotated[Array, "m/s", ("ball",)]
+    rolling_speed_outer: Annotated[Array, "m/s", ("ball",)]
+    centrifugal_force: Annotated[Array, "N", ("ball",)]
+    gyroscopic_moment: Annotated[Array, "N m", ("ball",)]
+    race_control: Annotated[tuple[Race, ...], ("ball",)]
     axial_displacement: Metre
     radial_displacement: Metre
     transverse_displacement: Metre

@@ -12,9 +12,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.heading import LINE
-from separatrix.figures.literal import literal
-from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
+from separatrix.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    LINE,
+    ORANGE,
+    PAGE,
+    SKY,
+    VERMILION,
+    journal,
+    literal,
+    settled,
+)
 from separatrix.friction.abscissa import in_words
 from separatrix.friction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
@@ -55,7 +65,7 @@ def page(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : Dataset
-        From `separatrix.results.tribometer.page_data`, or loaded from where that was saved.
+        From `separatrix.present.tribometer.page_data`, or loaded from where that was saved.
     """
     with journal():
         return settled(_page(data))

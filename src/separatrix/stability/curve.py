@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.drive import drift_rate_law, drifts
-from separatrix.ledger import Ledger
-from separatrix.runner import Progress, Runner
+from separatrix.runner import Runner
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
 from separatrix.stability.response import SEARCHED_FRICTION, Side
 from separatrix.stability.tracing import COARSE, finer
 from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, Ratio, Second
+from separatrix.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
+
+ETA = "restitution_factor"
 
 FLAT: Ratio = 0.002
 """Friction by which a line may miss a point however well that is known."""
@@ -60,22 +62,22 @@ class StabilityCurve:
         False if an interrupt left points out.
     """
 
-    curve: tuple[CriticalFriction, ...]
+    curve: Annotated[tuple[CriticalFriction, ...], Rows(ETA, label=ETA)]
     here: CriticalFriction | None = None
-    linear_limit: tuple[LinearLimit, ...]
-    hard_limit: tuple[HardLimit, ...] = ()
+    linear_limit: Annotated[tuple[LinearLimit, ...], Rows(ETA, "linear_limit_", label=ETA)]
+    hard_limit: Annotated[tuple[HardLimit, ...], Rows(ETA, "hard_limit_", label=ETA)] = ()
     hard_limit_closed: Ratio | None = None
     band_few: Ratio
     band_most: Ratio
     band: bool
-    kicks: tuple[MetrePerSecond, ...]
+    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     middle_kick: MetrePerSecond
     runs: int
     duration: Second
     ball_scatter: Ratio
     searched_friction: Ratio
     drifts: bool
-    drift_rate_law: float
+    drift_rate_law: PerSecond
     adaptive: bool
     complete: bool
 
@@ -84,9 +86,7 @@ def stability_curve(
     cage: PlanarCage,
     settings: StabilitySettings,
     *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
@@ -96,32 +96,23 @@ def stability_curve(
         Its friction is replaced; its race damping but for `here`.
     settings : StabilitySettings
         Kicks, runs and seed; restitution factors, or none: then they are chosen where the curve bends.
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total so far) points.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
-    KeyboardInterrupt
-        Interrupted before the first point was finished; later the finished points are returned.
+    Interrupted
+        With the curve of the points that were finished, if any was.
     """
-    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    runner = runner or Runner()
     tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
-    found = runner.work_out(tracer.point, [*tracer.first, (HERE, None)], more=tracer.more)
-    if not found:
-        raise KeyboardInterrupt
-    here = found.pop((HERE, None), None)
-    return curve_of_points(
-        cage,
-        settings,
-        list(found.values()),
-        here=here,
-        complete=here is not None and tracer.complete(found),
-        jobs=jobs,
-    )
+
+    def curve(found: dict[Node, CriticalFriction]) -> StabilityCurve:
+        here = found.pop((HERE, None), None)
+        complete = here is not None and tracer.complete(found)
+        return curve_of_points(cage, settings, list(found.values()), here=here, complete=complete)
+
+    return runner.work_out(tracer.point, [*tracer.first, (HERE, None)], into=curve, more=tracer.more)
 
 
 Node = tuple[Ratio, Ratio | None]
@@ -246,13 +237,12 @@ def curve_of_points(
     band: bool = True,
     here: CriticalFriction | None = None,
     complete: bool = True,
-    jobs: int = 1,
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
-    hard = Runner(jobs=jobs).each(lambda eta: hard_limit(cage, eta, settings), etas)
+    hard = [hard_limit(cage, eta, settings) for eta in etas]
     return StabilityCurve(
         curve=tuple(rising),
         here=here,

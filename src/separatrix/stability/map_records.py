@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 from separatrix.cage import Verdict
 from separatrix.errors import InputError
 from separatrix.stability.map_rule import side
 from separatrix.study import Study
-from separatrix.units import Metre, MetrePerSecond, Newton, Ratio, Second
+from separatrix.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
 
 NOT_RUN = "not run"
 
@@ -64,9 +65,9 @@ class MapPoint:
     probability_high: Ratio | None = None
     runs: int = 0
     whirling: int = 0
-    growth_rate: float | None = None
+    growth_rate: PerSecond | None = None
     largest_offset: Metre | None = None
-    drift_rate: float | None = None
+    drift_rate: PerSecond | None = None
     largest_contact_force: Newton | None = None
     restitution_factor: Ratio | None = None
     margin: float | None = None
@@ -177,8 +178,8 @@ class StabilityMap:
     x: MapAxis
     y: MapAxis
     points: tuple[MapPoint, ...]
-    changes: tuple[MapChange, ...]
-    counts: Mapping[str, int]
+    changes: Annotated[tuple[MapChange, ...], Rows("change", "change_")]
+    counts: Annotated[Mapping[str, int], Rows(prefix="points_")]
     kick: MetrePerSecond
     stopping: Stopping
     inference: Inference | None

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import Annotated
 
 from separatrix.cage import PlanarCage, linear_critical_friction
 from separatrix.restitution import damping_ratio
@@ -65,9 +66,9 @@ class CriticalFriction:
     low_scatter_high: Ratio | None = None
     high_scatter_low: Ratio | None = None
     high_scatter_high: Ratio | None = None
-    kick_low: tuple[Ratio | None, ...] = ()
-    kick_critical_friction: tuple[Ratio | None, ...] = ()
-    kick_high: tuple[Ratio | None, ...] = ()
+    kick_low: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
+    kick_critical_friction: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
+    kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
     side: Side | None = None
     reason: str | None = None
 

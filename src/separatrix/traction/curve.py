@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -29,8 +30,8 @@ class TractionCurve:
     `nodes` counts the elements of the finest strip.
     """
 
-    creep_increment: Array
-    traction_coefficient: Array
+    creep_increment: Annotated[Array, "-", ("increment",)]
+    traction_coefficient: Annotated[Array, "-", ("increment",)]
     slope: Ratio
     slope_error: Ratio
     free_rolling_offset: Ratio

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -25,14 +26,42 @@ class ShearField:
     stick, else its sign; sweeps : solutions of each strip's stick zone, shape (strip,).
     """
 
-    across: Array
-    along: Array
-    creep_ratio: Array
-    pressure: Array
-    shear: Array
-    shear_without_slip: Array
-    slip: Array
-    sweeps: Array
+    across: Annotated[Array, "m", ("strip",)]
+    along: Annotated[
+        Array,
+        "m",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    creep_ratio: Annotated[Array, "-", ("strip",)]
+    pressure: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    shear: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    shear_without_slip: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    slip: Annotated[Array, ("strip", "node")]
+    sweeps: Annotated[Array, ("strip",)]
 
 
 def shear_field(

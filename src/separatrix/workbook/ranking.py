@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from separatrix.results.labels import unit_of
+from separatrix.cage import Judgement
+from separatrix.present.walk import field_units
+from separatrix.ranking import Ranked
 from separatrix.spreadsheet.cells import cell_name
 from separatrix.spreadsheet.writing import Look, add_sheet, headings, put, widths
 
@@ -155,7 +157,7 @@ def _others(rows: Sequence[Row]) -> list[Column]:
 
 
 def _other(key: str) -> Column:
-    unit = unit_of(key)
+    unit = (field_units(Judgement) | field_units(Ranked)).get(key.removeprefix("uncertain_"))
     heading = key.replace("_", " ") + (f" ({unit})" if unit else "")
     return Column(key=key, heading=heading, number_format="0.000E+00" if unit != "-" else "0.000", width=14)
 
