@@ -30,9 +30,9 @@ from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipe
 
 from separatrix.cage import wilson_interval
 from separatrix.errors import InputError
+from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.logs.reading import read_log
 from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log
 
 SEED = 20260

@@ -4,9 +4,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from separatrix.report.stability import drift_note
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
-from separatrix.report.stability import drift_note
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.stability import (
     GrowthCounter,

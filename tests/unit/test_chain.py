@@ -3,15 +3,15 @@
 from dataclasses import dataclass, replace
 
 import pytest
+from separatrix.report.cage import chain_facts
+from separatrix.results import documents
 
 from separatrix.answers import OfCage
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage_choice import require_friction
 from separatrix.chain import solution, solve
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.report.cage import chain_facts
 from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
-from separatrix.results import documents
 from separatrix.study import (
     Candidate,
     Film,

@@ -175,9 +175,9 @@ def test_add_makes_a_library_that_a_study_then_reads(folder, ask):
 def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     """Dataset, figures and report of a saved answer come from the record inside it; a new answer differs."""
     from separatrix.report import report
+    from separatrix.results import dataset, load
 
     from separatrix.figures import draw
-    from separatrix.results import dataset, load
 
     assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
     capsys.readouterr()

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from separatrix.report.stability import curve
 
 from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain import solve
 from separatrix.errors import ValidityWarning
-from separatrix.report.stability import curve
 from separatrix.runner import Runner
 from separatrix.stability import (
     Count,

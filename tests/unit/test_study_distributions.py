@@ -9,13 +9,13 @@ from types import SimpleNamespace
 
 import pytest
 from scipy.stats import lognorm
+from separatrix.report import report
+from separatrix.results import document
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.ranking.friction import measured
-from separatrix.report import report
-from separatrix.results import document
 from separatrix.stability.map_parameters import varied
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (

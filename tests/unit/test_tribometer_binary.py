@@ -9,9 +9,8 @@ import pytest
 from minimal_xlsx import Fault, Formula, Shown, workbook, zipped
 
 from separatrix.errors import InputError
-from separatrix.friction.logs import tdms
+from separatrix.friction.logs import read_log, tdms
 from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.reading import read_log
 
 nptdms = pytest.importorskip("nptdms")
 

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from separatrix.report import report
+from separatrix.results import document
 
 from separatrix.answers import SimulationAnswer
 from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
 from separatrix.chain import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.report import report
 from separatrix.restitution import damping_for
-from separatrix.results import document
 from separatrix.stability.growth import race_damping_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study

@@ -8,8 +8,8 @@ import pytest
 import raw_logs
 
 from separatrix.errors import InputError
+from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map, read_column_map
-from separatrix.friction.logs.reading import read_log
 
 TIME = np.arange(20) * 0.5
 FRICTION = 0.1 + 0.001 * np.arange(20)

@@ -57,7 +57,7 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
     """
     if options.out is not None:
         _refuse_out(options.out)
-    from separatrix.friction.abscissa import place
+    from separatrix.friction.records import place
 
     if options.run_in is not None:
         place(options.run_in, "--run-in")

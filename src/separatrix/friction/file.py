@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError, together
-from separatrix.friction.abscissa import UNITS, place
-from separatrix.friction.records import NAMES, FrictionTest
+from separatrix.friction.records import NAMES, UNITS, FrictionTest, place
 from separatrix.toml_text import Kind, label_of, read_toml
 from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ratio, table, text
 from separatrix.units import parse, printable, shown

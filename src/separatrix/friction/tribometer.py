@@ -12,10 +12,9 @@ from typing import TypeVar
 
 from separatrix.errors import InputError, together
 from separatrix.friction.fit import FrictionFit, fit_friction
+from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.joining import by_series, in_order, joined
-from separatrix.friction.logs.log import RawLog
-from separatrix.friction.logs.reading import read_log
+from separatrix.friction.logs.log import RawLog, by_series, in_order, joined
 from separatrix.friction.records import NAMES, FrictionTest
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
 from separatrix.units import printable

@@ -11,8 +11,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from separatrix.friction.fit import MaterialFit
+from separatrix.friction.logs import described
 from separatrix.friction.logs.log import MEANINGS, RawLog
-from separatrix.friction.logs.reading import described
 from separatrix.friction.reduction import Reduction, TestFriction, steady
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.present.json import plain

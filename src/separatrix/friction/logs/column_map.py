@@ -10,11 +10,10 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
-from separatrix.friction.abscissa import place
-from separatrix.friction.logs.dialect import MISSING, SEPARATORS
-from separatrix.friction.logs.encoding import ENCODINGS
+from separatrix.friction.logs.dialect import ENCODINGS, MISSING, SEPARATORS
 from separatrix.friction.logs.log import MEANINGS
 from separatrix.friction.logs.names import known_units, scale_of
+from separatrix.friction.records import place
 from separatrix.toml_text import Kind, read_toml
 from separatrix.units import printable, shown
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.abscissa import in_words
 from separatrix.friction.logs.log import RawLog
+from separatrix.friction.records import in_words
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.events import Event, kept_rows, row_events
 from separatrix.friction.reduction.flags import flags
 from separatrix.friction.reduction.records import ReductionOptions, TestFriction
 from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
-from separatrix.friction.reduction.stick_slip import Oscillation, oscillation
+from separatrix.friction.reduction.steady import Oscillation, oscillation
 from separatrix.units import Array, format_number
 
 __all__ = ["Reduction", "ReductionOptions", "TestFriction", "reduce_log", "reduction", "with_outliers"]

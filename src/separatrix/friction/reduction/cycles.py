@@ -9,7 +9,7 @@ import numpy as np
 from separatrix.errors import InputError
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.records import ReductionOptions
-from separatrix.friction.reduction.stick_slip import oscillation
+from separatrix.friction.reduction.steady import oscillation
 from separatrix.units import Array, format_number
 
 MOST = 256

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.friction.abscissa import in_words
+from separatrix.friction.records import in_words
 from separatrix.friction.reduction.cycles import means
 from separatrix.friction.reduction.events import friction_step, run_in_rise, wear_step
 from separatrix.friction.reduction.steady import LONG

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.friction.abscissa import UNITS, place
 from separatrix.friction.logs.log import Conditions
+from separatrix.friction.records import UNITS, place
 from separatrix.units import Ratio
 
 
