@@ -19,7 +19,7 @@ import pytest
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
 from separatrix.cli.files import staged, writable_folder
-from separatrix.cli.run import noted_warnings
+from separatrix.notes import noted_warnings
 from separatrix.errors import InputError, ValidityWarning
 
 COMMAND = [sys.executable, "-m", "separatrix"]

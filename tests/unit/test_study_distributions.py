@@ -243,7 +243,7 @@ def test_distributions_are_given_in_python_too():
     study = with_distributions(base, {"film.thickness": Normal(mean=4e-7, standard_deviation=2e-7)})
     assert study.film.thickness == 4e-7
     assert isinstance(study.distributions["film.thickness"], LogNormal)
-    with pytest.raises(InputError, match="is no number of this study"):
+    with pytest.raises(InputError, match="is not a numeric input of this study"):
         with_distributions(base, {"film.colour": Uniform(low=0.0, high=1.0)})
 
 
@@ -277,7 +277,7 @@ def test_more_distributions_than_can_be_told_apart_are_refused():
 
 def test_two_frictions_of_one_name_cannot_be_uncertain(study_of):
     """A candidate "A.B" in "C" and one "A" in "B.C" would be one name: refused."""
-    with pytest.raises(InputError, match="or the name of two"):
+    with pytest.raises(InputError, match="or is ambiguous"):
         study_of("""
 [[ranking.candidates]]
 name = "A.B"

@@ -1,4 +1,4 @@
-"""Writing workbooks: numbers as numbers, text never as a formula, the same bytes each time."""
+"""How workbooks are written: numbers as numbers, text never as a formula, the same bytes each time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from separatrix.spreadsheet.cells import column_name, encoded
 from separatrix.units import printable
 
 if TYPE_CHECKING:
@@ -33,6 +32,7 @@ LINE_HEIGHT = 15.0
 
 _STAMP = re.compile(rb"(<dcterms:(created|modified)[^>]*>)[^<]*(</dcterms:)")
 _FIXED = b"2000-01-01T00:00:00Z"
+_CODE = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 
@@ -97,6 +97,8 @@ def put(
     A text is never a formula: its cell is of the type of texts and says so (quotePrefix). What a program
     would evaluate in a text file made from the workbook gets an apostrophe, unless `exact` is asked for.
     """
+    from openpyxl.styles import Alignment, Font, PatternFill
+
     cell: Any = sheet.cell(row, column)
     if isinstance(value, str):
         cell.value = text_for_cell(value, exact=exact)
@@ -106,7 +108,13 @@ def put(
         cell.value = "yes" if value else "no"
     elif isinstance(value, int | float) and math.isfinite(value):
         cell.value = value
-    _dress(cell, look)
+    cell.number_format = look.number_format
+    if look.bold or look.italic or look.colour:
+        colour = look.colour or "000000"
+        cell.font = Font(name="Calibri", size=11, bold=look.bold, italic=look.italic, color=colour)
+    if look.fill:
+        cell.fill = PatternFill("solid", fgColor=look.fill)
+    cell.alignment = Alignment(wrap_text=look.wrap, vertical="top")
 
 
 def is_evaluated(text: str) -> bool:
@@ -116,45 +124,31 @@ def is_evaluated(text: str) -> bool:
 
 def text_for_cell(text: str, *, exact: bool = False) -> str:
     """Return a text as a cell may hold it: control characters as codes, no beginning of a formula."""
-    plain = encoded(printable(text, LONGEST_TEXT))
+    plain = _CODE.sub("_x005F_", printable(text, LONGEST_TEXT))  # else read as the code of a character
     return f"'{plain}" if is_evaluated(text) and not exact else plain
 
 
-def _dress(cell: Any, look: Look) -> None:
-    from openpyxl.styles import Alignment, Font, PatternFill
-
-    cell.number_format = look.number_format
-    if look.bold or look.italic or look.colour:
-        cell.font = Font(
-            name="Calibri", size=11, bold=look.bold, italic=look.italic, color=look.colour or "000000"
-        )
-    if look.fill:
-        cell.fill = PatternFill("solid", fgColor=look.fill)
-    cell.alignment = Alignment(wrap_text=look.wrap, vertical="top")
-
-
-def headings(sheet: Worksheet, names: Sequence[str], *, row: int = 1, keep_columns: int = 0) -> None:
+def headings(sheet: Worksheet, names: Sequence[str], *, keep_columns: int = 0) -> None:
     """Write a row of headings, which stays in view."""
     for column, name in enumerate(names, 1):
-        put(sheet, row, column, name, HEADING)
-    sheet.freeze_panes = f"{column_name(keep_columns + 1)}{row + 1}"
+        put(sheet, 1, column, name, HEADING)
+    sheet.freeze_panes = sheet.cell(2, keep_columns + 1).coordinate
 
 
 def widths(sheet: Worksheet, *sizes: float) -> None:
     """Give the columns their widths, in characters, and the rows the height that their wrapped texts need."""
+    from openpyxl.utils import get_column_letter
+
     for column, size in enumerate(sizes, 1):
-        sheet.column_dimensions[column_name(column)].width = size
+        sheet.column_dimensions[get_column_letter(column)].width = size
     for number, row in enumerate(sheet.iter_rows(max_col=len(sizes)), 1):
-        lines = max(_lines(cell, size) for cell, size in zip(row, sizes, strict=True))
+        lines = 1
+        for cell, size in zip(row, sizes, strict=True):
+            if isinstance(cell.value, str) and cell.alignment.wrap_text:
+                width = max(int(size * (0.85 if cell.font.bold else 1.0)), 1)
+                lines = max(lines, len(textwrap.wrap(cell.value, width)))
         if lines > 1:
             sheet.row_dimensions[number].height = LINE_HEIGHT * lines
-
-
-def _lines(cell: Any, width: float) -> int:
-    """Lines that a cell's text takes, if it is wrapped."""
-    if not isinstance(cell.value, str) or not cell.alignment.wrap_text:
-        return 1
-    return len(textwrap.wrap(cell.value, max(int(width * (0.85 if cell.font.bold else 1.0)), 1)))
 
 
 def workbook_bytes(book: Workbook) -> bytes:
