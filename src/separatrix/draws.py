@@ -20,7 +20,7 @@ import numpy as np
 
 from separatrix.distribution import Distribution, LogNormal
 from separatrix.errors import InputError
-from separatrix.friction_fit import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.study import Candidate, Friction, Study
 from separatrix.study_numbers import Setter, setter, settled_in, study_numbers, value_of
 from separatrix.units import Array, Ratio

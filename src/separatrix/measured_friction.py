@@ -16,7 +16,7 @@ LEAST_FRICTION = 1e-5
 
 
 class PredictedFriction(Protocol):
-    """Friction foretold for some conditions, as `separatrix.friction_fit.Prediction`."""
+    """Friction foretold for some conditions, as `separatrix.friction.records.Prediction`."""
 
     @property
     def mean(self) -> Ratio:
@@ -44,7 +44,7 @@ class PredictedFriction(Protocol):
 
 
 class FrictionLaw(Protocol):
-    """Friction as a function of the conditions, from tests, as `separatrix.friction_fit.TestedFriction`."""
+    """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""
 
     def at(
         self,

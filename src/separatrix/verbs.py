@@ -37,7 +37,7 @@ from separatrix.explore.expected import expected_curve, expected_map, expected_r
 from separatrix.explore.sweep import Case, Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
-from separatrix.friction_fit import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.limits import stability_curve
 from separatrix.limits.map import stability_map, value_here
 from separatrix.limits.map_parameters import KICK

@@ -13,8 +13,9 @@ from separatrix.chain.pocket_friction import friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.friction_file import friction_text, read_friction, write_friction
-from separatrix.friction_fit import FrictionTest, TestedFriction
+from separatrix.friction.file import friction_text, read_friction, write_friction
+from separatrix.friction.fit import TestedFriction
+from separatrix.friction.records import FrictionTest
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 
@@ -217,7 +218,7 @@ def test_reading_a_friction_file_needs_no_numpy(tmp_path):
     path = tmp_path / "friction.toml"
     path.write_text(SMALL)
     code = (
-        "import sys, json; from pathlib import Path; from separatrix.friction_file import read_friction; "
+        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
         "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
@@ -236,15 +237,6 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
     assert axes.get_legend_handles_labels()[1] == ["friction extrapolated"]
     explain_extrapolated(bare := Figure().subplots(), xr.DataArray([["", ""]]))
     assert bare.get_legend_handles_labels()[1] == []
-
-
-def test_a_saved_ranking_holds_the_sentences_as_one_text():
-    """Lists of different length would not fit in one array."""
-    from separatrix.results.labelled import _flatten_one
-
-    assert _flatten_one("extrapolation", ["too fast", "too hot"]) == {
-        "extrapolation": ((), "too fast; too hot")
-    }
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):

@@ -7,9 +7,9 @@ import pytest
 from separatrix import archive, results
 from separatrix.cli import main
 from separatrix.errors import InputError
+from separatrix.friction.logs import tdms
 from separatrix.regular_file import size_of
 from separatrix.spreadsheet import workbook
-from separatrix.tribometer import tdms
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))
 CALLS = {

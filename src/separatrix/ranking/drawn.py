@@ -17,7 +17,7 @@ from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.friction_fit import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.runner import Runner, joined
 from separatrix.study import Friction, Study
 from separatrix.study_numbers import study_numbers

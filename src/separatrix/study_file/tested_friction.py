@@ -6,18 +6,21 @@ import hashlib
 from dataclasses import replace
 from math import exp, log
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.errors import InputError
-from separatrix.friction_file import read_friction
-from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
-from separatrix.friction_fit.records import CONDITIONS
+from separatrix.friction.file import read_friction
+from separatrix.friction.law import StatedFriction
+from separatrix.friction.records import CONDITIONS, FrictionTest
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
 from separatrix.toml_values import folded, nearest
 from separatrix.units import shown
+
+if TYPE_CHECKING:
+    from separatrix.friction.fit import TestedFriction
 
 SUFFIX = ".toml"
 DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].default
@@ -85,6 +88,8 @@ def _source(path: Path) -> str:
 def _candidate(
     name: str, environments: tuple[str, ...], tests: tuple[FrictionTest, ...], scatter: float, source: str
 ) -> Candidate:
+    from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
+
     tested = {test.environment for test in tests if test.material == name}
     laws = {
         env: TestedFriction(material=name, environment=env, tests=tests, default_scatter=scatter)
@@ -99,7 +104,7 @@ def _candidate(
 
 
 def _friction(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until the law is asked for what the pocket sees."""
+    """Mean over the tests, until the law predicts that at the pocket's conditions."""
     own = law.serving(values.current_temperature())
     if others := len(law.own) - len(own):
         source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"

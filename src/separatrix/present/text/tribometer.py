@@ -1,11 +1,11 @@
-"""Text of the verb `tribometer`: what was read, the tests, and what they say of each material."""
+"""Text of the verb `tribometer`: what was read, the tests, and the friction of each material."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from separatrix.friction_fit.covariates import in_words
+from separatrix.friction.law import in_words
 from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Document = Mapping[str, Any]
@@ -92,15 +92,15 @@ def _flags(tests: Sequence[Document]) -> list[str]:
 
 
 def _fits(document: Document) -> list[str]:
-    """Return what the tests say of each material in each environment."""
+    """Return the friction of each material in each environment."""
     rows = [_fit(one) for one in document["fits"]]
     if not rows:
         return []
     notes = [
         f"{one['material']}, {one['environment']}: {n}." for one in document["fits"] for n in one["notes"]
     ]
-    said = [*_slopes(document["fits"]), *_components(document), *notes]
-    lines = ["", *(paragraph(line, first="  ", indent="      ") for line in said)] if said else []
+    notes = [*_slopes(document["fits"]), *_components(document), *notes]
+    lines = ["", *(paragraph(line, first="  ", indent="      ") for line in notes)] if notes else []
     return [section("Friction of the materials", table(FIT_HEADERS, rows, left=2), FIT_LEGEND, *lines)]
 
 
