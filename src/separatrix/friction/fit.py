@@ -12,11 +12,9 @@ from functools import lru_cache
 from math import exp, hypot, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from separatrix.errors import InputError
 from separatrix.friction.law import (
-    SLACK,
     Covariates,
     Range,
     at_temperature,
@@ -89,8 +87,15 @@ class MaterialFit:
         grows by a stated rule (`separatrix.friction.law`), and `extrapolation` reports it.
         """
         conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        within = limited(conditions, self.ranges, self._exponents())
-        log_mean, error = self.posterior.moments(self._contrast(within.values))
+        # how steep friction may be, from the measured slopes and their errors
+        steep = {name: sqrt(s.value**2 + s.standard_error**2) for name, s in self.slopes.items()}
+        if PRODUCT in steep:
+            steep = dict.fromkeys(("slip_speed", "pressure", PRODUCT), steep[PRODUCT])
+        within = limited(conditions, self.ranges, steep)
+        chosen = self.covariates  # conditions that are not given stay at their centre
+        middle = {name: exp(centre) for name, centre in zip(chosen.names, chosen.centres, strict=True)}
+        contrast = np.array(chosen.row({**middle, **within.values}))
+        log_mean, error = self.posterior.moments(contrast)
         mean = exp(log_mean)
         media = tuple(dict.fromkeys(test.medium for test in self.tests))
         return Prediction(
@@ -120,27 +125,6 @@ class MaterialFit:
         for name, centre, slope in zip(chosen.names, chosen.centres, coefficients[1:], strict=True):
             mean += slope * (np.log(known[name]) - centre)
         return mean
-
-    def tested_at(self, *, slip_speed: Array, pressure: Array) -> NDArray[np.bool_]:
-        """Whether conditions count as tested in speed and in pressure, as for `at`; shape (sample,)."""
-        conditions = (("slip_speed", slip_speed), ("pressure", pressure))
-        inside = np.ones(slip_speed.shape, dtype=np.bool_)
-        for name, values in conditions:
-            limits = self.ranges[name]
-            if limits is not None:
-                inside &= (values >= limits[0] / SLACK) & (values <= limits[1] * SLACK)
-        return inside
-
-    def _contrast(self, values: Mapping[str, float]) -> Array:
-        """Row of the design for conditions; those not given stay at their centre."""
-        middle = {n: exp(c) for n, c in zip(self.covariates.names, self.covariates.centres, strict=True)}
-        return np.array(self.covariates.row({**middle, **values}))
-
-    def _exponents(self) -> dict[str, float]:
-        """How steep friction may be, from the measured slopes and their errors."""
-        steep = {n: sqrt(s.value**2 + s.standard_error**2) for n, s in self.slopes.items()}
-        both = steep.get(PRODUCT)
-        return steep if both is None else dict.fromkeys(("slip_speed", "pressure", PRODUCT), both)
 
 
 ASSUMED = "assumed"
@@ -203,11 +187,11 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     chosen = {key: covariates(group) for key, group in grouped.items()}
     models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
     found = posteriors(list(models.values()), default_scatter)
-    some = any(model.shows_scatter for model in models.values())
+    others = OTHERS if any(model.shows_scatter for model in models.values()) else ASSUMED
     return FrictionFit(
         groups={
-            key: _material_fit(grouped[key], chosen[key], posterior, _source(models[key], some))
-            for key, posterior in zip(models, found, strict=True)
+            key: _material_fit(grouped[key], chosen[key], one, OWN if model.shows_scatter else others)
+            for (key, model), one in zip(models.items(), found, strict=True)
         },
         default_scatter=default_scatter,
     )
@@ -225,16 +209,14 @@ def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearMod
     )
 
 
-def _source(model: LinearModel, some: bool) -> str:
-    if model.shows_scatter:
-        return OWN
-    return OTHERS if some else ASSUMED
-
-
 def _material_fit(
     tests: Sequence[FrictionTest], chosen: Covariates, posterior: Posterior, source: str
 ) -> MaterialFit:
-    estimates = [_estimate(posterior, unit) for unit in np.eye(1 + len(chosen.names))]
+    estimates = []
+    for contrast in np.eye(1 + len(chosen.names)):
+        value, error = posterior.moments(contrast)
+        low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
+        estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
     return MaterialFit(
         tests=tuple(tests),
         covariates=chosen,
@@ -245,12 +227,6 @@ def _material_fit(
         scatter=posterior.scatter,
         scatter_source=source,
     )
-
-
-def _estimate(posterior: Posterior, contrast: Array) -> Estimate:
-    value, error = posterior.moments(contrast)
-    low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
-    return Estimate(value=value, standard_error=error, low=low, high=high)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -102,42 +102,29 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     if not useful:
         return None
     separate = any(model.has_repeats for model in useful)
-    scale = _rough_scatter(useful)
+    squares = sum(_residual_squares(model) for model in useful)
+    scale = max(float((squares / sum(model.freedom for model in useful)) ** 0.5), 1e-6)
 
     def loss(deviations: Array) -> float:
         s, t = (scale * deviations) if separate else (0.0, scale * deviations[0])
         nodes = np.array([s * s]), np.array([t * t])
         return -float(sum(conditional(model, *nodes).log_likelihood[0] for model in useful))
 
-    start = _best_of_grid(useful, scale, separate)
-    found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
-    deviations = [float(x) * scale for x in found.x]
-    return VarianceComponents(
-        between_samples=deviations[0], between_tests=deviations[1] if separate else None
-    )
-
-
-_EXACT = {"ftol": 1e-14, "gtol": 1e-8}
-_SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
-
-
-def _best_of_grid(models: Sequence[LinearModel], scale: float, separate: bool) -> list[float]:
-    """Where to begin: the likeliest of a few pairs of deviations."""
+    # begin at the likeliest of a few pairs of deviations
     sizes, ratios = (grid.ravel() for grid in np.meshgrid(_SIZES, _RATIOS if separate else [0.0]))
     s, t = sizes * np.sqrt(ratios), sizes * np.sqrt(1.0 - ratios)
     nodes = (scale * s) ** 2, (scale * t) ** 2
-    best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in models)))
-    return [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
+    best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in useful)))
+    start = [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
+    found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
+    samples, *tests = (float(x) * scale for x in found.x)
+    return VarianceComponents(between_samples=samples, between_tests=tests[0] if separate else None)
 
 
-def _rough_scatter(models: Sequence[LinearModel]) -> float:
-    """Residual standard deviation of ordinary least squares, at least a little."""
-    squares = freedom = 0.0
-    for model in models:
-        b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
-        squares += float(np.sum((model.y - model.design @ b) ** 2))
-        freedom += model.freedom
-    return max(float((squares / freedom) ** 0.5), 1e-6)
+def _residual_squares(model: LinearModel) -> float:
+    """Sum of squares that ordinary least squares leave."""
+    b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
+    return float(np.sum((model.y - model.design @ b) ** 2))
 
 
 BETWEEN_GROUPS = 0.2
@@ -146,11 +133,13 @@ BETWEEN_GROUPS = 0.2
 OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
+_EXACT = {"ftol": 1e-14, "gtol": 1e-8}
+_SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
 _LOGS = np.linspace(-4.0, 4.0, 65)
 _LEAST = 1e-300
 _SHARES = np.sqrt((np.arange(8) + 0.5) / 8.0)
-"""Shares of the variance between samples, all as likely beforehand: one specimen run again differs
-less than two specimens do (density proportional to the share; a guess)."""
+"""Shares of the variance between samples, all as likely beforehand: one specimen run again differs less than
+two specimens do (density proportional to the share; a guess)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -197,29 +186,20 @@ def posteriors(models: Sequence[LinearModel], default_scatter: Ratio) -> list[Po
     """Posterior of every group; one that has no test to spare keeps the prior that the others leave."""
     kernel = _normal(_LOGS[:, None] - _LOGS, BETWEEN_GROUPS)
     first = _normal(_LOGS[None, :], OF_THE_ASSUMPTION)[0]
-    deviations = _nodes(default_scatter, first @ kernel)
-    fits = [_fits(model, deviations) for model in models]
+    shape = np.exp(_LOGS)  # such that the mean square beforehand is that of the assumed scatter
+    deviations = shape * (default_scatter / float(np.sqrt((first @ kernel) @ shape**2)))
+    nodes = (deviations**2)[:, None]
+    samples, tests = ((nodes * share).ravel() for share in (_SHARES, 1.0 - _SHARES))
+    fits = [conditional(model, samples, tests) for model in models]
     logs = [_relative(fit, model) for fit, model in zip(fits, models, strict=True)]
     messages = [_log(kernel @ np.exp(one).mean(axis=1)) for one in logs]
+    variance = np.repeat(deviations**2, len(_SHARES))
     found = []
     for i, (fit, log_likelihood) in enumerate(zip(fits, logs, strict=True)):
         prior = _normalised(sum([*messages[:i], *messages[i + 1 :]], _log(first))) @ kernel
         weight = _normalised(log_likelihood + _log(prior)[:, None]).ravel()
-        variance = np.repeat(deviations**2, len(_SHARES))
         found.append(Posterior(variance=variance, weight=weight, fit=fit))
     return found
-
-
-def _nodes(default_scatter: Ratio, prior: Array) -> Array:
-    """Scatters at the nodes, such that their mean square beforehand is that of the assumed scatter."""
-    shape: Array = np.exp(_LOGS)
-    return shape * (default_scatter / float(np.sqrt(prior @ shape**2)))
-
-
-def _fits(model: LinearModel, deviations: Array) -> Conditional:
-    variance = (deviations**2)[:, None]
-    samples, tests = (variance * share for share in (_SHARES, 1.0 - _SHARES))
-    return conditional(model, samples.ravel(), tests.ravel())
 
 
 def _relative(fit: Conditional, model: LinearModel) -> Array:
@@ -227,25 +207,21 @@ def _relative(fit: Conditional, model: LinearModel) -> Array:
     shape = (len(_LOGS), len(_SHARES))
     if model.freedom == 0:
         return np.zeros(shape)
-    relative: Array = fit.log_likelihood - fit.log_likelihood.max()
-    return relative.reshape(shape)
+    return np.asarray(fit.log_likelihood - fit.log_likelihood.max()).reshape(shape)
 
 
 def _normal(distance: Array, deviation: float) -> Array:
     """Discrete normal distribution along the last axis."""
-    weight: Array = np.exp(-0.5 * (distance / deviation) ** 2)
-    normal: Array = weight / weight.sum(axis=-1, keepdims=True)
-    return normal
+    weight = np.exp(-0.5 * (distance / deviation) ** 2)
+    return np.asarray(weight / weight.sum(axis=-1, keepdims=True))
 
 
 def _log(weight: Array) -> Array:
     """Logarithm; many equal tests leave weights too small for a number, which count as `_LEAST`."""
-    log: Array = np.log(np.maximum(weight, _LEAST))
-    return log
+    return np.asarray(np.log(np.maximum(weight, _LEAST)))
 
 
 def _normalised(log_weight: Array) -> Array:
     """Weights of sum 1."""
     weight = np.exp(log_weight - log_weight.max())
-    normalised: Array = weight / weight.sum()
-    return normalised
+    return np.asarray(weight / weight.sum())

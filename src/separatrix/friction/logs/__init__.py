@@ -154,7 +154,11 @@ def _tables_of_workbook(file: _File) -> list[RawTable]:
             raise error.at(error.path.replace(": line ", ": row ", 1)) from None
         for table in tables:
             read = file.wanted(table.headers, table.units, table.layout)
-            table = with_formats(table, file.path, sheet, file.name, read)
+            given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
+            odd = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
+            odd += [i for i in read if np.isnan(table.columns[i][0])]
+            if odd:  # only a percentage, or a formula without a value, must be looked at again
+                table = with_formats(table, file.path, sheet, file.name, odd)
             found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
     return found
 

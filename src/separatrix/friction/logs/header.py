@@ -116,8 +116,19 @@ def bare_unit(unit: str) -> str:
 
 
 def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
-    """Fields of a line if there are `count`, not counting an empty one that a last separator makes."""
-    for row in _splits(line, dialect):
+    """Fields of a line of names if there are `count`, not counting an empty one that a last separator makes.
+
+    Blanks may divide names in several ways. The mark of a remark before the names is left out.
+    """
+    bare = re.sub(r"^\s*[#%]+\s*", "", line)
+    ways = [dialect.fields(bare)]
+    if dialect.separator == " ":
+        ways = []
+        for text in dict.fromkeys((bare, line)):
+            bound = re.sub(r"\s+(?=[\[(])", "\x00", text)
+            ways.append([part.strip() for part in re.split(r"\t| {2,}", text.strip())])
+            ways += [[part.replace("\x00", " ") for part in bound.split()], text.split()]
+    for row in ways:
         if len(row) == count:
             return row
         if len(row) == count + 1 and (not row[-1] or row[-1].casefold() in _REMARKS):
@@ -125,20 +136,6 @@ def _row(line: str, count: int, dialect: Dialect) -> list[str] | None:
         if 2 <= len(row) == count - 1 and dialect.separator != " ":
             return [*row, ""]
     return None
-
-
-def _splits(line: str, dialect: Dialect) -> list[list[str]]:
-    """Ways to divide a line of names, the likelier first; the mark of a remark before them is left out."""
-    bare = re.sub(r"^\s*[#%]+\s*", "", line)
-    if dialect.separator != " ":
-        return [dialect.fields(bare)]
-    return [row for text in dict.fromkeys((bare, line)) for row in _by_blanks(text)]
-
-
-def _by_blanks(line: str) -> list[list[str]]:
-    wide = [part.strip() for part in re.split(r"\t| {2,}", line.strip())]
-    bound = re.sub(r"\s+(?=[\[(])", "\x00", line)
-    return [wide, [part.replace("\x00", " ") for part in bound.split()], line.split()]
 
 
 def metadata_of(
@@ -154,23 +151,12 @@ def metadata_of(
     for line, below in zip(kept, [*kept, ""][1:], strict=True):
         if skip:
             skip = False
-            continue
-        rows = _keys_over_values(line, below, 1 if keys_above else 2)
-        if rows:
+        elif rows := _keys_over_values(line, below, 1 if keys_above else 2):
             pairs |= rows
             skip = True
-        else:
-            pairs |= _pair(line)
+        elif found := _NUMBERED.match(line) or _PAIR.match(line):
+            pairs[_clean(found[1])] = _clean(found[2])
     return {key[:100]: value[:200] for key, value in list(pairs.items())[:MOST]}
-
-
-def _pair(line: str) -> dict[str, str]:
-    if numbered := _NUMBERED.match(line):
-        return {numbered[1]: numbered[2]}
-    found = _PAIR.match(line)
-    if not found:
-        return {}
-    return {_clean(found[1]): _clean(found[2])}
 
 
 def _keys_over_values(line: str, below: str, least: int) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from dataclasses import dataclass
+from functools import cache
 
 from separatrix import units
 from separatrix.friction.logs.clock import CLOCK, SHORT_CLOCKS
@@ -174,11 +175,28 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
     return scale_in(spelling, si)
 
 
+@cache
 def scale_in(unit: str, si: str) -> Scale | None:
     """How to bring a value in that unit to the SI unit; None where the unit is not one of its quantity."""
-    sizes, spelling = _sizes(si), _spelled(unit)
-    size = sizes.get(spelling) or sizes.get(spelling.casefold())
-    return None if size is None else _scale(size, si)
+    text = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00ba", "\u00b0").rstrip(".")
+    text = text.replace("\u00b2", "2").replace("\u207b\u00b9", "-1").replace("\u22c5", " ").strip()
+    sizes = {spelling: f"1 {spelling}" for spelling in units.UNITS[si]}
+    for one, spellings in ALIASES.get(si, {}).items():
+        sizes |= dict.fromkeys(spellings.split("; "), one)
+    size = sizes.get(text) or sizes.get(text.casefold())
+    if size is None:
+        return None
+    number, name = size.split(" ", 1)
+    if number.startswith("1/"):
+        return Scale(divisor=float(number[2:]))
+    offset = units.parse(f"0 {name}", si)
+    factor = units.parse(size, si) - offset
+    if si == "K":
+        factor = round(factor, 12)
+    inverse = round(1.0 / factor)
+    if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
+        return Scale(divisor=float(inverse), offset=offset)
+    return Scale(factor=factor, offset=offset)
 
 
 def known_units(meaning: str) -> str:
@@ -209,16 +227,12 @@ def ranks(name: str) -> dict[str, int]:
     words = plain(name)
     found = {}
     for meaning, groups in NAMES.items():
-        for rank, group in enumerate(groups):
-            if _without_symbol(words, meaning) in group.split("; "):
-                found[meaning] = rank
-                break
+        signs = (words.removesuffix(f" {sign}") for sign in SYMBOLS.get(meaning, ()))
+        bare = next((rest for rest in signs if rest != words and len(rest) > 1), words)
+        rank = next((rank for rank, group in enumerate(groups) if bare in group.split("; ")), None)
+        if rank is not None:
+            found[meaning] = rank
     return found
-
-
-def _without_symbol(words: str, meaning: str) -> str:
-    signs = (words.removesuffix(f" {sign}") for sign in SYMBOLS.get(meaning, ()))
-    return next((rest for rest in signs if rest != words and len(rest) > 1), words)
 
 
 def looks_like_friction(header: str) -> bool:
@@ -243,31 +257,3 @@ def looks_like_force(header: str) -> bool:
     coefficient = any(part in words for part in ("coef", "cof", "beiwert"))
     units_of_force = any(scale_in(unit, "N") is not None for _, unit in header_parts(header) if unit)
     return not coefficient and (units_of_force or any(part in words for part in FORCES))
-
-
-def _spelled(unit: str) -> str:
-    text = unit.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00ba", "\u00b0")
-    text = text.strip().rstrip(".")
-    return text.replace("\u00b2", "2").replace("\u207b\u00b9", "-1").replace("\u22c5", " ").strip()
-
-
-def _sizes(si: str) -> dict[str, str]:
-    sizes = {spelling: f"1 {spelling}" for spelling in units.UNITS[si]}
-    for size, spellings in ALIASES.get(si, {}).items():
-        sizes |= dict.fromkeys(spellings.split("; "), size)
-    return sizes
-
-
-def _scale(size: str, si: str) -> Scale:
-    if size.startswith("1/"):
-        return Scale(divisor=float(size.split(" ")[0][2:]))
-    one = units.parse(size, si)
-    _, unit = size.split(" ", 1)
-    offset = units.parse(f"0 {unit}", si)
-    factor = one - offset
-    if si == "K":
-        factor = round(factor, 12)
-    inverse = round(1.0 / factor)
-    if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
-        return Scale(divisor=float(inverse), offset=offset)
-    return Scale(factor=factor, offset=offset)

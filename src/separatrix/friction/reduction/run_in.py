@@ -128,7 +128,9 @@ class _Tails:
         self.means = np.cumsum(values[::-1])[::-1][self.starts] / self.left
         self.difference = np.abs(self.means[:, None] - self.means[None, :])
         shorter = np.maximum(1.0 / self.left[None, :] - 1.0 / self.left[:, None], 0.0)
-        self.variance = shorter * _densities(values, self.starts, without)
+        tails = (dct(without(values[start:]), type=2, norm="ortho") for start in self.starts.tolist())
+        densities = np.array([float((tail[1 : COSINES + 1] ** 2).mean()) for tail in tails])
+        self.variance = shorter * densities
         self.noise = float(stdtrit(min(COSINES, n - 1), 1.0 - CHANCE)) * np.sqrt(self.variance)
 
     @property
@@ -163,14 +165,6 @@ def _is_even(values: Array) -> bool:
     power = dct(values, type=2, norm="ortho")[1:] ** 2
     beyond = power[COSINES : 4 * COSINES]
     return bool(power[:COSINES].mean() <= EVEN * beyond.mean())
-
-
-def _densities(
-    values: Array, starts: np.ndarray[tuple[int], np.dtype[np.int64]], without: Callable[[Array], Array]
-) -> Array:
-    """Return the spectral density of each tail at zero frequency, shape (place,)."""
-    tails = (without(values[start:]) for start in starts.tolist())
-    return np.array([float((dct(t, type=2, norm="ortho")[1 : COSINES + 1] ** 2).mean()) for t in tails])
 
 
 def _without_level(values: Array) -> Array:
