@@ -17,9 +17,10 @@ from separatrix.chain import (
     traction_state,
 )
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.report.cage import chain_facts
+from separatrix.present import plain
+from separatrix.present.shapes import shape
+from separatrix.present.text.chain import basis
 from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
-from separatrix.results import documents
 from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -227,15 +228,15 @@ def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
 def test_results_and_report_say_how_far_balls_lead_and_lag():
     """Beside half their play, with what the harmonics keep; nothing of it where all balls run alike."""
     loaded = cage_state(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
-    chain = documents.cage(loaded)["chain"]
+    chain = plain(shape(loaded)["chain"])
     assert chain["half_play"] == 3e-4
     assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
-    assert dict(chain_facts(chain))["Free balls lead and lag"] == (
+    assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
         "up to 63.57 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
     )
-    alike = documents.cage(cage_state(STUDY))["chain"]
-    assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)
-    assert "Free balls lead and lag" not in dict(chain_facts(alike))
+    alike = cage_state(STUDY)
+    assert (alike.cage.lead_amplitude, alike.orbital_share) == (0.0, None)
+    assert "Free balls lead and lag" not in dict(basis(STUDY, alike))
 
 
 def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():

@@ -239,15 +239,6 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
     assert bare.get_legend_handles_labels()[1] == []
 
 
-def test_a_saved_ranking_holds_the_sentences_as_one_text():
-    """Lists of different length would not fit in one array."""
-    from separatrix.results.labelled import _flatten_one
-
-    assert _flatten_one("extrapolation", ["too fast", "too hot"]) == {
-        "extrapolation": ((), "too fast; too hot")
-    }
-
-
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     """The resolved study repeats the tests whole, in SI, so that the file may change afterwards."""
     from separatrix.study_file import resolved

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from separatrix import archive, results
+from separatrix import archive, present
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.regular_file import size_of
@@ -85,7 +85,7 @@ def test_neither_an_ending_nor_a_folder_nor_a_device_makes_a_difference(capsys, 
 
 @pytest.mark.parametrize(
     "read",
-    [results.load, archive.open_archive, workbook.open_workbook, tdms.read_tables],
+    [present.load, archive.open_archive, workbook.open_workbook, tdms.read_tables],
     ids=["load", "open_archive", "open_workbook", "read_tables"],
 )
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):

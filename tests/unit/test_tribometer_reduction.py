@@ -10,8 +10,8 @@ from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
-from separatrix.results import labelled
-from separatrix.results.friction_tests import page_data
+from separatrix.present import load, save
+from separatrix.present.friction_tests import page_data
 from separatrix.tribometer import steady
 from separatrix.tribometer.log import Conditions, RawLog
 from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
@@ -349,8 +349,8 @@ def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
     """The dataset goes through a file, and every panel has labels with units."""
     one = log(replace(QUIET, run_in=0.1), temperature=lambda t: 77.0 + 0.0 * t)
     data = page_data(reduction(one))
-    labelled.save(data, tmp_path / "test.nc")
-    figure = page(labelled.load(tmp_path / "test.nc"))
+    save(data, tmp_path / "test.nc")
+    figure = page(load(tmp_path / "test.nc"))
     assert len(figure.axes) == 5
     for axes in figure.axes:
         assert "[" in axes.get_xlabel()

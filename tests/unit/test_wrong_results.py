@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.figures import figures
 from separatrix.figures.heading import heading
 from separatrix.figures.literal import literal_texts
-from separatrix.results import container, load
+from separatrix.present import container, load
 
 STUDY = {"cage": {"mass": {"value": 0.025, "unit": "kg"}}}
 HEAD = {"verb": "simulate", "title": "A run", "seed": 1, "study": json.dumps(STUDY)}
