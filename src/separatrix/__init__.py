@@ -12,14 +12,14 @@ from typing import Any
 _PUBLIC = {
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
-    "chain": "BearingState CageState RaceContact RestitutionState TractionState bearing_state cage_state "
-    "restitution_state traction_state",
+    "chain": "BearingState RaceContact RaceTraction Solution solve",
     "creep": "Creep contact_creep",
     "equilibrium": "Equilibrium contact",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase sweep",
     "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
     "ledger": "Ledger",
+    "runner": "Interrupted Runner",
     "lubrication": "LubricationCurve lubrication_curve",
     "ranking": "Ranking rank",
     "restitution": "Restitution damping_ratio race_damping restitution_factor",

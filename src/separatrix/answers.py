@@ -1,4 +1,4 @@
-"""What each verb answers: records, the chain's and those of the ensembles, with what belongs beside them.
+"""What each verb answers: records of the chain and of ensembles, with what belongs beside them.
 
 The answer of `bearing` is a `BearingState`, that of `sweep` a `Sweep`.
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from separatrix.cage import History
-from separatrix.chain import BearingState, CageState, RestitutionState
+from separatrix.cage import History, PlanarCage
+from separatrix.chain import BearingState, Solution
 from separatrix.explore.records import UncertainStudy
 from separatrix.lubrication import LubricationCurve
 from separatrix.ranking import Ranking
@@ -44,53 +44,56 @@ class TractionAnswer:
 class RestitutionAnswer:
     """Restitution factor, and what it would be with other films; None without a film material."""
 
-    state: RestitutionState
+    solution: Solution
     film_thickness: Metre
     lubrication: LubricationCurve | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StabilityAnswer:
-    """Stability curve of the cage that the chain gives."""
+class OfCage:
+    """The chain, and the cage that an answer is for."""
 
-    cage: CageState
+    solution: Solution
+    cage: PlanarCage
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityAnswer(OfCage):
+    """Stability curve of the cage."""
+
     curve: StabilityCurve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationAnswer:
+class MapAnswer(OfCage):
+    """The map, and the cage of the study itself."""
+
+    map: StabilityMap
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationAnswer(OfCage):
     """One run of the ensemble, from one kick."""
 
-    cage: CageState
     history: History
     kick: MetrePerSecond
     run: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RankingAnswer:
-    """The ranking, and the cage of its reference candidate for the numbers of the chain."""
+class RankingAnswer(OfCage):
+    """The ranking, and the cage of its reference candidate."""
 
-    cage: CageState
     ranking: Ranking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MapAnswer:
-    """The map, and the cage of the study itself."""
-
-    cage: CageState
-    map: StabilityMap
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensitivityAnswer:
-    """The uncertain study, and the cage of its reference candidate for the numbers of the chain.
+class SensitivityAnswer(OfCage):
+    """The uncertain study, and the cage of its reference candidate.
 
     `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
     """
 
-    cage: CageState
     uncertain: UncertainStudy
     film_thickness: Metre | None
     race_friction: Ratio

@@ -15,6 +15,7 @@ import pytest
 from separatrix.cage import Verdict
 from separatrix.ranking import NotMeasured, Ranked, rank
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -27,7 +28,7 @@ INAPT = {"PEEK 450 GL 30", "Meldin HTC 100"}
 @pytest.fixture(scope="module")
 def ranking():
     """The shipped study, ranked with a small ensemble."""
-    return rank(replace(read_study("cryogenic-turbopump"), stability=SETTINGS), jobs=2)
+    return rank(replace(read_study("cryogenic-turbopump"), stability=SETTINGS), runner=Runner(jobs=2))
 
 
 def test_armalon_is_first_in_each_environment(ranking):

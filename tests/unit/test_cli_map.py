@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from separatrix import present
-from separatrix.chain import restitution_state
+from separatrix.chain import solve
 from separatrix.cli import main
-from separatrix.cli.axes import read_axis
 from separatrix.errors import InputError
+from separatrix.explore.axes import read_axis
 from separatrix.ledger import NAME
 from separatrix.study_file import read_study
 
@@ -182,7 +182,7 @@ def test_a_film_without_thickness_is_bare_races(capsys):
     coated = {point["y"]: point["restitution_factor"] for point in found["points"]}
     study = read_study("small.toml")
     bare = replace(study, film=replace(study.film, material=None, thickness=None))
-    assert coated[0.0] == restitution_state(bare).restitution.restitution_factor
+    assert coated[0.0] == solve(bare).restitution.restitution_factor
     assert coated[0.0] != coated[2.5e-6]
 
 

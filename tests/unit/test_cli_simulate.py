@@ -91,7 +91,7 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
 def test_an_mp4_without_its_extra_is_refused_before_the_run(capsys, monkeypatch):
     """One line that says what to install; the run is not made and nothing is written."""
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    monkeypatch.setattr("separatrix.cli.answers.simulate", lambda *_, **__: pytest.fail("it was made"))
+    monkeypatch.setattr("separatrix.verbs.simulate", lambda *_, **__: pytest.fail("it was made"))
     line = refused(capsys, "simulate", "cryogenic-turbopump", "--animate", "mp4")
     assert "pip install 'separatrix[animation]'" in line
 

@@ -29,7 +29,7 @@ WRONG = [
     ({"pocket_angles": (0.0, 1.0)}, "pocket_angles must hold one angle for each of the 5 balls; got 2"),
     (
         {"pocket_angles": (0.0, 1.0, 1.0, 2.0, 3.0)},
-        "must be strictly increasing (items 2 and 3)",
+        "pocket_angles must be strictly increasing (items 2 and 3)",
     ),
     ({"pocket_clearance": 0.0, "hertz_coefficient": 1e9}, "pocket_clearance must be > 0 with Hertz contact"),
     ({"hertz_coefficient": 0.0}, "hertz_coefficient must be > 0; got 0 N/m1.5"),

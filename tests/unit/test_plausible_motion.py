@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.chain import cage_state
+from separatrix.chain import solve
 from separatrix.ranking.plausible import Moved, beyond_motion, pocket_pressure, transmitted_force
 from separatrix.study_file import read_study
 
@@ -18,23 +18,23 @@ ROW = Moved("A", largest_contact_force=50.0, largest_offset=501e-6)
 @pytest.fixture(scope="module")
 def state():
     """The shipped cage."""
-    return cage_state(STUDY, friction=0.1)
+    return solve(STUDY)
 
 
 def test_races_transmit_friction_times_both_loads(state):
     """The shipped bearing: f_BT (Q_i + Q_o) = 95.7 N, as another program has it."""
-    assert transmitted_force(STUDY, state) == pytest.approx(95.7, abs=0.05)  # its last digit
+    assert transmitted_force(state) == pytest.approx(95.7, abs=0.05)  # its last digit
 
 
 def test_forces_and_offsets_within_their_range_draw_no_note(state):
     """Nor do no rows at all."""
-    assert list(beyond_motion(STUDY, state, [ROW])) == list(beyond_motion(STUDY, state, [])) == []
+    assert list(beyond_motion(state, [ROW])) == list(beyond_motion(state, [])) == []
 
 
 def test_a_force_beyond_the_races_is_noted_with_both_numbers(state):
     """The largest of all rows."""
     rows = [ROW, ROW._replace(name="B", largest_contact_force=275.0)]
-    (note,) = beyond_motion(STUDY, state, rows)
+    (note,) = beyond_motion(state, rows)
     assert "275 N" in note
     assert "95.7 N" in note
 
@@ -42,7 +42,7 @@ def test_a_force_beyond_the_races_is_noted_with_both_numbers(state):
 def test_an_offset_beyond_the_land_is_noted_with_its_materials(state):
     """From 20 % beyond the gap of 0.5 mm."""
     rows = [ROW._replace(largest_offset=599e-6), ROW._replace(name="B", largest_offset=852e-6)]
-    (note,) = beyond_motion(STUDY, state, rows)
+    (note,) = beyond_motion(state, rows)
     assert note.startswith("B: the cage centre reaches 852 um, beyond the land at 500 um")
 
 
@@ -69,7 +69,7 @@ def test_a_pocket_that_yields_is_noted_if_its_strength_is_known(state):
     pressure = pocket_pressure(study.bearing, SOFT, 50.0)
     for share, notes in ((1.59, 0), (1.61, 1)):
         wall = replace(SOFT, compressive_strength=pressure / share)
-        assert len(list(beyond_motion(made_of(soft=wall, firm=FIRM), state, rows))) == notes
-    (note,) = beyond_motion(study, state, rows)
+        assert len(list(beyond_motion(replace(state, study=made_of(soft=wall, firm=FIRM)), rows))) == notes
+    (note,) = beyond_motion(replace(state, study=study), rows)
     assert f"soft {float(f'{pressure:.2g}') / 1e6:.0f} MPa against 160 MPa" in note
     assert "firm" not in note

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 import pytest
 
 from separatrix.cage import Judgement, Verdict, judge
-from separatrix.chain import cage_state
+from separatrix.chain import solve
 from separatrix.errors import InputError
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
@@ -14,7 +14,7 @@ from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_
 from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
-from separatrix.runner import Runner
+from separatrix.runner import Interrupted, Runner
 from separatrix.stability import RestitutionThreshold
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
@@ -185,7 +185,7 @@ def test_a_row_carries_the_judgement_behind_its_verdict():
     study = quick_study(ranking=asked(("A", Friction(mean=0.1))))
     (a,) = rank(study).environments[0].materials
     assert a.margin == a.restitution_threshold - a.restitution_factor
-    cage = cage_state(study, friction=0.1).cage
+    cage = solve(study).cage_with(0.1)
     found = judge(cage, Runner().whole_ensemble(cage, QUICK))
     assert a.judgement == found
 
@@ -200,7 +200,7 @@ def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
 
 def test_equal_frictions_tie_with_equal_numbers():
     """Two materials with the same friction cannot be told apart."""
-    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))), jobs=2)
+    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))))
     a, b = found.overall
     assert (a.rank, b.rank) == (1, 1)
     assert replace(a, name="B") == b
@@ -220,7 +220,7 @@ def test_scatter_of_the_friction_widens_the_threshold():
 def test_the_number_of_threads_changes_nothing():
     """One thread and two give the same record, to the last bit."""
     study = quick_study(ranking=asked(("A", Friction(mean=0.08)), ("B", Friction(mean=0.2))))
-    assert rank(study, jobs=1) == rank(study, jobs=2)
+    assert rank(study, runner=Runner(jobs=1)) == rank(study, runner=Runner(jobs=2))
 
 
 def test_an_interrupt_leaves_a_ranking_that_says_so():
@@ -232,7 +232,9 @@ def test_an_interrupt_leaves_a_ranking_that_says_so():
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
     long = replace(QUICK, runs=512)  # the second verdict is under way when the first is told
-    found = rank(quick_study(ranking=two, stability=long), progress=stop)
+    with pytest.raises(Interrupted) as caught:
+        rank(quick_study(ranking=two, stability=long), runner=Runner(progress=stop))
+    found = caught.value.finished
     assert not found.complete
     a, b = sorted(found.overall, key=lambda row: row.name)
     assert isinstance(a, NotFinished)

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from separatrix.chain import cage_state
+from separatrix.chain import solve
 from separatrix.present.text.cage import clearance_fact, orbit_facts
 from separatrix.study import Guidance
 from separatrix.study_file import read_study
 
-CAGE = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage
+CAGE = solve(read_study("cryogenic-turbopump")).cage
 
 
 def test_the_orbit_of_a_run_is_read_from_the_part_by_which_it_is_judged():

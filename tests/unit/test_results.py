@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from separatrix import answers
-from separatrix.chain import bearing_state, cage_state
+from separatrix.chain import solve
 from separatrix.errors import InputError
 from separatrix.explore import sweep
 from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray
@@ -178,7 +178,7 @@ def test_what_is_not_a_result_is_refused(tmp_path):
 
 def test_an_answer_is_a_table():
     """A row a ball, a case, or a candidate in an environment; columns are the arrays along them."""
-    state = bearing_state(STUDY)
+    state = solve(STUDY).bearing
     balls = to_dataframe(state)
     assert (balls.index.name, len(balls)) == ("ball", 13)
     assert balls["load_inner"].to_numpy() == pytest.approx(state.equilibrium.load_inner, rel=0)
@@ -196,5 +196,3 @@ def test_every_answer_of_a_verb_is_arranged():
     records = {one for one in vars(answers).values() if getattr(one, "__name__", "").endswith("Answer")}
     assert len(records) == 8
     assert records <= set(shape.registry)
-    state = cage_state(STUDY, friction=0.1)
-    assert set(plain(state)) == {"chain", "cage"}

@@ -227,12 +227,12 @@ def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
     shown = report("check", SimpleNamespace(static=None, static_reason=""), study, [])
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-    from separatrix.chain import bearing_state
+    from separatrix.chain import solve
 
-    told = report("bearing", bearing_state(study), study, [])
+    told = report("bearing", solve(study).bearing, study, [])
     assert "An uncertain input is at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = report("bearing", bearing_state(certain), certain, [])
+    told = report("bearing", solve(certain).bearing, certain, [])
     assert "uncertain" not in told
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from separatrix.answers import SimulationAnswer
 from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
-from separatrix.chain import cage_state
+from separatrix.chain import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.present import document, report
@@ -186,7 +186,7 @@ def test_an_unresolved_run_says_so():
     asked = read_study(study(""))
     history = simulate(CAGE, kick=0.5, duration=0.01, samples=20)
     history = replace(history, outcome=RunOutcome.UNRESOLVED, cause=Cause.IMPACTS)
-    answer = SimulationAnswer(cage=cage_state(asked), history=history, kick=0.5, run=0)
+    answer = SimulationAnswer(solution=solve(asked), cage=solve(asked).cage, history=history, kick=0.5, run=0)
     found = document("simulate", answer, asked, [])
     said = " ".join(report("simulate", answer, asked, []).split())
     assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "IMPACTS")

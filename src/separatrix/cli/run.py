@@ -8,17 +8,18 @@ import re
 import threading
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError, ValidityWarning
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import xarray as xr
 
     from separatrix.ledger import Ledger
@@ -42,13 +43,15 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What follows the study on the command line."""
+    """What follows the study on the command line; `question` are the options of the verb alone."""
 
     json: bool
     out: Path | None
     quiet: bool
     jobs: int
     full: bool = False
+    cluster: str | None = None
+    question: Mapping[str, Any] = field(default_factory=dict)
 
 
 def run(verb: Verb, name: str, options: Options) -> int:
@@ -74,17 +77,12 @@ def run(verb: Verb, name: str, options: Options) -> int:
         study = read_study(name)
         require(study, verb.name, *verb.needs)
         with _folder(verb, study, options) as folder:
-            found = _computed(verb, study, options, notes, folder)
+            found, complete = _computed(verb, study, options, notes, folder)
             _deliver(verb, found, folder, options)
-    return _status(found.document, goes_on=verb.keeps_runs and folder is not None)
-
-
-def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
-    """Return the exit status; an answer cut short says so on standard error."""
-    if document.get("complete", True):
+    if complete:
         return ANSWERED
-    more = " The same call goes on from there." if goes_on else ""
-    return interrupted(f"what was finished is in the answer, marked complete: false.{more}")
+    more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""
+    return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
 def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:
@@ -96,18 +94,41 @@ def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractCo
     return writable_folder(Path(study.name))
 
 
-def _computed(verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None) -> Found:
-    """Compute the answer and return it with its document."""
+def _computed(
+    verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None
+) -> tuple[Found, bool]:
+    """Compute the answer, or the part that was finished before an interrupt; return whether it is all."""
     from separatrix.present import document
+    from separatrix.runner import Interrupted, Runner
 
+    complete = True
     with (
         progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress,
         _ledger(folder if verb.keeps_runs else None) as ledger,
+        _executor(options.cluster) as (executor, threads),
     ):
-        record = verb.compute(study, Work(jobs=options.jobs, progress=progress, ledger=ledger))
+        runner = Runner(jobs=threads or options.jobs, progress=progress, ledger=ledger, executor=executor)
+        try:
+            record = verb.compute(study, runner, options.question)
+        except Interrupted as stop:
+            if stop.finished is None:
+                raise
+            record, complete = stop.finished, False
     if ledger is not None and ledger.taken and not options.quiet:
         complain(f"{ledger.taken} runs were taken from {ledger.path}, where an earlier call had kept them.")
-    return Found(record, study, document(verb.name, record, study, grouped(notes)))
+    return Found(record, study, document(verb.name, record, study, grouped(notes))), complete
+
+
+@contextlib.contextmanager
+def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
+    """Yield what computes runs on a cluster, and how many at once; None and 0 without one."""
+    if address is None:
+        yield None, 0
+        return
+    from separatrix.cluster import cluster
+
+    with cluster(address) as found:
+        yield found
 
 
 @contextlib.contextmanager

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from separatrix.present.container import DAMAGE, check_container, damaged
-from separatrix.present.json import null_if_not_finite, plain
+from separatrix.present.json import all_notes, null_if_not_finite, plain
 from separatrix.present.shapes import arranged
 from separatrix.present.walk import Group, Leaf, Node, Table
 from separatrix.units import Rows
@@ -42,10 +42,8 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
 
     Parameters
     ----------
-    verb, answer, study
+    verb, answer, study, notes
         As for `document`.
-    notes : sequence of str
-        All warnings: ``document(...)["warnings"]``.
     """
     from separatrix import __version__
     from separatrix.study_file import resolved
@@ -59,7 +57,7 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
         "name": study.name,
         "study": json.dumps(plain(resolved(study), "study")),
         "seed": study.stability.seed,
-        "warnings": json.dumps(list(notes)),
+        "warnings": json.dumps(all_notes(answer, notes)),
         **complete,
     }
     return data
@@ -103,7 +101,7 @@ def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
             columns[str(name).removeprefix(f"{wanted[-1]}_")] = variable
         elif len(wanted) == 1 and variable.dims[:1] == wanted and variable.ndim == 2:
             columns |= {f"{name}_{i}": variable[:, i] for i in range(variable.shape[1])}
-    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe()
+    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
 
 
 MAIN = (

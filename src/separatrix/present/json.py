@@ -44,7 +44,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
     study : Study
         What was asked; its resolved inputs go into the answer with their sources.
     notes : sequence of str
-        Warnings about validity.
+        Warnings about validity; those in the answer are added.
     """
     from separatrix import __version__
     from separatrix.present.shapes import shape
@@ -52,7 +52,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
 
     with null_if_not_finite() as left_out:
         body = plain(Group(shape(answer)), verb)
-    warnings = list(notes)
+    warnings = all_notes(answer, notes)
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
         warnings.append(
@@ -67,8 +67,15 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         "study": plain(resolved(study), "study"),
         "seed": study.stability.seed,
         **body,
-        "warnings": [*warnings, *body.get("warnings", [])],
+        "warnings": warnings,
     }
+
+
+def all_notes(answer: object, notes: Sequence[str]) -> list[str]:
+    """Return warnings with those that an answer has itself, each once."""
+    from separatrix.present.shapes import shape
+
+    return list(dict.fromkeys([*notes, *plain(shape(answer).get("warnings", ()))]))
 
 
 @contextlib.contextmanager

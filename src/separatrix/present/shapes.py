@@ -11,6 +11,7 @@ import numpy as np
 from separatrix.answers import (
     CheckAnswer,
     MapAnswer,
+    OfCage,
     RankingAnswer,
     RestitutionAnswer,
     SensitivityAnswer,
@@ -22,7 +23,7 @@ from separatrix.cage import History, Judgement
 from separatrix.cage.drive import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
-from separatrix.chain import BearingState, CageState, RaceContact, RestitutionState
+from separatrix.chain import BearingState, RaceContact, Solution
 from separatrix.equilibrium import Equilibrium
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
@@ -97,14 +98,13 @@ def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve
     return shape(at) | shape(curve) | {"by_spin_roll_ratio": by_ratio, "shear": Group(shape(shear))}
 
 
-@shape.register
-def _(found: RestitutionState) -> Node:
-    """The contacts have the slopes of their traction curves."""
+def _chain(found: Solution) -> Node:
+    """Restitution and the contacts, which have the slopes of their traction curves."""
     node = shape(found.restitution) | {"stiffness_source": Leaf(found.stiffness_source)}
-    links = found.traction
+    contacts, curves = found.bearing, found.traction
     for race, at, curve in (
-        ("inner", links.bearing.inner, links.inner),
-        ("outer", links.bearing.outer, links.outer),
+        ("inner", contacts.inner, curves.inner),
+        ("outer", contacts.outer, curves.outer),
     ):
         node[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))
     return node
@@ -112,7 +112,7 @@ def _(found: RestitutionState) -> Node:
 
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
-    node = shape(found.state) | {"film_thickness_here": Leaf(found.film_thickness, "m")}
+    node = _chain(found.solution) | {"film_thickness_here": Leaf(found.film_thickness, "m")}
     if found.lubrication is not None:
         return node | {"lubrication": Group(shape(found.lubrication))}
     return node | {
@@ -125,24 +125,24 @@ def _(found: RestitutionAnswer) -> Node:
 
 
 @shape.register
-def _(found: CageState) -> Node:
+def _cage(found: OfCage) -> Node:
     """The cage and the chain before it, with the leads of the balls beside their clearance."""
     orbits: Node = {
         "half_play": Leaf(found.cage.half_play, "m"),
         "lead_amplitude": Leaf(found.cage.lead_amplitude, "m"),
-        "orbital_share": Leaf(found.orbital_share, "-"),
+        "orbital_share": Leaf(found.solution.orbital_share, "-"),
     }
-    return {"chain": Group(shape(found.restitution) | orbits), "cage": Group(shape(found.cage))}
+    return {"chain": Group(_chain(found.solution) | orbits), "cage": Group(shape(found.cage))}
 
 
 @shape.register
 def _(found: StabilityAnswer) -> Node:
-    return shape(found.curve) | shape(found.cage)
+    return shape(found.curve) | _cage(found)
 
 
 @shape.register
 def _(found: MapAnswer) -> Node:
-    return shape(found.map) | shape(found.cage)
+    return shape(found.map) | _cage(found)
 
 
 def outcome_sentence(history: History) -> str:
@@ -153,7 +153,7 @@ def outcome_sentence(history: History) -> str:
 
 @shape.register
 def _(found: SimulationAnswer) -> Node:
-    history, cage = found.history, found.cage.cage
+    history, cage = found.history, found.cage
     rubbing = cage.land_friction * history.rubbing_force * history.rubbing_speed
     node: Node = {
         "kick": Leaf(found.kick, "m/s"),
@@ -164,7 +164,7 @@ def _(found: SimulationAnswer) -> Node:
         "drift_rate_law": Leaf(drift_rate_law(cage), "1/s"),
         "rubbing_power": Leaf(rubbing, "W"),
     }
-    return node | shape(history) | shape(found.cage)
+    return node | shape(history) | _cage(found)
 
 
 # Rankings. Every row has the keys of a ranked one, None where it has no value.
@@ -186,12 +186,12 @@ def _(row: Ranked | NotFinished | NotMeasured) -> Node:
 @shape.register
 def _(found: RankingAnswer) -> Node:
     node = shape(found.ranking)
-    return node | {"warnings": node.pop("notes")} | shape(found.cage)
+    return node | {"warnings": node.pop("notes")} | _cage(found)
 
 
 @shape.register
 def _(found: SensitivityAnswer) -> Node:
-    return shape(found.uncertain) | {"warnings": Leaf(found.uncertain.notes)} | shape(found.cage)
+    return shape(found.uncertain) | {"warnings": Leaf(found.uncertain.notes)} | _cage(found)
 
 
 @shape.register

@@ -1,6 +1,5 @@
 """Which cage material: verdict, margin, rank and reason for each candidate."""
 
-from separatrix.ranking.friction import frictions_seen
 from separatrix.ranking.lowest import LowestFriction, probability_lowest
 from separatrix.ranking.order import ranks
 from separatrix.ranking.rank import rank, ranking_question
@@ -25,7 +24,6 @@ __all__ = [
     "RankedEnvironment",
     "Ranking",
     "Row",
-    "frictions_seen",
     "probability_lowest",
     "rank",
     "ranking_question",

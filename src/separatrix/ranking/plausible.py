@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from separatrix.cage import KickCount
-from separatrix.chain import CageState
+from separatrix.chain import Solution
 from separatrix.pocket_contact import contact_radius
 from separatrix.restitution import hertz_coefficient
 from separatrix.study import BallBearing, Material, Study
@@ -31,17 +31,17 @@ class Moved(NamedTuple):
     by_kick: tuple[KickCount, ...] = ()
 
 
-def transmitted_force(study: Study, state: CageState) -> Newton:
+def transmitted_force(solution: Solution) -> Newton:
     """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
-    contacts = state.restitution.traction.bearing
-    return study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
+    contacts = solution.bearing
+    return solution.study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
 
 
-def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iterator[str]:
+def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
     if not rows:
         return
-    most, limit = max(row.largest_contact_force for row in rows), transmitted_force(study, state)
+    most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
     if most > limit:
         yield (
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
@@ -49,8 +49,9 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iter
             "the ball slips, and the linear race damping is outside its range. It then returns too much "
             "speed to the cage; what that does to a verdict is not known."
         )
-    yield from _beyond_strength(study, rows)
-    gap = state.cage.land_gap
+    yield from _beyond_strength(solution.study, rows)
+    cage = solution.cage_with(0.0)
+    gap = cage.land_gap
     far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
     if far:
         worst = max(row.largest_offset for row in far)
@@ -63,7 +64,7 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iter
     kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
     if kept:
         yield (
-            f"Friction on the land, {state.cage.land_friction:g}, keeps the cage whirling in some runs: "
+            f"Friction on the land, {cage.land_friction:g}, keeps the cage whirling in some runs: "
             f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
             "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -10,11 +10,11 @@ import numpy as np
 
 from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
-from separatrix.chain import CageState, cage_state
+from separatrix.chain import Solution, solve
+from separatrix.draws import Case
 from separatrix.errors import InputError
-from separatrix.ledger import Ledger
-from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
-from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
+from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
+from separatrix.ranking.friction import MeanFriction, measured, overall
 from separatrix.ranking.lowest import lowest_among
 from separatrix.ranking.order import margin_interval, ranks, same_rank
 from separatrix.ranking.plausible import Moved, beyond_motion
@@ -29,7 +29,7 @@ from separatrix.ranking.records import (
     Row,
 )
 from separatrix.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.runner import Progress, Runner
+from separatrix.runner import Runner
 from separatrix.stability import (
     CriticalFriction,
     GrowthCounter,
@@ -54,10 +54,10 @@ Piece = tuple[NewtonPerMetre, Ratio | Node] | Case
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Question:
-    """Cages by pocket stiffness, and the frictions of the candidates with them."""
+    """Solutions by pocket stiffness, and the frictions of the candidates with them."""
 
     settings: StabilitySettings
-    cages: Mapping[NewtonPerMetre, CageState]
+    cages: Mapping[NewtonPerMetre, Solution]
     tracers: Mapping[NewtonPerMetre, Tracer]
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
@@ -77,31 +77,27 @@ class _Findings:
     complete: bool
 
 
-def rank(
-    study: Study, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
-) -> Ranking:
+def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     """Rank the candidate cage materials of a study.
 
     Parameters
     ----------
     study : Study
         With [cage] and [ranking].
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total) pieces of work.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Returns
     -------
     Ranking
-        For each environment and overall; what an interrupt left out is None, with that reason.
+        For each environment and overall.
 
     Raises
     ------
     InputError
         The study has no candidates, or its environment or a candidate's pocket stiffness is not known.
+    Interrupted
+        With a ranking in which what was not finished is None, with that reason.
 
     Notes
     -----
@@ -111,44 +107,44 @@ def rank(
     """
     asked = ranking_question(study)
     environment = required_environment(study, asked)
-    question = _question(study, asked, Runner(jobs=jobs, progress=progress, ledger=ledger))
-    candidates = [
-        candidate_seen(study, c, question.cages[question.stiffness[c.name]]) for c in asked.candidates
-    ]
+    question = _question(study, asked, runner or Runner())
+    seen = {c.name: solve(study, c).frictions for c in asked.candidates}
     frictions = {
-        place: {c.name: measured(f) if (f := c.friction.get(place)) else None for c in candidates}
+        place: {name: measured(f) if (f := own.get(place)) else None for name, own in seen.items()}
         for place in asked.environments
     }
-    means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in candidates}
+    means = {name: overall(own.get(e) for e in asked.environments) for name, own in seen.items()}
     tables = (*frictions.values(), means)
     keys = sorted(
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
     question = replace(question, tracers=_tracers(question, study.stability, keys))
-    found = _compute(question, keys)
-    ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
-    return Ranking(
-        environment=environment,
-        candidate=reference_candidate(study, asked).name,
-        restitution_factor=_eta(question, question.reference),
-        restitution_factor_free_spin=(
-            question.cages[question.reference].restitution.restitution.restitution_factor_free_spin
-        ),
-        ball_cage_stiffness=question.reference,
-        pocket=conditions_of(study, question.cages[question.reference]),
-        friction_scatter=asked.friction_scatter,
-        solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
-        paper_statement=PAPER_STATEMENT,
-        environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
-        overall=_ranked(question, found, means, ""),
-        stability=_curve(question, found),
-        **_own_curves(question, found),
-        kicks=question.settings.kicks,
-        runs=question.settings.runs,
-        duration=question.settings.duration,
-        notes=_notes(study, asked, question, ranked[environment]),
-        complete=found.complete,
-    )
+
+    def ranking(found: _Findings) -> Ranking:
+        ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
+        reference = question.cages[question.reference]
+        return Ranking(
+            environment=environment,
+            candidate=reference_candidate(study, asked).name,
+            restitution_factor=_eta(question, question.reference),
+            restitution_factor_free_spin=reference.restitution.restitution_factor_free_spin,
+            ball_cage_stiffness=question.reference,
+            pocket=reference.pocket,
+            friction_scatter=asked.friction_scatter,
+            solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
+            paper_statement=PAPER_STATEMENT,
+            environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
+            overall=_ranked(question, found, means, ""),
+            stability=_curve(question, found),
+            **_own_curves(question, found),
+            kicks=question.settings.kicks,
+            runs=question.settings.runs,
+            duration=question.settings.duration,
+            notes=_notes(study, asked, question, ranked[environment]),
+            complete=found.complete,
+        )
+
+    return _compute(question, keys, ranking)
 
 
 def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
@@ -159,7 +155,7 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
     said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
-    return (*said, *beyond_motion(study, question.cages[question.reference], moved))
+    return (*said, *beyond_motion(question.cages[question.reference], moved))
 
 
 def ranking_question(study: Study) -> RankingQuestion:
@@ -177,14 +173,14 @@ def ranking_question(study: Study) -> RankingQuestion:
 
 
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
-    states = {c.name: cage_state(study, material=c.material, friction=0.0) for c in asked.candidates}
-    cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
-    reference = states[reference_candidate(study, asked).name].cage.ball_cage_stiffness
+    solved = {c.name: solve(study, c) for c in asked.candidates}
+    cages = {one.ball_cage_stiffness: one for one in solved.values()}
+    reference = solved[reference_candidate(study, asked).name].ball_cage_stiffness
     return _Question(
         settings=cages[reference].stability,
         cages=cages,
         tracers={},
-        stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
+        stiffness={name: one.ball_cage_stiffness for name, one in solved.items()},
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
         runner=runner,
@@ -198,43 +194,48 @@ def _tracers(
     factors = threshold_factors(settings)
     return {
         k: Tracer(
-            GrowthCounter(state.cage, settings, question.runner),
+            GrowthCounter(one.cage_with(0.0), settings, question.runner),
             factors,
             band=False,
             frictions=None if k == question.reference else [f for stiffness, f in keys if stiffness == k],
         )
-        for k, state in question.cages.items()
+        for k, one in question.cages.items()
     }
 
 
 def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
-    return question.cages[stiffness].restitution.restitution.restitution_factor
+    return question.cages[stiffness].restitution.restitution_factor
 
 
-def _compute(question: _Question, keys: Sequence[Key]) -> _Findings:
-    """Critical frictions and verdicts, all in one row of work for the threads."""
+def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findings], Ranking]) -> Ranking:
+    """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
     verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
     cases: list[Case] = list(question.drawn.friction) if question.drawn else []
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
-    results = question.runner.work_out(
+
+    def ranked(results: Mapping[Piece, CriticalFriction | Judgement]) -> Ranking:
+        points = {k: _points_of(results, k) for k in question.cages}
+        here = points[question.reference].pop((HERE, None), None)
+        judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
+        drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
+        traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
+        every = (len(judged), len(drawn)) == (len(keys), len(cases))
+        return ranking(
+            _Findings(
+                points={k: rising(found.values()) for k, found in points.items()},
+                here=here,
+                judgements=judged,
+                drawn=drawn,
+                traced=traced,
+                complete=here is not None and all(traced.values()) and every,
+            )
+        )
+
+    return question.runner.work_out(
         lambda piece: _computed(question, piece),
         [*verdicts, *cases, (question.reference, (HERE, None)), *nodes],
+        into=ranked,
         more=lambda piece, results: _more(question, piece, results),
-    )
-    points = {k: _points_of(results, k) for k in question.cages}
-    here = points[question.reference].pop((HERE, None), None)
-    judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
-    drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
-    traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-    return _Findings(
-        points={k: rising(found.values()) for k, found in points.items()},
-        here=here,
-        judgements=judged,
-        drawn=drawn,
-        traced=traced,
-        complete=here is not None
-        and all(traced.values())
-        and (len(judged), len(drawn)) == (len(keys), len(cases)),
     )
 
 
@@ -246,7 +247,7 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
     stiffness, what = piece
     if isinstance(what, tuple):
         return question.tracers[stiffness].point(what)
-    cage = replace(question.cages[stiffness].cage, ball_cage_friction=what)
+    cage = question.cages[stiffness].cage_with(what)
     return judge(cage, question.runner.whole_ensemble(cage, question.settings))
 
 
@@ -282,7 +283,7 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
-    cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
+    cage, complete = question.cages[question.reference].cage_with(0.0), found.traced[question.reference]
     return curve_of_points(
         cage,
         question.settings,
@@ -290,7 +291,6 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
         band=False,
         here=found.here,
         complete=complete,
-        jobs=question.runner.jobs,
     )
 
 

@@ -9,8 +9,7 @@ from typing import Annotated
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.drive import drift_rate_law, drifts
-from separatrix.ledger import Ledger
-from separatrix.runner import Progress, Runner
+from separatrix.runner import Runner
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.stability.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
@@ -87,9 +86,7 @@ def stability_curve(
     cage: PlanarCage,
     settings: StabilitySettings,
     *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
@@ -99,32 +96,23 @@ def stability_curve(
         Its friction is replaced; its race damping but for `here`.
     settings : StabilitySettings
         Kicks, runs and seed; restitution factors, or none: then they are chosen where the curve bends.
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total so far) points.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
-    KeyboardInterrupt
-        Interrupted before the first point was finished; later the finished points are returned.
+    Interrupted
+        With the curve of the points that were finished, if any was.
     """
-    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    runner = runner or Runner()
     tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
-    found = runner.work_out(tracer.point, [*tracer.first, (HERE, None)], more=tracer.more)
-    if not found:
-        raise KeyboardInterrupt
-    here = found.pop((HERE, None), None)
-    return curve_of_points(
-        cage,
-        settings,
-        list(found.values()),
-        here=here,
-        complete=here is not None and tracer.complete(found),
-        jobs=jobs,
-    )
+
+    def curve(found: dict[Node, CriticalFriction]) -> StabilityCurve:
+        here = found.pop((HERE, None), None)
+        complete = here is not None and tracer.complete(found)
+        return curve_of_points(cage, settings, list(found.values()), here=here, complete=complete)
+
+    return runner.work_out(tracer.point, [*tracer.first, (HERE, None)], into=curve, more=tracer.more)
 
 
 Node = tuple[Ratio, Ratio | None]
@@ -249,13 +237,12 @@ def curve_of_points(
     band: bool = True,
     here: CriticalFriction | None = None,
     complete: bool = True,
-    jobs: int = 1,
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
     rising = sorted(points, key=lambda point: point.restitution_factor)
     etas = [point.restitution_factor for point in rising]
-    hard = Runner(jobs=jobs).each(lambda eta: hard_limit(cage, eta, settings), etas)
+    hard = [hard_limit(cage, eta, settings) for eta in etas]
     return StabilityCurve(
         curve=tuple(rising),
         here=here,

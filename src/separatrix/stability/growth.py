@@ -90,7 +90,7 @@ class GrowthCounter:
 
         Raises
         ------
-        Stopped
+        Interrupted
             The work was interrupted.
         """
         cage = self.cage_at(restitution_factor, friction)

@@ -12,15 +12,10 @@ import numpy as np
 
 from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, wilson_interval
 from separatrix.cage.verdict import decide
-from separatrix.chain import (
-    CageState,
-    cage_state,
-    known_friction,
-    pocket_friction,
-)
+from separatrix.cage_choice import require_friction
+from separatrix.chain import Solution, solve
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.ledger import Ledger
-from separatrix.runner import Progress, Runner, joined
+from separatrix.runner import Runner, joined, made_into
 from separatrix.stability.growth import cage_at
 from separatrix.stability.map_fill import Filled, fill
 from separatrix.stability.map_grid import Place
@@ -68,9 +63,7 @@ Values = tuple[tuple[str, float], ...]
 def stability_map(
     question: MapQuestion,
     *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> StabilityMap:
     """Decide every point of a map, coarse grid first, so that an interrupted map covers the whole plane.
 
@@ -81,33 +74,30 @@ def stability_map(
     ----------
     question : MapQuestion
         What is asked.
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total) points.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
     InputError
         The study names no pocket friction and no axis is it, or no point at all could be run.
-    KeyboardInterrupt
-        Interrupted before the first point was finished; later the finished points are returned.
+    Interrupted
+        With the map of the points that were finished, if any was.
     """
-    require_friction(question)
-    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
-    filled = fill(question, PointFinder(question, runner), runner)
-    if not filled.found:
-        raise KeyboardInterrupt
-    _refuse_if_nothing_ran(question, filled.found)
-    return _assembled(question, filled)
+    require_cage_friction(question)
+    runner = runner or Runner()
+
+    def assembled(filled: Filled) -> StabilityMap:
+        _refuse_if_nothing_ran(question, filled.found)
+        return _assembled(question, filled)
+
+    return made_into(assembled, lambda: fill(question, PointFinder(question, runner), runner))
 
 
-def require_friction(question: MapQuestion) -> None:
+def require_cage_friction(question: MapQuestion) -> None:
     """Refuse a map whose cage has no pocket friction."""
     if FRICTION not in (question.x.parameter, question.y.parameter):
-        pocket_friction(question.study)
+        require_friction(question.study)
 
 
 def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint]) -> None:
@@ -138,10 +128,10 @@ class PointFinder:
     def _run(self, x: float, y: float) -> MapPoint:
         values = dict(zip(self._names, (x, y), strict=True))
         of_the_chain = tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE)
-        state, settings = _found(self._state(of_the_chain))
-        cage, eta = _cage_of(state, values)
+        solution, own = _found(self._state(of_the_chain))
+        cage, eta = _cage_of(solution, own, values)
         kick = values.get(KICK, self.question.kick)
-        ensemble = decided_ensemble(cage, settings, kick, self.question.runs, self.runner)
+        ensemble = decided_ensemble(cage, solution.stability, kick, self.question.runs, self.runner)
         return _judged(x, y, cage, eta, ensemble)
 
     def _varied(self, values: Values) -> Study:
@@ -149,10 +139,10 @@ class PointFinder:
         pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
         return varied(self.question.study, {**dict(values), **pocket})
 
-    def _find_state(self, values: Values) -> tuple[CageState, StabilitySettings] | str:
-        """Cage and ensemble of a study, or why there is none: a refusal is worth remembering too."""
+    def _find_state(self, values: Values) -> tuple[Solution, PlanarCage] | str:
+        """Chain and cage of a study, or why there is none: a refusal is worth remembering too."""
         try:
-            return (state := cage_state(self._varied(values))), state.stability
+            return (solution := solve(self._varied(values))), solution.cage
         except (InputError, ConvergenceError) as error:
             return str(error)
 
@@ -167,13 +157,13 @@ def _found(link: Link | str) -> Link:
     return link
 
 
-def _cage_of(state: CageState, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
+def _cage_of(solution: Solution, cage: PlanarCage, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
     """Cage with the friction and restitution factor of a point, and that restitution factor."""
-    friction = values.get(FRICTION, state.cage.ball_cage_friction)
+    friction = values.get(FRICTION, cage.ball_cage_friction)
     eta = values.get(RESTITUTION)
     if eta is not None:
-        return cage_at(state.cage, eta, friction), eta
-    return replace(state.cage, ball_cage_friction=friction), state.restitution.restitution.restitution_factor
+        return cage_at(cage, eta, friction), eta
+    return replace(cage, ball_cage_friction=friction), solution.restitution.restitution_factor
 
 
 def decided_ensemble(
@@ -311,10 +301,10 @@ def stopping(runs: int) -> Stopping:
     )
 
 
-def value_here(study: Study, state: CageState, name: str) -> float | None:
+def value_here(solution: Solution, name: str) -> float | None:
     """Value of a parameter in the study itself; None where it has none."""
     if name == RESTITUTION:
-        return state.restitution.restitution.restitution_factor
+        return solution.restitution.restitution_factor
     if name == FRICTION:
-        return known_friction(study)
-    return state.stability.middle_kick if name == KICK else value_in(study, name)
+        return solution.friction.mean if solution.friction else None
+    return solution.stability.middle_kick if name == KICK else value_in(solution.study, name)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from separatrix.cage import Verdict
-from separatrix.runner import Runner
+from separatrix.runner import Interrupted, Runner
 from separatrix.stability.map_grid import Lattice, Place, around, near_a_change, rounds
 from separatrix.stability.map_records import MapPoint, MapQuestion
 
@@ -47,11 +47,19 @@ def fill(question: MapQuestion, finder: Callable[[At], MapPoint], runner: Runner
         What is asked, and what answers it at one point.
     runner : Runner
         Threads, progress, interrupts.
+
+    Raises
+    ------
+    Interrupted
+        With the points that were found, if any was.
     """
     filling = _Filling(question, finder, runner)
-    filling.by_rounds()
-    filling.by_checks()
-    filling.filled.complete = not runner.stop.is_set()
+    try:
+        filling.by_rounds()
+        filling.by_checks()
+    except Interrupted:
+        filling.filled.complete = False
+        raise Interrupted(filling.filled if filling.filled.found else None) from None
     return filling.filled
 
 
@@ -67,8 +75,6 @@ class _Filling:
     def by_rounds(self) -> None:
         """Find the wanted points of each finer grid."""
         for coarser, places in rounds(*self.shape):
-            if self.runner.stop.is_set():
-                return
             self._find(self._near_changes(places, coarser) if self.adaptive and coarser else places)
 
     def by_checks(self) -> None:
@@ -95,5 +101,9 @@ class _Filling:
             if tell is not None:
                 tell(found, max(found, len(self.grid) - len(self.filled.inferred)))
 
-        found = self.runner.work_out(lambda place: self.finder(self.grid[place]), wanted, progress=so_far)
-        self.filled.found.update(found)
+        self.runner.work_out(
+            lambda place: self.finder(self.grid[place]),
+            wanted,
+            into=self.filled.found.update,
+            progress=so_far,
+        )

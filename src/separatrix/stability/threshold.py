@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage
-from separatrix.ledger import Ledger
-from separatrix.runner import Progress, Runner
+from separatrix.runner import Runner
 from separatrix.stability.curve import Tracer, height
 from separatrix.stability.growth import GrowthCounter
 from separatrix.stability.point import CriticalFriction
@@ -75,23 +74,20 @@ def threshold_points(
     cage: PlanarCage,
     settings: StabilitySettings,
     *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> list[CriticalFriction]:
     """Critical friction, without its band, from a restitution factor of 0 to 1.
 
     Raises
     ------
-    KeyboardInterrupt
-        Interrupted: a threshold needs all the points.
+    Interrupted
+        A threshold needs all the points.
     """
-    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    runner = runner or Runner()
     tracer = Tracer(GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False)
-    found = runner.work_out(tracer.point, tracer.first, more=tracer.more)
-    if not tracer.complete(found):
-        raise KeyboardInterrupt
-    return rising(found.values())
+    return runner.work_out(
+        tracer.point, tracer.first, into=lambda found: rising(found.values()), more=tracer.more
+    )
 
 
 def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:

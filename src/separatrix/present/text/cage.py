@@ -33,7 +33,7 @@ MOTIONS = {
 
 def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     """How one run ended, where its centre went, its largest forces, and the work that drove it."""
-    history, cage = answer.history, answer.cage.cage
+    history, cage = answer.history, answer.cage
     span = " to ".join(quantity(at, "s") for at in (history.judged_from, history.judged_until))
     outcome = f"{history.outcome.name}, judged from {span}. {outcome_sentence(history)}"
     rubbing = cage.land_friction * history.rubbing_force * history.rubbing_speed
@@ -50,7 +50,7 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
         section("Centre of the cage", facts([*orbit_facts(history, cage), clearance_fact(cage)])),
         section("Largest forces", facts(_forces(history))),
         section("Work done on the cage; energy at the end", facts(_energies(history))),
-        section("What it holds for", facts(basis(study, answer.cage))),
+        section("What it holds for", facts(basis(study, answer))),
         paragraph(single, indent=""),
     ]
 

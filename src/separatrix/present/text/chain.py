@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from separatrix.present.text.tables import facts, number, quantity, section, significant, table
 
 if TYPE_CHECKING:
-    from separatrix.answers import RestitutionAnswer, TractionAnswer
-    from separatrix.chain import BearingState, CageState, RestitutionState
+    from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
+    from separatrix.chain import BearingState, Solution
     from separatrix.equilibrium import Equilibrium
     from separatrix.study import Study
 
@@ -99,8 +99,8 @@ def traction(found: TractionAnswer, study: Study) -> list[str]:  # noqa: ARG001
 
 def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: ARG001
     """Both restitution factors and what they are made of."""
-    links, found = answer.state.traction, answer.state.restitution
-    inner, outer = links.bearing.inner, links.bearing.outer
+    solution, found = answer.solution, answer.solution.restitution
+    inner, outer, slopes = solution.bearing.inner, solution.bearing.outer, solution.traction
     rows = (
         ("Race damping C_mu", found.race_damping, found.race_damping_free_spin, "N s/m"),
         ("Damping ratio zeta", found.damping_ratio, found.damping_ratio_free_spin, "-"),
@@ -109,11 +109,11 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     cells = [[label, quantity(printed, unit), quantity(free, unit)] for label, printed, free, unit in rows]
     parts = [
         ("Load", inner.load, outer.load, "N"),
-        ("Slope alpha", links.inner.slope, links.outer.slope, "-"),
+        ("Slope alpha", slopes.inner.slope, slopes.outer.slope, "-"),
         ("Rolling speed", inner.rolling_speed, outer.rolling_speed, "m/s"),
     ]
     hertz = quantity(found.restitution_factor_hertz, "-")
-    stiffness = f"{quantity(found.ball_cage_stiffness, 'N/m')} ({answer.state.stiffness_source})"
+    stiffness = f"{quantity(found.ball_cage_stiffness, 'N/m')} ({solution.stiffness_source})"
     pocket = [
         ("Ball/cage stiffness", stiffness),
         ("Cage mass", quantity(found.cage_mass, "kg")),
@@ -126,9 +126,9 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     ]
 
 
-def basis(study: Study, state: CageState) -> list[tuple[str, str]]:
+def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
     """Return what a cage's answer is based on: bearing, operation, film, and the numbers of the chain."""
-    return [*study_facts(study), *chain_facts(state.restitution), *_lead_and_lag(state)]
+    return [*study_facts(study), *chain_facts(answer.solution), *_lead_and_lag(answer)]
 
 
 def study_facts(study: Study) -> list[tuple[str, str]]:
@@ -151,10 +151,10 @@ def study_facts(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def chain_facts(state: RestitutionState) -> list[tuple[str, str]]:
+def chain_facts(solution: Solution) -> list[tuple[str, str]]:
     """Return the chain's numbers on a few lines: angles, loads, slopes, damping, both restitution factors."""
-    links, found = state.traction, state.restitution
-    inner, outer = links.bearing.inner, links.bearing.outer
+    slopes, found = solution.traction, solution.restitution
+    inner, outer = solution.bearing.inner, solution.bearing.outer
 
     def both(one: float, other: float, unit: str) -> str:
         return f"{quantity(one, unit)} inner, {quantity(other, unit)} outer"
@@ -162,24 +162,25 @@ def chain_facts(state: RestitutionState) -> list[tuple[str, str]]:
     free = found.restitution_factor_free_spin
     spins = f"{number(free)}{' (overdamped)' if free == 0.0 else ''} if the ball may spin"
     hertz = f"{number(found.restitution_factor_hertz)} with a Hertzian pocket"
-    stiffness = f"{quantity(found.ball_cage_stiffness, 'N/m')}, {state.stiffness_source}"
+    stiffness = f"{quantity(found.ball_cage_stiffness, 'N/m')}, {solution.stiffness_source}"
     summed = f"{number(found.restitution_factor)} with race dampings summed (Eq. 18)"
     return [
         ("Contact angles", both(inner.contact_angle, outer.contact_angle, "rad")),
         ("Loads of the ball", both(inner.load, outer.load, "N")),
-        ("Traction slopes", both(links.inner.slope, links.outer.slope, "-")),
+        ("Traction slopes", both(slopes.inner.slope, slopes.outer.slope, "-")),
         ("Race damping C_mu", quantity(found.race_damping, "N s/m")),
         ("Restitution factor", f"{summed}; {spins}; {hertz}"),
         ("Ball/cage stiffness", stiffness),
     ]
 
 
-def _lead_and_lag(state: CageState) -> list[tuple[str, str]]:
+def _lead_and_lag(answer: OfCage) -> list[tuple[str, str]]:
     """Return how far balls run ahead and behind in a bearing whose balls do not run alike."""
-    if state.orbital_share is None:
+    held = answer.solution.orbital_share
+    if held is None:
         return []
-    lead, clearance = (quantity(one, "m") for one in (state.cage.lead_amplitude, state.cage.half_play))
-    share = f"{100 * state.orbital_share:.4g} %"
+    lead, clearance = (quantity(one, "m") for one in (answer.cage.lead_amplitude, answer.cage.half_play))
+    share = f"{100 * held:.4g} %"
     words = (
         f"up to {lead} (pockets {clearance} each way); the harmonics used hold {share} of the speed variance"
     )

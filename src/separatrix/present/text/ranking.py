@@ -364,7 +364,7 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
         )
         film = [("This film", words)]
     return [
-        *basis(study, answer.cage),
+        *basis(study, answer),
         *ensemble_facts(found.kicks, found.runs, found.duration),
         ("Ball on pocket", _pocket(found.pocket)),
         ("Unrepeated tests", scatter),

@@ -60,7 +60,7 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
     short = "; ".join(f"{verdict} {', '.join(names)}" for verdict, names in verdicts.items())
     drift = [row.drift_rate for row in found.overall if row.drift_rate is not None]
     holds_for = [
-        *basis(study, answer.cage),
+        *basis(study, answer),
         ("Kicks", f"{', '.join(f'{kick:g}' for kick in found.kicks)} m/s"),
         ("Runs", f"{found.runs} in all; seed {study.stability.seed}"),
         ("Largest drift", f"{significant(max(drift), 2)} 1/s (median of a case)" if drift else ABSENT),

@@ -61,7 +61,7 @@ def stability(answer: StabilityAnswer, study: Study) -> list[str]:
     found = answer.curve
     reasons = dict.fromkeys(point.reason for point in found.curve if point.reason)
     ensemble = ensemble_facts(found.kicks, found.runs, found.duration, middle=found.middle_kick)
-    holds_for = section("What it holds for", facts([*basis(study, answer.cage), *ensemble]))
+    holds_for = section("What it holds for", facts([*basis(study, answer), *ensemble]))
     remarks = [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
     return [*curve(found), holds_for, *remarks]
 
@@ -143,7 +143,7 @@ def stability_map(answer: MapAnswer, study: Study) -> list[str]:
     headers = (found.x.parameter, "from", "to", "whirls", "margin")
     bands = table(headers, [row for x in chosen for row in _bands(found, x)])
     varied = (found.x.parameter, found.y.parameter)
-    friction = [] if FRICTION in varied else [("Pocket friction", friction_text(answer.cage.cage, study))]
+    friction = [] if FRICTION in varied else [("Pocket friction", friction_text(answer.cage, study))]
     ensemble = [
         ("Kick", "each point its own" if "kick" in varied else quantity(found.kick, "m/s")),
         ("Runs", _runs(found.stopping)),
@@ -155,7 +155,7 @@ def stability_map(answer: MapAnswer, study: Study) -> list[str]:
     return [
         section("Stability map", facts(axes), "", table(("", "points", "share"), shares)),
         section("Where the cage begins to whirl", bands, *legend),
-        section("What it holds for", facts([*basis(study, answer.cage), *friction, *ensemble])),
+        section("What it holds for", facts([*basis(study, answer), *friction, *ensemble])),
         *([paragraph(first, first="  - : ", indent="      ")] if first else []),
     ]
 

@@ -68,17 +68,17 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
-    from separatrix.chain import cage_state
+    from separatrix.chain import solve
     from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
     keys: set[tuple[float, Ratio]] = set()
     cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
     for candidate in asked.candidates:
-        state = cage_state(study, material=candidate.material, friction=0.0)
-        stiffness = state.cage.ball_cage_stiffness
-        cages[stiffness] = state.cage, state.stability
-        keys |= {(stiffness, found.mean) for found in candidate.friction.values() if found is not None}
+        solution = solve(study, candidate)
+        stiffness = solution.ball_cage_stiffness
+        cages[stiffness] = solution.cage_with(0.0), solution.stability
+        keys |= {(stiffness, found.mean) for found in solution.frictions.values() if found is not None}
     cage, settings = cages[sorted(cages)[len(cages) // 2]]
     curves = len(cages) * expected_curve(cage, settings, jobs=jobs, band=False)
     verdicts = expected_verdicts(cage, settings, [friction for _, friction in keys], jobs=jobs)
@@ -89,15 +89,16 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    from separatrix.chain import cage_state
+    from separatrix.chain import solve
     from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
     total = PICTURES
     for candidate in asked.candidates:
-        state = cage_state(study, material=candidate.material, friction=0.0)
-        known = [found.mean for found in candidate.friction.values() if found is not None]
-        whole = expected_verdicts(state.cage, replace(state.stability, runs=bearings), known, jobs=jobs)
+        solution = solve(study, candidate)
+        known = [found.mean for found in solution.frictions.values() if found is not None]
+        settings = replace(solution.stability, runs=bearings)
+        whole = expected_verdicts(solution.cage_with(0.0), settings, known, jobs=jobs)
         total += SHARE_RUN * whole
     return total
 
@@ -113,9 +114,9 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
     share.
     """
     from separatrix.runner import Runner
-    from separatrix.stability.map import PointFinder, require_friction
+    from separatrix.stability.map import PointFinder, require_cage_friction
 
-    require_friction(question)
+    require_cage_friction(question)
     xs, ys = (_some(axis.values) for axis in (question.x, question.y))
     points = len(question.x.values) * len(question.y.values)
     if points <= MAP_POINTS_NOT_TIMED:
