@@ -100,12 +100,9 @@ class Answer(Generic[Record]):
 
     def plot(self, name: str | None = None) -> Figure:
         """Return the first figure of the answer, or the one whose file has this name."""
-        from separatrix.figures import figures
+        from separatrix.figures import plot
 
-        for found, figure in figures(self.verb, self.to_xarray()):
-            if name is None or found == name:
-                return figure
-        raise LookupError(name or f"{self.verb} has no figure here")
+        return plot(self.verb, self.to_xarray(), name)
 
 
 def _asked(study: Asked) -> Study:

@@ -179,7 +179,7 @@ def test_files_are_whole_and_nothing_else_is_left(verb, folder):
 def test_a_saved_dataset_draws_the_same_figures(verb, folder, tmp_path):
     """Every figure can be drawn again from the netCDF file alone, to the byte."""
     data = present.load(folder / verb / f"{verb}.nc")
-    for name, figure in figures.figures(verb, data):
+    for name, figure in figures.draw(verb, data):
         figures.save(figure, tmp_path / f"{name}.svg")
         assert (tmp_path / f"{name}.svg").read_bytes() == (folder / verb / f"{name}.svg").read_bytes()
 

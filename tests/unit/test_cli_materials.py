@@ -174,7 +174,7 @@ def test_add_makes_a_library_that_a_study_then_reads(folder, ask):
 
 def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     """A saved answer has the whole record inside it, and draws its figures; a new answer differs."""
-    from separatrix.figures import figures
+    from separatrix.figures import draw
     from separatrix.present import load
 
     assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
@@ -193,7 +193,7 @@ def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     assert {path.name: path.read_bytes() for path in (folder / "old").iterdir()} == before
     saved = load(folder / "old" / "restitution.nc")
     assert "fitted to test 12" in json.dumps(dict(saved.attrs), default=str)
-    assert [name for name, _ in figures("restitution", saved)] == ["restitution-film"]
+    assert [name for name, _ in draw("restitution", saved)] == ["restitution-film"]
 
 
 def test_check_of_a_study_names_the_library_of_a_material(folder, capsys):

@@ -10,7 +10,7 @@ import pytest
 from separatrix import present
 from separatrix.cli import main
 from separatrix.explore import uncertain
-from separatrix.figures import figures
+from separatrix.figures import draw
 from separatrix.study_file import read_study
 
 SMALL = """
@@ -153,7 +153,7 @@ def test_text_and_files(capsys):
     assert {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-1-air",
             "sensitivity-2-vacuum", "sensitivity-film"} <= pictures  # fmt: skip
     data = present.load(Path("here") / "sensitivity.nc")
-    assert {name for name, _ in figures("sensitivity", data)} == pictures
+    assert {name for name, _ in draw("sensitivity", data)} == pictures
     assert data["material_probability_stable"].attrs["units"] == "-"
     assert data["cloud_friction"].dims == ("environment", "material", "sample")
     assert data["film_restitution_factor"].dims == ("material", "race_friction", "film_thickness")

@@ -102,7 +102,7 @@ def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("separatrix.figures.frames._Cage.move", stop)
+    monkeypatch.setattr("separatrix.figures.scene.Scene.bars", stop)
     assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
     assert "no file was written" in capsys.readouterr().err
     assert not list(Path().iterdir())
@@ -143,7 +143,8 @@ def test_two_runs_are_compared(folder, capsys):
     assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
     assert Path("both/compare.txt").read_text(encoding="ascii") == text
     saved = [present.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
-    figures.save(figures.compared(*saved, ("A small run", "A heavy cage")), Path("again.svg"))
+    ((_, figure),) = figures.draw("compare", *saved)
+    figures.save(figure, Path("again.svg"))
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
 
 
@@ -196,7 +197,9 @@ def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
 
 def test_what_is_no_simulation_is_not_compared(folder, capsys):
     """Nothing there, another verb's answer, a file that is no dataset."""
-    assert "holds no saved simulation" in refused(capsys, "compare", "nowhere", str(folder / "small"))
+    assert "does not contain a saved simulation" in refused(
+        capsys, "compare", "nowhere", str(folder / "small")
+    )
     assert main(["bearing", str(folder / "small.toml"), "--out", str(folder / "bearing")]) == 0
     capsys.readouterr()
     other = str(folder / "bearing" / "bearing.nc")

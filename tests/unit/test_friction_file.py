@@ -229,12 +229,12 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from separatrix.figures.ranking import untested
+    from separatrix.figures.stability import explain_extrapolated
 
     axes = Figure().subplots()
-    untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
-    assert axes.get_legend_handles_labels()[1] == ["friction outside the tests"]
-    untested(bare := Figure().subplots(), xr.DataArray([["", ""]]))
+    explain_extrapolated(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
+    assert axes.get_legend_handles_labels()[1] == ["friction extrapolated"]
+    explain_extrapolated(bare := Figure().subplots(), xr.DataArray([["", ""]]))
     assert bare.get_legend_handles_labels()[1] == []
 
 

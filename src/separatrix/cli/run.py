@@ -188,7 +188,7 @@ def _write_data(verb: Verb, found: Found, folder: Path) -> xr.Dataset:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     data = dataset(verb.name, found.answer, found.study, found.notes)
     save(data, folder / f"{verb.name}.nc")
-    for name, figure in figures.figures(verb.name, data):
+    for name, figure in figures.draw(verb.name, data):
         for suffix in (".png", ".svg"):
             figures.save(figure, folder / f"{name}{suffix}")
     return data

@@ -12,9 +12,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.heading import LINE
-from separatrix.figures.literal import literal
-from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
+from separatrix.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    LINE,
+    ORANGE,
+    PAGE,
+    SKY,
+    VERMILION,
+    journal,
+    literal,
+    settled,
+)
 from separatrix.tribometer.flags import at
 from separatrix.tribometer.reduction import GIVEN
 from separatrix.units import format_number, format_quantity

@@ -47,7 +47,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         Warnings about validity; those in the answer are added.
     """
     from separatrix import __version__
-    from separatrix.present.shapes import shape
+    from separatrix.present.shapes import all_notes, shape
     from separatrix.study_file import resolved
 
     with null_if_not_finite() as left_out:
@@ -69,13 +69,6 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         **body,
         "warnings": warnings,
     }
-
-
-def all_notes(answer: object, notes: Sequence[str]) -> list[str]:
-    """Return warnings with those that an answer has itself, each once."""
-    from separatrix.present.shapes import shape
-
-    return list(dict.fromkeys([*notes, *plain(shape(answer).get("warnings", ()))]))
 
 
 @contextlib.contextmanager

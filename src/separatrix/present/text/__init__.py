@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from separatrix.present.json import all_notes
+from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
 from separatrix.present.text.chain import bearing, restitution, traction
 from separatrix.present.text.ranking import every_environment, only_table, rank

@@ -20,6 +20,8 @@ from separatrix.present.text.tables import (
 
 Document = Mapping[str, Any]
 
+COLUMNS = ("friction", "margin", "P(stable)", "verdict")
+
 ROWS = (
     ("kick", "m/s", "kick"),
     ("end_energy", "J", "energy at the end"),
@@ -53,28 +55,18 @@ def _simulations(document: Document) -> list[str]:
     ]
 
 
-RANKED = (
-    "material",
-    "friction\nfirst",
-    "\nsecond",
-    "margin\nfirst",
-    "\nsecond",
-    "P(stable)\nfirst",
-    "\nsecond",
-    "verdict\nfirst",
-    "\nsecond",
-)
+RANKED = ("material", *(f"{name}\nfirst" if i == 0 else "\nsecond" for name in COLUMNS for i in (0, 1)))
 
 
 def _rankings(document: Document) -> list[str]:
     """Return friction, margin, P(stable) and verdict of each material in both rankings."""
     names = zip(("first", "second"), document["rankings"], strict=True)
-    said = [(which, f"{one['title']} ({one['path']}, seed {one['seed']})") for which, one in names]
+    named = [(which, f"{one['title']} ({one['path']}, seed {one['seed']})") for which, one in names]
     tables = [
         section(one["name"], table(RANKED, [_ranked(row) for row in one["materials"]]))
         for one in document["environments"]
     ]
-    return [heading("Two rankings"), facts(said), *tables]
+    return [heading("Two rankings"), facts(named), *tables]
 
 
 def _ranked(row: Document) -> list[str]:
