@@ -21,12 +21,13 @@ from separatrix.answers import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.chain import BearingState
+from separatrix.chain.contacts import BearingState
 from separatrix.cluster import cluster as connected
 from separatrix.errors import ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.explore.sweep import Case, Sweep
 from separatrix.ledger import NAME, Ledger
+from separatrix.notes import grouped, noted_warnings
 from separatrix.runner import Progress, Runner, made_into
 from separatrix.study import Study
 from separatrix.study_file import read_study, require
@@ -111,20 +112,16 @@ def _asked(study: Asked) -> Study:
 
 def _answer(verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str) -> Answer[Record]:
     """Answer of a verb, with what was noted on the way; the notes are warnings for the caller, too."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with noted_warnings() as notes:
         asked = _asked(study)
         require(asked, verb, *needs)
 
         def made(record: Record) -> Answer[Record]:
-            notes = dict.fromkeys(
-                str(one.message) for one in caught if issubclass(one.category, ValidityWarning)
-            )
-            return Answer(verb=verb, record=record, study=asked, notes=tuple(notes))
+            return Answer(verb=verb, record=record, study=asked, notes=tuple(grouped(notes)))
 
         answer = made_into(made, lambda: compute(asked))
-    for one in caught:
-        warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+    for note in answer.notes:
+        warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
 
 

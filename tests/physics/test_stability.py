@@ -6,9 +6,7 @@ from itertools import pairwise
 import pytest
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
-from separatrix.present.text.stability import drift_note
-from separatrix.runner import PART, Interrupted, Runner
-from separatrix.stability import (
+from separatrix.limits import (
     GrowthCounter,
     cage_at,
     critical_friction,
@@ -19,6 +17,8 @@ from separatrix.stability import (
     stability_curve,
     threshold_points,
 )
+from separatrix.present.text.stability import drift_note
+from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from separatrix.cage_choice import other_than_candidates, require_friction, required_environment
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study
 
@@ -113,7 +113,9 @@ def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
 
 def test_a_name_that_nobody_has_is_refused(tmp_path):
     """With the library's names and the candidates'."""
-    with pytest.raises(InputError, match=r"is no cage material of the library.*Candidates are My compound"):
+    with pytest.raises(
+        InputError, match=r"is not a cage material of the library.*Candidates are My compound"
+    ):
         case(tmp_path, 'material = "Unobtainium"')
 
 

@@ -7,12 +7,13 @@ import pytest
 from separatrix.answers import OfCage
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage_choice import require_friction
-from separatrix.chain import solution, solve
+from separatrix.chain import solution
+from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.present import plain
 from separatrix.present.shapes import shape
 from separatrix.present.text.chain import basis
-from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.study import (
     Candidate,
     Film,

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from separatrix import present
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.axes import read_axis

@@ -8,13 +8,13 @@ from subprocess import run
 
 import pytest
 
-from separatrix.chain import solve
+from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.chain.pocket_friction import friction_in_pocket
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction_file import friction_text, read_friction, write_friction
 from separatrix.friction_fit import FrictionTest, TestedFriction
-from separatrix.pocket_contact import PocketConditions
-from separatrix.pocket_friction import friction_in_pocket
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from separatrix import verbs
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study
-from separatrix.study_file.plausible import beyond_bearings, plausible_cage_masses
+from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
 
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.present.text.cage import clearance_fact, orbit_facts
 from separatrix.study import Guidance
 from separatrix.study_file import read_study

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from separatrix import answers
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.explore import sweep
 from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray

@@ -9,11 +9,9 @@ import pytest
 
 from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.present.text.stability import curve
-from separatrix.runner import Runner
-from separatrix.stability import (
+from separatrix.limits import (
     Count,
     CriticalFriction,
     GrowthCounter,
@@ -26,10 +24,12 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import Tracer, bends
-from separatrix.stability.point import own_restitution_factor
-from separatrix.stability.response import LADDER, Crossing, cell_of
-from separatrix.stability.tracing import COARSE, FINEST, finer
+from separatrix.limits.curve import Tracer, bends
+from separatrix.limits.point import own_restitution_factor
+from separatrix.limits.response import LADDER, Crossing, cell_of
+from separatrix.limits.tracing import COARSE, FINEST, finer
+from separatrix.present.text.stability import curve
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 

@@ -12,12 +12,12 @@ import pytest
 
 from separatrix.answers import SimulationAnswer
 from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
-from separatrix.chain import solve
+from separatrix.chain.restitution import damping_for
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
+from separatrix.limits.growth import race_damping_at
 from separatrix.present import document, report
-from separatrix.restitution import damping_for
-from separatrix.stability.growth import race_damping_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-import re
-import threading
-import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.errors import InputError
+from separatrix.notes import grouped, noted_warnings
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -231,38 +229,9 @@ def _check_name(path: Path, *, excel: bool) -> None:
 def _new_study(*, excel: bool) -> bytes:
     """Return the file to fill in."""
     if excel:
-        from separatrix.study_file.template_workbook import template_workbook
+        from separatrix.study_file.template import template_workbook
 
         return template_workbook()
     from separatrix.study_file import template
 
     return template().encode()
-
-
-def grouped(notes: Iterable[str]) -> list[str]:
-    """Return the first of the sentences that differ in numbers only, and how many more there are."""
-    alike: dict[str, list[str]] = {}
-    for note in notes:
-        alike.setdefault(re.sub(r"[0-9][0-9.e+-]*", "0", note), []).append(note)
-    return [f"{n[0]} (And {len(n) - 1} more with other numbers.)" if n[1:] else n[0] for n in alike.values()]
-
-
-@contextlib.contextmanager
-def noted_warnings() -> Iterator[list[str]]:
-    """Collect what is said about validity, each sentence once; other warnings take their usual way."""
-    notes: list[str] = []
-    one_at_a_time = threading.Lock()  # threads of a pool warn too
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", ValidityWarning)
-        usual = warnings.showwarning
-
-        def note(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
-            if not issubclass(category, ValidityWarning):
-                usual(message, category, *place, **rest)
-                return
-            with one_at_a_time:
-                if str(message) not in notes:
-                    notes.append(str(message))
-
-        warnings.showwarning = note  # put back by catch_warnings
-        yield notes

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def write_tables(data: xr.Dataset, folder: Path, *, quiet: bool) -> None:  # noqa: ARG001
     """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
-    from separatrix.spreadsheet.writing import (
+    from separatrix.workbook_looks import (
         add_sheet,
         headings,
         new_workbook,

@@ -23,14 +23,15 @@ from separatrix.cage import History, Judgement
 from separatrix.cage.drive import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
-from separatrix.chain import BearingState, RaceContact, Solution
-from separatrix.equilibrium import Equilibrium
+from separatrix.chain.contacts import BearingState, RaceContact
+from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
 from separatrix.present.walk import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.walk import shape as shape
 from separatrix.ranking import NotFinished, NotMeasured, Ranked
-from separatrix.traction import ShearField, TractionCurve
 from separatrix.units import Rows
 
 Key = TypeVar("Key")

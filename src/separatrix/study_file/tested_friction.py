@@ -16,7 +16,6 @@ from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
-from separatrix.study_file.records import where
 from separatrix.toml_values import folded, nearest
 from separatrix.units import shown
 
@@ -38,7 +37,7 @@ def tests_file(document: Document, name: str) -> Path | None:
     if not _is_file(path):
         rule = "names no file beside the study"
         cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
-        raise InputError(where(document, "ranking", "friction"), rule, shown(name), cure)
+        raise InputError("[ranking] friction", rule, shown(name), cure)
     return path
 
 
@@ -54,11 +53,11 @@ def scatter_of(given: dict[str, Any]) -> float:
     return float(given.get("friction_scatter", DEFAULT_SCATTER))
 
 
-def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> dict[str, Any]:
+def question_of_tests(path: Path, given: dict[str, Any]) -> dict[str, Any]:
     """Environments and candidates of a friction file, in the order in which they are first tested."""
     tests = read_friction(path)
     known = tuple(dict.fromkeys(test.material for test in tests))
-    chosen = chosen_materials(document, given, known, given["friction"])
+    chosen = chosen_materials(given, known, given["friction"])
     wanted = [test for test in tests if test.material in chosen]
     environments = tuple(dict.fromkeys(test.environment for test in wanted))
     scatter, source = scatter_of(given), _source(path)
@@ -68,16 +67,14 @@ def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> 
     }
 
 
-def chosen_materials(
-    document: Document, given: dict[str, Any], known: tuple[str, ...], name: str
-) -> tuple[str, ...]:
+def chosen_materials(given: dict[str, Any], known: tuple[str, ...], name: str) -> tuple[str, ...]:
     """Materials that the study ranks, in any spelling; by default all that are known."""
     by_spelling = {folded(material): material for material in known}
     chosen = [by_spelling.get(folded(material), material) for material in given.get("materials", known)]
     for material in chosen:
         if material not in known:
             rule, cure = f"names a material that {name} lacks", nearest(material, known)
-            raise InputError(where(document, "ranking", "materials"), rule, shown(material), cure)
+            raise InputError("[ranking] materials", rule, shown(material), cure)
     return tuple(chosen)
 
 

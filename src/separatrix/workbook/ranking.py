@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cage import Judgement
 from separatrix.present.walk import field_units
 from separatrix.ranking import Ranked
-from separatrix.spreadsheet.cells import cell_name
-from separatrix.spreadsheet.writing import Look, add_sheet, headings, put, widths
+from separatrix.workbook_looks import Look, add_sheet, headings, put, widths
 
 if TYPE_CHECKING:
     from openpyxl import Workbook
@@ -113,7 +112,7 @@ def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]
             _cell(sheet, number, place, row, column)
     widths(sheet, *(column.width for column in given))
     if given:
-        sheet.auto_filter.ref = f"A1:{cell_name(len(rows) + 1, len(given))}"
+        sheet.auto_filter.ref = f"A1:{sheet.cell(len(rows) + 1, len(given)).coordinate}"
 
 
 def _margin_ends(row: Row) -> Row:
