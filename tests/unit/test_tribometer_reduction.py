@@ -7,15 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from separatrix.present.friction_tests import page_data
-from separatrix.tribometer import steady
-from separatrix.tribometer.log import Conditions, RawLog
-from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
-from separatrix.tribometer.stick_slip import oscillation
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log, reduction, steady
+from separatrix.friction.reduction.steady import oscillation
 from separatrix.present import load, save
+from separatrix.present.tribometer import page_data
 
 QUIET = Recipe(rows=4000, noise=0.004)
 
