@@ -1,7 +1,7 @@
 """Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
 
 from separatrix.cage.ensemble import Ensemble, run_ensemble
-from separatrix.cage.hard import impact_restitution, run_hard_ensemble
+
 from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.interval import wilson_interval
 from separatrix.cage.kicks import settings_for
@@ -28,13 +28,11 @@ __all__ = [
     "Verdict",
     "drift_law",
     "follow",
-    "impact_restitution",
     "judge",
     "linear_critical_friction",
     "linear_roots",
     "linear_whirl_frequency",
     "run_ensemble",
-    "run_hard_ensemble",
     "settings_for",
     "simulate",
     "turning_critical_friction",

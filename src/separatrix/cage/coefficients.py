@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from separatrix.cage.land import rebound_damping
-from separatrix.cage.slots import BALLS
+from separatrix.cage.records import POWERS, Balls, dtype_of
 from separatrix.study import Guidance
-from separatrix.units import Array, MetrePerSecond, Second
+from separatrix.units import MetrePerSecond, Ratio, Second
 
 if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
@@ -19,6 +19,8 @@ ONSET = 1e-5
 """Depth at which a Hertz contact starts and ends, over that of an impact at the kick's speed: at zero depth
 the force has no power series. The force there is 3e-8 of the impact's largest."""
 
+LOWEST_RESTITUTION = 1e-4
+
 
 class Coefficients(NamedTuple):
     """Numbers of one cage and one kick."""
@@ -26,47 +28,45 @@ class Coefficients(NamedTuple):
     unit: float  # of time [s]
     inertia: float  # J / (M R^2)
     swiftness: float  # its inverse
-    radius: float
-    turning: float
-    stiffness: float
-    hertz: float  # 0: linear
+    radius: float  # R
+    turning: float  # Omega
+    stiffness: float  # k of a linear pocket
+    hertz: float  # K of a Hertz pocket; 0: linear
     onset: float
     yielding: float  # 1 / C_mu
     friction: float  # sigma f over the cosine of the contact's tilt
     slowest: float  # speed whose rounding is of no interest
     gravity: float
-    eccentricity: float
-    land_side: float
-    land_gap: float
-    land_stiffness: float
-    land_damping: float
-    land_friction: float
-    ring_slide: float
+    eccentricity: float  # of the centre of mass
+    land_side: float  # q: 1 outer, -1 inner, 0 without a land
+    land_gap: float  # c_g
+    land_stiffness: float  # K of the land
+    land_damping: float  # c of the land
+    land_friction: float  # mu
+    ring_slide: float  # (omega_ring - Omega) R
     roundness: float  # positive takes from the gap where the cosine is positive
     lobes: int
-    lobe_rows: int
     harmonics: int
     driven: float  # bound on the free speed of any ball
     ramp_time: float
     ramp_start: float
     needs_rotation: bool
     needs_frame: bool
-    gripped: bool  # no play: both sides of a pocket hold its ball
+    gripped: bool  # no clearance: both sides of a pocket hold its ball
     fastest: float  # bound on the rate of the motion in contact
 
 
 def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
-    """Kernel's numbers of a cage."""
+    """Numbers of a cage as a record, which kernels hand on by its address instead of copying 29 numbers."""
     T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     tilt = cage.pocket_tilt[0]
-    rotating = cage.unbalance != 0.0 or cage.land_out_of_round != 0.0
     K = 0.0 if cage.hertz_coefficient is None else cage.hertz_coefficient * tilt**2.5
     harmonics = len(cage.orbital_cosines)
     land_stiffness = cage.land_count * cage.land_stiffness
     damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(land_stiffness * M)
     sign = -1.0 if cage.guidance is Guidance.INNER and cage.land_lobes % 2 else 1.0
-    return Coefficients(
+    numbers = Coefficients(
         unit=T,
         inertia=cage.moment_of_inertia / (M * R * R),
         swiftness=M * R * R / cage.moment_of_inertia,
@@ -88,41 +88,27 @@ def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
         ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * R * T,
         roundness=sign * cage.land_out_of_round,
         lobes=cage.land_lobes,
-        lobe_rows=BALLS + 2 * cage.ball_count,
         harmonics=harmonics,
         driven=float(np.sum(np.hypot(cage.orbital_cosines, cage.orbital_sines))) * T,
         ramp_time=cage.ramp_time / T,
         ramp_start=cage.ramp_start,
-        needs_rotation=rotating,
+        needs_rotation=cage.unbalance != 0.0 or cage.land_out_of_round != 0.0,
         needs_frame=harmonics > 0 or cage.gravity > 0.0,
         gripped=cage.half_play == 0.0,
         fastest=fastest_rate(cage) * T,
     )
+    return cast("Coefficients", np.array([tuple(numbers)], dtype_of(Coefficients))[0])
 
 
-def as_record(p: Coefficients) -> np.void:
-    """The same as a record, which kernels hand on by its address instead of copying 30 numbers."""
-    kinds = {"float": np.float64, "int": np.int64, "bool": np.bool_}
-    fields = [(name, kinds[kind.__forward_arg__]) for name, kind in Coefficients.__annotations__.items()]
-    record: np.void = np.array([tuple(p)], dtype=fields)[0]
-    return record
-
-
-def free_speeds(cage: PlanarCage, angles: Array) -> Array:
-    """Free speed of each ball as it goes round, by harmonics: cosines and sines, shape (2 harmonic, ball).
-
-    In metres by the engine's unit of time.
-    """
-    rows = []
+def balls_of(cage: PlanarCage) -> Balls:
+    """Room for the balls of a cage, with their free speed as they go round, in metres by the unit of time."""
+    angles, count, waves = np.array(cage.ball_angles), cage.ball_count, []
     for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
         c, s = np.cos(h * angles), np.sin(h * angles)
-        rows += [a * c + b * s, b * c - a * s]
-    return np.array(rows).reshape(len(rows), angles.size) * time_unit(cage)
-
-
-def series_columns(cage: PlanarCage) -> int:
-    """Columns of the series of a step."""
-    return BALLS + 2 * cage.ball_count + 2 * cage.land_lobes
+        waves += [a * c + b * s, b * c - a * s]
+    drive = np.array(waves).reshape(len(waves), count) * time_unit(cage)
+    numbers, whole, powers = np.zeros((5, count)), np.zeros((2, count), np.int64), np.zeros((2, POWERS, count))
+    return Balls(*numbers, drive, *whole, *powers)
 
 
 def time_unit(cage: PlanarCage) -> Second:
@@ -141,3 +127,35 @@ def fastest_rate(cage: PlanarCage) -> float:
         squared += K / cage.mass
         rate += 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(K / cage.mass)
     return math.sqrt(squared) + rate + abs(cage.cage_speed)
+
+
+def rebound(damping_ratio: Ratio) -> Ratio:
+    r"""Restitution of a mass on a spring and a parallel damper that can push but not pull [-].
+
+    The impact ends when the force is back at zero, before the spring is. With :math:`\beta = \zeta\omega` and
+    :math:`\Omega = \omega\sqrt{|1-\zeta^2|}` (Schwager and Poeschel 2007, with their :math:`\omega_0` as unit
+    of time).
+    """
+    zeta = damping_ratio
+    if zeta == 0.0:
+        return 1.0
+    if zeta < 1.0:
+        root = math.sqrt(1.0 - zeta * zeta)
+        turned = math.atan2(2.0 * zeta * root, 2.0 * zeta * zeta - 1.0)
+        return math.exp(-zeta / root * turned)
+    if zeta == 1.0:
+        return math.exp(-2.0)
+    root = math.sqrt(zeta * zeta - 1.0)
+    return math.exp(-zeta / root * 2.0 * math.log(zeta + root))
+
+
+@lru_cache(maxsize=64)
+def rebound_damping(restitution: Ratio) -> Ratio:
+    """Damping ratio of the land whose `rebound` is this [-]; below 1e-4 that of 1e-4, close to 0."""
+    if restitution >= 1.0:
+        return 0.0
+    target = max(restitution, LOWEST_RESTITUTION)
+    low, high = 0.0, 100.0
+    while low < (middle := 0.5 * (low + high)) < high:  # down to neighbouring numbers
+        low, high = (middle, high) if rebound(middle) > target else (low, middle)
+    return low

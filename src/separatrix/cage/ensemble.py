@@ -4,24 +4,17 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 
-from separatrix.cage import slots
-from separatrix.cage.coefficients import (
-    as_record,
-    coefficients,
-    fastest_rate,
-    free_speeds,
-    series_columns,
-    time_unit,
-)
+from separatrix.cage.coefficients import balls_of, coefficients, fastest_rate, time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.run import random_start, run_chunk, series_of
+from separatrix.cage.records import Evidence, Samples, dtype_of, samples_for
+from separatrix.cage.run import books_for, random_start, run_chunk
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK
 from separatrix.units import Array, MetrePerSecond, Second
@@ -39,10 +32,14 @@ CHUNK_RADIANS = 200_000.0
 """Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
 second of work."""
 
-PER_MASS = [
-    *(slots.FORCE, slots.LAND_FORCE, slots.RUBBING_FORCE),
-    *(slots.END_ENERGY, slots.POCKET_POWER, slots.LAND_POWER),
-]
+PER_MASS = (
+    "largest_contact_force",
+    "largest_land_force",
+    "rubbing_force",
+    "end_energy",
+    "pocket_power",
+    "land_power",
+)
 """Evidence that the kernels give over the mass."""
 
 MOST_RADIANS = 1e8
@@ -161,7 +158,7 @@ def run_ensemble(
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     check_length(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)
-    evidence = np.zeros((len(speeds), runs, slots.EVIDENCE))
+    evidence = np.zeros((len(speeds), runs), dtype_of(Evidence))
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
 
     def work(i: int, rows: slice) -> None:
@@ -177,22 +174,29 @@ def run_rows(
     duration: Second,
     kick: MetrePerSecond,
     starts: Array,
-    evidence: Array,
+    evidence: NDArray[np.void],
     hits: NDArray[np.int64],
     *,
-    rows: Array | None = None,
+    samples: Samples | None = None,
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
 
-    With rows of a history a run goes on to their last, whatever is plain before.
+    With samples of a history a run goes on to the last of them, whatever is plain before.
     """
-    unit, balls = time_unit(cage), cage.ball_count
-    p, drive = as_record(coefficients(cage, kick)), free_speeds(cage, np.array(cage.ball_angles))
-    history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
-    limits = run_limits(cage, kick, duration, least=rows is not None)
-    series = series_of(series_columns(cage))
-    run_chunk(p, drive, starts, kick * unit, series, limits, history, evidence, hits)
-    evidence[:, PER_MASS] *= cage.mass
+    balls, limits = cage.ball_count, run_limits(cage, kick, duration, least=samples is not None)
+    run_chunk(
+        coefficients(cage, kick),
+        balls_of(cage),
+        starts,
+        kick * time_unit(cage),
+        books_for(balls, cage.land_lobes, len(starts), limits.most),
+        limits,
+        samples or samples_for(0, balls),
+        cast("Sequence[Evidence]", evidence),
+        hits,
+    )
+    for name in PER_MASS:
+        evidence[name] *= cage.mass
 
 
 def check_length(cage: PlanarCage, duration: Second) -> None:
@@ -278,35 +282,14 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second) -> Ensemble:
-    """Record of the evidence of all runs, shape (kick, run, evidence)."""
-
-    def column(slot: int) -> Array:
-        return np.ascontiguousarray(evidence[..., slot])
-
+def gathered(
+    kicks: Array, evidence: NDArray[np.void], hits: NDArray[np.int64], duration: Second
+) -> Ensemble:
+    """Record of the evidence of all runs, shape (kick, run)."""
+    names = [field.name for field in fields(Ensemble) if field.name in Evidence.__annotations__]
     return Ensemble(
         kicks=kicks,
-        outcome=column(slots.OUTCOME).astype(np.int64),
-        cause=column(slots.CAUSE).astype(np.int64),
-        end_energy=column(slots.END_ENERGY),
-        growth_rate=column(slots.GROWTH_RATE),
-        largest_offset=column(slots.LARGEST_OFFSET),
-        mean_offset=column(slots.MEAN_OFFSET),
-        offset_spread=column(slots.OFFSET_SPREAD),
-        orbit_speed=column(slots.ORBIT_SPEED),
-        drift_rate=column(slots.DRIFT_RATE),
-        whirl_frequency=column(slots.WHIRL),
-        whirl_direction=column(slots.DIRECTION).astype(np.int64),
-        largest_contact_force=column(slots.FORCE),
-        largest_land_force=column(slots.LAND_FORCE),
         pocket_impacts=hits,
-        land_impacts=column(slots.LAND_IMPACTS).astype(np.int64),
-        energy_imbalance=column(slots.IMBALANCE),
-        pocket_power=column(slots.POCKET_POWER),
-        land_power=column(slots.LAND_POWER),
-        rubbing_force=column(slots.RUBBING_FORCE),
-        rubbing_speed=column(slots.RUBBING_SPEED),
-        followed=column(slots.FOLLOWED),
-        judged_from=column(slots.JUDGED),
         duration=duration,
+        **{name: np.ascontiguousarray(evidence[name]) for name in names},
     )
