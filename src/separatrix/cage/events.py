@@ -49,7 +49,7 @@ rest would else touch and leave without end, at forces of some 1e-11 N."""
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
 
-@inner_kernel
+@inlined_kernel
 def penetration(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     """Series of the penetration of a pocket in touch."""
     if p.hertz != 0.0:
@@ -65,7 +65,7 @@ def penetration(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> N
     c[0] = q
 
 
-@inner_kernel
+@inlined_kernel
 def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     """Series of the way of a pocket against its ball, which it does not touch."""
     # u_j(t) - u_j(0) = y cos phi_j - x sin phi_j + s - sum_k V_jk gone_k
@@ -314,7 +314,7 @@ def left_at(p: Coefficients, balls: Balls, row: Candidate, now: tuple[float, ...
     return left - sign * gone_at(p, balls, room.gone, AT_END, j)
 
 
-@inner_kernel
+@inlined_kernel
 def first_change(p: Coefficients, balls: Balls, w: Series, room: Room, filled: int) -> tuple[float, int, int]:
     """Earliest of what is queued: its time, what happens, and to which ball (beyond the balls: their far side)."""
     end, kind, ball = 1.0, NOTHING, -1

@@ -121,7 +121,7 @@ def enter_force(
         look.force_max = max(look.force_max, force)
 
 
-@inner_kernel
+@inlined_kernel
 def add_work(
     p: Coefficients,
     balls: Balls,
@@ -243,7 +243,7 @@ def copy_work(ledger: Ledger, work: Ledger) -> None:
     work.moving_frame, work.unbalance = ledger.moving_frame, ledger.unbalance
 
 
-@inner_kernel
+@inlined_kernel
 def enter_work(
     p: Coefficients,
     balls: Balls,

@@ -34,13 +34,13 @@ from separatrix.cage.records import (
     Sums,
 )
 from separatrix.cage.series import centre, product
-from separatrix.compiled import inner_kernel
+from separatrix.compiled import inlined_kernel, inner_kernel
 
 AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
 """1 / (n + 1)."""
 
 
-@inner_kernel
+@inlined_kernel
 def gather(balls: Balls, waves: int, count: int, sums: Sums) -> None:
     """Sums over the pockets in touch; with a radial load also of the free speeds of each wave."""
     cc = cs = ss = c_ = s_ = qc = qs = q_ = 0.0
@@ -64,7 +64,7 @@ def gather(balls: Balls, waves: int, count: int, sums: Sums) -> None:
     sums.cc, sums.cs, sums.ss, sums.c, sums.s, sums.qc, sums.qs, sums.q = cc, cs, ss, c_, s_, qc, qs, q_
 
 
-@inner_kernel
+@inlined_kernel
 def expand(p: Coefficients, balls: Balls, w: Series, count: int, land: int, now: Pace, room: Room) -> None:
     """Fill the series of the motion from the state in their first coefficients.
 

@@ -8,6 +8,7 @@ acceleration have the unit of a length. Symbols are those of docs/theory/cage.md
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Generic, NamedTuple, TypeVar, cast, get_type_hints
 
 import numpy as np
@@ -267,6 +268,7 @@ class Room(NamedTuple):
     lobes: Array  # powers of the lobes, shape (power, 2 lobe)
 
 
+@cache
 def dtype_of(kind: type[object]) -> np.dtype[np.void]:
     """Type of the structured array of a record; an array within it has the length `WAVES`."""
     fields: list[tuple[str, object, tuple[int, ...]]] = []
