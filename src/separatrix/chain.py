@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from separatrix.cage import PlanarCage, settings_for
-from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
+from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
 from separatrix.cage_choice import NAMELESS, cage_candidate
 from separatrix.cage_choice import known_friction as known_friction
 from separatrix.cage_choice import pocket_friction as pocket_friction

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from separatrix.cage.hard import next_impact
 
 from separatrix.cage import (
     Cause,
@@ -16,7 +17,6 @@ from separatrix.cage import (
     run_hard_ensemble,
     whirl_probability,
 )
-from separatrix.cage.hard import next_impact
 from separatrix.study import StabilitySettings
 
 M, K, R = 0.05, 3e6, 0.0325

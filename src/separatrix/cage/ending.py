@@ -11,10 +11,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from separatrix.cage.coefficients import time_unit
-from separatrix.cage.drive import drifts, drive_energy, room
+from separatrix.cage.closed_forms import drifts, drive_energy, room, time_unit
 from separatrix.cage.planar import RunOutcome
-from separatrix.cage.records import Look
 from separatrix.compiled import kernel
 
 if TYPE_CHECKING:
@@ -80,6 +78,31 @@ window; from the second on a cage that frame or loads move is at its land."""
 UNKNOWN = -1
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 UNRESOLVED = int(RunOutcome.UNRESOLVED)
+
+
+class Look:
+    """Tally of a look: integrals over its time unless stated."""
+
+    kinetic: float
+    offset: float
+    offset_squared: float
+    swept: float  # r x v
+    turning: float  # |v|^2 times the turning rate of the velocity
+    speed_squared: float
+    mean_x: float
+    mean_y: float
+    offset_max: float  # largest squared offset
+    force_max: float  # largest forces of pockets and land
+    land_max: float
+    steps: float  # number
+    land_hits: float  # number
+    pressed: float  # force of the land, and that times the sliding
+    rubbed: float
+    pocket_work: float  # work of both frictions, of balls that lead and lag, of gravity
+    land_work: float
+    ball_work: float
+    gravity_work: float
+    frame_work: float  # on a cage without clearance or land
 
 
 class Memory:
@@ -210,9 +233,7 @@ def high_end(looks: Sequence[Look], end: int) -> int:
 
 
 @kernel
-def plain_end(
-    looks: Sequence[Look], i: int, length: float, met: bool, limits: Limits, memory: Memory
-) -> int:
+def plain_end(looks: Sequence[Look], i: int, length: float, met: bool, limits: Limits, memory: Memory) -> int:
     """Outcome that is plain after look i; `UNKNOWN` if none is."""
     mean = looks[i].kinetic / length
     memory.above = memory.above + 1 if mean > limits.grows_on else 0
@@ -266,14 +287,15 @@ def kept_up(looks: Sequence[Look], end: int, length: float, limits: Limits) -> b
 
 
 @kernel
-def at_rest(
-    looks: Sequence[Look], end: int, quiet: int, share: float, length: float, limits: Limits
-) -> int:
+def at_rest(looks: Sequence[Look], end: int, quiet: int, share: float, length: float, limits: Limits) -> int:
     """`SETTLES` at rest, or where pocket friction put in at most this share over this many quiet looks."""
     first, half = end - limits.window, limits.window // 2
     mean = mean_energy(looks, first, end, length)
     if mean <= REST * limits.drive:
-        early, late = mean_energy(looks, first, first + half, length), mean_energy(looks, end - half, end, length)
+        early, late = (
+            mean_energy(looks, first, first + half, length),
+            mean_energy(looks, end - half, end, length),
+        )
         return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
     work, pockets, _ = fed(looks, end - quiet, end)
     return SETTLES if pockets <= share or work < mean else UNKNOWN

@@ -4,29 +4,40 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 
-from separatrix.cage.coefficients import balls_of, coefficients, fastest_rate, time_unit
+from separatrix.cage.closed_forms import fastest_rate, time_unit
 from separatrix.cage.ending import run_limits
-from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.records import Evidence, Samples, dtype_of, samples_for
+from separatrix.cage.records import Evidence, Samples, balls_of, coefficients, dtype_of, samples_for
 from separatrix.cage.run import books_for, random_start, run_chunk
 from separatrix.errors import InputError
-from separatrix.study import LEAST_KICK, NO_KICK
-from separatrix.units import Array, MetrePerSecond, Second
+from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
+from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from separatrix.study import StabilitySettings
 
 Scalar = TypeVar("Scalar", bound=np.generic)
+
+REFERENCE: Ratio = 2.5
+"""Reference kick over the pocket speed [-]."""
+
+SPAN: tuple[Ratio, ...] = (0.2, 1.0, 4.0)
+"""Kicks over the reference kick: 0.5, 2.5 and 10 times the pocket speed [-]."""
+
+LEAST_POCKET_SPEED: MetrePerSecond = 0.02
+"""Pocket speed of a ball set at rest or a pocket without clearance: the reference kick is then 0.05 m/s."""
+
+DIGITS = 3
+"""Significant digits of a default kick, so that a reader can repeat it."""
+
 
 CHUNK_RADIANS = 200_000.0
 """Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
@@ -246,6 +257,39 @@ def free_leads(cage: PlanarCage, angles: Array) -> Array:
     return lead
 
 
+def pocket_speed(cage_speed: RadianPerSecond, pocket_clearance: Metre) -> MetrePerSecond:
+    """Cage speed times half the pocket clearance, but not below `LEAST_POCKET_SPEED`.
+
+    The cage centre has this speed in space where it is half a pocket clearance off the axis.
+    """
+    return max(abs(cage_speed) * 0.5 * pocket_clearance, LEAST_POCKET_SPEED)
+
+
+def settings_for(settings: StabilitySettings, cage: PlanarCage) -> StabilitySettings:
+    """Return the settings with the kicks and the reference kick of this cage; given ones stay."""
+    return with_kicks(settings, pocket_speed(cage.cage_speed, cage.pocket_clearance))
+
+
+def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilitySettings:
+    """Return the settings with numbers for kicks and reference kick, from the pocket speed [m/s].
+
+    The reference kick is 2.5 times the pocket speed unless it is given, whatever the kicks: thresholds and
+    margins belong to the bearing, not to the list. Without kicks they are 0.2, 1 and 4 times it.
+    """
+    reference = settings.reference_kick or _rounded(REFERENCE * speed)
+    spanned = tuple(reference if part == 1.0 else _rounded(part * reference) for part in SPAN)
+    return replace(settings, kicks=settings.kicks or spanned, reference_kick=reference)
+
+
+def with_reference(settings: StabilitySettings) -> StabilitySettings:
+    """Return the settings with the reference kick among the kicks; they must have numbers."""
+    return replace(settings, kicks=tuple(sorted({*settings.kicks, settings.middle_kick})))
+
+
+def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
+    return float(f"{speed:.{DIGITS}g}")
+
+
 def chosen(
     settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
 ) -> tuple[Array, int]:
@@ -282,9 +326,7 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(
-    kicks: Array, evidence: NDArray[np.void], hits: NDArray[np.int64], duration: Second
-) -> Ensemble:
+def gathered(kicks: Array, evidence: NDArray[np.void], hits: NDArray[np.int64], duration: Second) -> Ensemble:
     """Record of the evidence of all runs, shape (kick, run)."""
     names = [field.name for field in fields(Ensemble) if field.name in Evidence.__annotations__]
     return Ensemble(

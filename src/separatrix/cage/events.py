@@ -1,15 +1,14 @@
 r"""What ends a step: a pocket leaves its ball or meets one (`land`: the mode of the land changes).
 
 The place of pocket j against its ball is :math:`u_j = r\cdot e_t + s - y_j`; it meets the ball where
-:math:`|u_j| = c_p`, and leaves it where its penetration :math:`q_j` is back at zero. Both are known at the knots of a step
-from those of a few series, so that most are seen to stay without being followed.
+:math:`|u_j| = c_p`, and leaves it where its penetration :math:`q_j` is back at zero. Both are known at the
+knots of a step from those of a few series, so that most are seen to stay without being followed.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.coefficients import Coefficients
 from separatrix.cage.records import (
     AT_END,
     EARLY_BOUND,
@@ -17,6 +16,7 @@ from separatrix.cage.records import (
     ORDER,
     Balls,
     Candidate,
+    Coefficients,
     Room,
     Series,
     State,
@@ -39,12 +39,15 @@ from separatrix.cage.series import (
     top,
     value,
 )
-from separatrix.compiled import inlined_kernel, inner_kernel
+from separatrix.compiled import inlined_kernel
 from separatrix.units import Array
 
 GRAINS = 8.0
 """A pocket leaves its ball this many roundings of its place after their force is gone: a cage that comes to
 rest would else touch and leave without end, at forces of some 1e-11 N."""
+
+Place = tuple[float, float, float, float, float, float, float]
+"""Centre (x, y), slip s, and E_x, E_y, E_s and e of the pockets in touch."""
 
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
@@ -289,7 +292,7 @@ def meet_balls(
 
 
 @inlined_kernel
-def place_all(p: Coefficients, w: Series, t: float, room: Room) -> tuple[float, ...]:
+def place_all(p: Coefficients, w: Series, t: float, room: Room) -> Place:
     """Centre, slip and what pockets in touch follow, at a time; the waves go into their row `AT_END`."""
     for k in range(2 * p.harmonics):
         room.felt[AT_END, k] = value(w.felt[:, k], t)
@@ -300,14 +303,14 @@ def place_all(p: Coefficients, w: Series, t: float, room: Room) -> tuple[float, 
 
 
 @inlined_kernel
-def left_at(p: Coefficients, balls: Balls, row: Candidate, now: tuple[float, ...], room: Room) -> float:
+def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, room: Room) -> float:
     """What is queued, from the motion at a time by `place_all`: falls to zero at its event."""
     j = row.ball
     x, y, s, ex, ey, es, kept = now
     cos, sin = balls.cosine[j], balls.sine[j]
     if row.change == 0:
         sign = float(balls.side[j])
-        left = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
+        left: float = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
         return left - sign * gone_at(p, balls, room.felt, AT_END, j)
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
@@ -316,7 +319,10 @@ def left_at(p: Coefficients, balls: Balls, row: Candidate, now: tuple[float, ...
 
 @inlined_kernel
 def first_change(p: Coefficients, balls: Balls, w: Series, room: Room, filled: int) -> tuple[float, int, int]:
-    """Earliest of what is queued: its time, what happens, and to which ball (beyond the balls: their far side)."""
+    """Earliest of what is queued: its time, what happens, and to which ball.
+
+    A ball that is met on its negative side has its number plus that of the balls.
+    """
     end, kind, ball = 1.0, NOTHING, -1
     first, known = 0, False
     then = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 
-from separatrix.cage.coefficients import Coefficients
+from separatrix.cage.ending import Look
 from separatrix.cage.events import penetration
 from separatrix.cage.records import (
     CLEAR,
     RELEASED,
     STICK,
     Balls,
+    Coefficients,
     Ledger,
-    Look,
     Pace,
     Room,
     Samples,
@@ -218,7 +218,7 @@ def depth_at(
     if p.hertz != 0.0:
         return value(balls.depth[:, j], t)
     ex, ey, es, kept = grip
-    depth = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
+    depth: float = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
     for k in range(2 * p.harmonics):
         depth -= balls.drive[k, j] * value(w.felt[:, k], t)
     return depth
@@ -230,7 +230,7 @@ def pocket_energy(p: Coefficients, depth: float) -> float:
     # k q^2 / 2, or 2/5 K (q^2.5 - onset^2.5)
     size = abs(depth)
     if p.hertz != 0.0:
-        return 0.4 * p.hertz * (size**2.5 - p.onset**2.5)
+        return float(0.4 * p.hertz * (size**2.5 - p.onset**2.5))
     return 0.5 * p.stiffness * size * size
 
 

@@ -1,24 +1,24 @@
 r"""The motion of one mode as a power series in time.
 
 As long as no contact changes, the planar equations are solved by series whose coefficients follow one from
-the other: :math:`f(t) = \sum_n f_n t^n` has the derivative :math:`\dot f_n = (n + 1) f_{n+1}`. For springs, dampers and the
-turning frame the equations are linear and the series is the exponential of the mode, summed until the next term
-is below rounding; the land's normal, the unbalance and Hertz springs only add products and powers of series.
+the other: :math:`f(t) = \sum_n f_n t^n` has the derivative :math:`\dot f_n = (n + 1) f_{n+1}`. For springs,
+dampers and the turning frame the equations are linear and the series is the exponential of the mode, summed
+until the next term is below rounding; the land's normal, the unbalance and Hertz springs only add products
+and powers of series.
 
 All linear pockets yield at one rate :math:`a = k/C_\mu`, so that the penetration of pocket j,
 :math:`\dot q_j = \dot u_j - a q_j`, follows from what it was and from the cage's speeds, each filtered once:
 :math:`q_j(t) = q_j(0)\,e(t) + E_y \cos\phi_j - E_x \sin\phi_j + E_s`. The forces of any number of pockets
 sum to the same few series.
 
-Symbols are those of docs/theory/cage.md; in a ramp all speeds are a share :math:`\lambda(t) = \lambda_0 + \lambda' t` of their
-values, and the yielding of the balls too.
+Symbols are those of docs/theory/cage.md; in a ramp all speeds, and the yielding of the balls, are a share
+:math:`\lambda(t) = \lambda_0 + \lambda' t` of their values.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.coefficients import Coefficients
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
 from separatrix.cage.records import (
     CLEAR,
@@ -28,6 +28,7 @@ from separatrix.cage.records import (
     RELEASED,
     STICK,
     Balls,
+    Coefficients,
     Pace,
     Room,
     Series,
@@ -197,7 +198,8 @@ def centre_torque(w: Series, eccentricity: float, radius: float, n: int) -> floa
 @inner_kernel
 def spin_up_terms(w: Series, turning: float, spin_up: float, n: int) -> tuple[float, float]:
     """Coefficient n of the accelerations that a frame has more when its turning grows."""
-    # With Omega = Omega_0 + Omega' t: Omega' (y, -x) + 2 Omega' t (v_y, -v_x) + (2 Omega_0 Omega' t + Omega'^2 t^2) r
+    # With Omega = Omega_0 + Omega' t:
+    # Omega' (y, -x) + 2 Omega' t (v_y, -v_x) + (2 Omega_0 Omega' t + Omega'^2 t^2) r
     ax, ay = spin_up * w[n].y, -spin_up * w[n].x
     if n > 0:
         ax += 2.0 * spin_up * (w[n - 1].vy + turning * w[n - 1].x)
@@ -239,10 +241,10 @@ def hertz_forces(
 @inner_kernel
 def hertz_power(p: Coefficients, balls: Balls, j: int, n: int) -> float:
     """Coefficient n of K |q|^1.5 with the sign of q."""
-    start, side = balls.depth[0, j], balls.side[j]
+    start, side = float(balls.depth[0, j]), int(balls.side[j])
     if n == 0:
         size = side * start
-        return p.hertz * size * side * size**0.5
+        return float(p.hertz * size * side * size**0.5)
     # N = K q^1.5 has q dN/dt = 1.5 N dq/dt, whence n q_0 N_n = sum_(i<n) (1.5 (n - i) - i) q_(n-i) N_i
     total = 0.0
     for i in range(n):

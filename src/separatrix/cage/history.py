@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.cage.coefficients import time_unit
+from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ensemble import check_length, chosen, other_way_round, random_starts, run_rows
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.records import SOURCES, Evidence, Samples, dtype_of, samples_for

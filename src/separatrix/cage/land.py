@@ -2,15 +2,14 @@ r"""The land that guides a cage: a one-sided spring and damper with dry friction
 
 With n the direction of the centre, :math:`r = |r|\,n`, and t across it:
 :math:`\delta = |r| - c_g + a\cos m\beta`, :math:`P = K\delta + c\,\dot\delta`,
-:math:`v_s = \dot r\cdot t + q\,[R\dot\theta - (\omega_\text{ring} - \Omega) R]`. The lobes, of amplitude a and number
-m, turn with the cage: :math:`\beta` is the angle of n against it.
+:math:`v_s = \dot r\cdot t + q\,[R\dot\theta - (\omega_\text{ring} - \Omega) R]`. The lobes, of amplitude a
+and number m, turn with the cage: :math:`\beta` is the angle of n against it.
 """
 
 from __future__ import annotations
 
 import math
 
-from separatrix.cage.coefficients import Coefficients
 from separatrix.cage.events import (
     LAND_CLEAR,
     LAND_LEAVE,
@@ -20,7 +19,7 @@ from separatrix.cage.events import (
     SLIDE_STOP,
     larger,
 )
-from separatrix.cage.records import CLEAR, FORWARD, ORDER, RELEASED, STICK, Pace, Room, Series
+from separatrix.cage.records import CLEAR, FORWARD, ORDER, RELEASED, STICK, Coefficients, Pace, Room, Series
 from separatrix.cage.series import THIRD, Knots, centre, copy_column, first_zero, product
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array

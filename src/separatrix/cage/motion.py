@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from separatrix.cage.coefficients import Coefficients
+from separatrix.cage.ending import Look
 from separatrix.cage.events import (
     LAND_CLEAR,
     LAND_LEAVE,
@@ -27,8 +27,8 @@ from separatrix.cage.records import (
     RELEASED,
     STICK,
     Balls,
+    Coefficients,
     Ledger,
-    Look,
     Pace,
     Room,
     Samples,
@@ -116,8 +116,8 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
 def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
     """Coefficient n of the force of a pocket in touch."""
     if p.hertz != 0.0:
-        return balls.force[n, j]
-    depth = (
+        return float(balls.force[n, j])
+    depth: float = (
         balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
     )
     for k in range(2 * p.harmonics):
@@ -186,58 +186,29 @@ def rescale(p: Coefficients, balls: Balls, w: Series, count: int, h: float, pres
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
         t.s, t.vs = t.s * power, t.vs * power
-        power *= h
-    if count > 0 and p.hertz == 0.0:
-        power = h
-        for n in range(1, ORDER + 1):
-            t = w[n]
+        if count > 0 and p.hertz == 0.0:
             t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
-            power *= h
-    elif count > 0:
-        power = h
-        for n in range(1, ORDER + 1):
+        elif count > 0:
             for i in range(count):
                 balls.depth[n, balls.touching[i]] *= power
                 balls.force[n, balls.touching[i]] *= power
-            power *= h
-    if p.needs_rotation:
-        power = h
-        for n in range(1, ORDER + 1):
-            t = w[n]
+        if p.needs_rotation:
             t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
-            power *= h
-    if p.needs_frame:
-        power = h
-        for n in range(1, ORDER + 1):
-            t = w[n]
+        if p.needs_frame:
             for k in range(max(2, 2 * p.harmonics)):
                 t.frame[k] *= power
                 t.felt[k] *= power
                 t.gone[k] *= power
-            power *= h
-    if pressed:
-        power = h
-        for n in range(1, ORDER + 1):
-            t = w[n]
+        if pressed:
             t.nx, t.ny, t.depth = t.nx * power, t.ny * power, t.depth * power
             t.normal, t.tangent, t.sliding = t.normal * power, t.tangent * power, t.sliding * power
-            power *= h
-
-
-@inner_kernel
-def settle_stick(p: Coefficients, balls: Balls, w: Series, count: int, now: Pace, room: Room) -> int:
-    """Mode of a land on which nothing slides: it sticks if its friction suffices, else it starts to slide."""
-    # |F_t| <= mu P
-    expand(p, balls, w, count, STICK, now, room)
-    if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
-        return STICK
-    return BACKWARD if w[0].tangent > 0.0 else FORWARD
+        power *= h
 
 
 @inner_kernel
 def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
     """Speed at which the cage's surface slides on the ring's, from the first coefficients."""
-    # v_s = t . dr_g/dt + q [ds/dt - (omega_ring - Omega) R], with dr_g/dt = v + epsilon d(theta)/dt (sin, -cos)
+    # v_s = t . dr_g/dt + q [ds/dt - (omega_ring - Omega) R], dr_g/dt = v + epsilon d(theta)/dt (sin, -cos)
     start = w[0]
     gx, gy, vx, vy = start.x, start.y, start.vx, start.vy
     if p.eccentricity != 0.0:
@@ -262,7 +233,11 @@ def land_after(p: Coefficients, balls: Balls, w: Series, count: int, now: Pace, 
         sliding = first_sliding(p, w, now)
         if abs(sliding) > ROUNDING * (abs(w[0].vs) + abs(p.ring_slide)):
             return FORWARD if sliding > 0.0 else BACKWARD
-    return settle_stick(p, balls, w, count, now, room)
+    # Nothing slides: it sticks if |F_t| <= mu P, else it starts to slide
+    expand(p, balls, w, count, STICK, now, room)
+    if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
+        return STICK
+    return BACKWARD if w[0].tangent > 0.0 else FORWARD
 
 
 @inlined_kernel
@@ -286,7 +261,7 @@ def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
     if p.eccentricity != 0.0:
         x -= p.eccentricity * math.cos(state.s / p.radius)
         y -= p.eccentricity * math.sin(state.s / p.radius)
-    return y * balls.cosine[j] - x * balls.sine[j] + state.s
+    return float(y * balls.cosine[j] - x * balls.sine[j] + state.s)
 
 
 @inlined_kernel

@@ -7,14 +7,20 @@ acceleration have the unit of a length. Symbols are those of docs/theory/cage.md
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Hashable, Sequence
 from functools import cache
-from typing import Generic, NamedTuple, TypeVar, cast, get_type_hints
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, cast, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.units import Array
+from separatrix.cage.closed_forms import fastest_rate, rebound_damping, time_unit
+from separatrix.study import Guidance
+from separatrix.units import Array, MetrePerSecond
+
+if TYPE_CHECKING:
+    from separatrix.cage.planar import PlanarCage
 
 ORDER = 14
 """Terms of a series beyond the first; the step is so short that the last ones are small beside the speeds."""
@@ -35,9 +41,47 @@ each half of the step, and the value at an event."""
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
 """Modes of the land: not touched; dented but without force; touched and sticking, or sliding either way."""
 
+ONSET = 1e-5
+"""Depth at which a Hertz contact starts and ends, over that of an impact at the kick's speed: at zero depth
+the force has no power series. The force there is 3e-8 of the impact's largest."""
+
 Whole = NDArray[np.int64]
 Value = TypeVar("Value")
 Record = TypeVar("Record")
+
+
+class Coefficients(NamedTuple):
+    """Numbers of one cage and one kick."""
+
+    unit: float  # of time [s]
+    inertia: float  # J / (M R^2)
+    swiftness: float  # its inverse
+    radius: float  # R
+    turning: float  # Omega
+    stiffness: float  # k of a linear pocket
+    hertz: float  # K of a Hertz pocket; 0: linear
+    onset: float
+    yielding: float  # 1 / C_mu
+    friction: float  # sigma f over the cosine of the contact's tilt
+    slowest: float  # speed whose rounding is of no interest
+    gravity: float
+    eccentricity: float  # of the centre of mass
+    land_side: float  # q: 1 outer, -1 inner, 0 without a land
+    land_gap: float  # c_g
+    land_stiffness: float  # K of the land
+    land_damping: float  # c of the land
+    land_friction: float  # mu
+    ring_slide: float  # (omega_ring - Omega) R
+    roundness: float  # positive takes from the gap where the cosine is positive
+    lobes: int
+    harmonics: int
+    driven: float  # bound on the free speed of any ball
+    ramp_time: float
+    ramp_start: float
+    needs_rotation: bool
+    needs_frame: bool
+    gripped: bool  # no clearance: both sides of a pocket hold its ball
+    fastest: float  # bound on the rate of the motion in contact
 
 
 class Terms(Generic[Value]):
@@ -146,31 +190,6 @@ class Ledger:
 SOURCES = tuple(name for name in Ledger.__annotations__ if name != "gross")
 
 
-class Look:
-    """Tally of a look: integrals over its time unless stated."""
-
-    kinetic: float
-    offset: float
-    offset_squared: float
-    swept: float  # r x v
-    turning: float  # |v|^2 times the turning rate of the velocity
-    speed_squared: float
-    mean_x: float
-    mean_y: float
-    offset_max: float  # largest squared offset
-    force_max: float  # largest forces of pockets and land
-    land_max: float
-    steps: float  # number
-    land_hits: float  # number
-    pressed: float  # force of the land, and that times the sliding
-    rubbed: float
-    pocket_work: float  # work of both frictions, of balls that lead and lag, of gravity
-    land_work: float
-    ball_work: float
-    gravity_work: float
-    frame_work: float  # on a cage without clearance or land
-
-
 class Evidence:
     """Evidence of a run in SI units, but for forces, energies and powers, which are over the mass."""
 
@@ -269,7 +288,7 @@ class Room(NamedTuple):
 
 
 @cache
-def dtype_of(kind: type[object]) -> np.dtype[np.void]:
+def dtype_of(kind: Hashable) -> np.dtype[np.void]:
     """Type of the structured array of a record; an array within it has the length `WAVES`."""
     fields: list[tuple[str, object, tuple[int, ...]]] = []
     for name, hint in get_type_hints(kind).items():
@@ -280,7 +299,7 @@ def dtype_of(kind: type[object]) -> np.dtype[np.void]:
 
 def records(kind: type[Record], count: int) -> Sequence[Record]:
     """Array of records, all zero."""
-    return cast("Sequence[Record]", np.zeros(count, dtype_of(kind)))
+    return cast("Sequence[Record]", np.zeros(count, dtype_of(cast("Hashable", kind))))
 
 
 def series() -> Series:
@@ -310,3 +329,60 @@ def room_for(balls: int, lobes: int) -> Room:
         queue=records(Candidate, 2 * balls),
         lobes=np.zeros((POWERS, 2 * lobes)),
     )
+
+
+def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
+    """Numbers of a cage as a record, which kernels hand on by its address instead of copying 29 numbers."""
+    T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
+    side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
+    tilt = cage.pocket_tilt[0]
+    K = 0.0 if cage.hertz_coefficient is None else cage.hertz_coefficient * tilt**2.5
+    harmonics = len(cage.orbital_cosines)
+    land_stiffness = cage.land_count * cage.land_stiffness
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(land_stiffness * M)
+    sign = -1.0 if cage.guidance is Guidance.INNER and cage.land_lobes % 2 else 1.0
+    numbers = Coefficients(
+        unit=T,
+        inertia=cage.moment_of_inertia / (M * R * R),
+        swiftness=M * R * R / cage.moment_of_inertia,
+        radius=R,
+        turning=cage.cage_speed * T,
+        stiffness=cage.ball_cage_stiffness * tilt**2 * T * T / M,
+        hertz=K * T * T / M,
+        onset=ONSET * (1.25 * M * kick**2 / K) ** 0.4 if K > 0.0 else 0.0,
+        yielding=M / (cage.race_damping * T),
+        friction=cage.friction_sense * cage.ball_cage_friction / tilt,
+        slowest=1e-2 * kick * T,
+        gravity=cage.gravity * T * T,
+        eccentricity=cage.unbalance / M,
+        land_side=side,
+        land_gap=cage.land_gap,
+        land_stiffness=land_stiffness * T * T / M,
+        land_damping=damping * T / M,
+        land_friction=cage.land_friction,
+        ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * R * T,
+        roundness=sign * cage.land_out_of_round,
+        lobes=cage.land_lobes,
+        harmonics=harmonics,
+        driven=float(np.sum(np.hypot(cage.orbital_cosines, cage.orbital_sines))) * T,
+        ramp_time=cage.ramp_time / T,
+        ramp_start=cage.ramp_start,
+        needs_rotation=cage.unbalance != 0.0 or cage.land_out_of_round != 0.0,
+        needs_frame=harmonics > 0 or cage.gravity > 0.0,
+        gripped=cage.half_play == 0.0,
+        fastest=fastest_rate(cage) * T,
+    )
+    return cast("Coefficients", np.array([tuple(numbers)], dtype_of(Coefficients))[0])
+
+
+def balls_of(cage: PlanarCage) -> Balls:
+    """Room for the balls of a cage, with their free speed as they go round, in metres by the unit of time."""
+    angles, count, waves = np.array(cage.ball_angles), cage.ball_count, []
+    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
+        c, s = np.cos(h * angles), np.sin(h * angles)
+        waves += [a * c + b * s, b * c - a * s]
+    drive = np.array(waves).reshape(len(waves), count) * time_unit(cage)
+    cosine, sine, play, lead, penetration = np.zeros((5, count))
+    side, touching = np.zeros((2, count), np.int64)
+    depth, force = np.zeros((2, POWERS, count))
+    return Balls(cosine, sine, play, lead, penetration, drive, side, touching, depth, force)

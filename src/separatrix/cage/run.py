@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.random import Generator, Philox
 
-from separatrix.cage.coefficients import Coefficients
 from separatrix.cage.ending import (
     FED,
     FEWEST_LOOKS,
@@ -19,6 +18,7 @@ from separatrix.cage.ending import (
     UNKNOWN,
     UNRESOLVED,
     Limits,
+    Look,
     Memory,
     end_by_trend,
     fed,
@@ -32,9 +32,9 @@ from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.cage.records import (
     CLEAR,
     Balls,
+    Coefficients,
     Evidence,
     Ledger,
-    Look,
     Room,
     Samples,
     Series,
@@ -115,9 +115,7 @@ def watch(
         gravity, frame = ledger.gravity, ledger.moving_frame
         going, beat = True, 0
         while going and beat < limits.beats and kinetic(p, state) < limits.grown:
-            going = advance(
-                p, balls, state, w, ledger, look, hits, limits.beat, limits.grown, samples, room
-            )
+            going = advance(p, balls, state, w, ledger, look, hits, limits.beat, limits.grown, samples, room)
             beat += 1
         look.pocket_work = ledger.pocket_friction - pocket
         look.land_work = ledger.land_friction - land
@@ -129,8 +127,8 @@ def watch(
         if not (going and np.isfinite(energy + look.kinetic)):
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
-        hit = np.sum(hits)
-        met = state.touching > 0 or hit > touches
+        hit = int(np.sum(hits))
+        met = bool(state.touching > 0 or hit > touches)
         touches = hit
         touched = touched or met or look.land_hits > 0.0
         if outcome == UNKNOWN:

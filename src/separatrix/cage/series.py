@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.coefficients import Coefficients
-from separatrix.cage.records import ORDER, Series
+from separatrix.cage.records import ORDER, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -36,7 +35,10 @@ HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER
 EARLY, LATE = _FOURTH * 0.5**_POWER, _FOURTH * 0.5**4
 
 Knots = tuple[float, float, float, float, float, float]
-"""Value and slope of a series at the start, in the middle and at the end of a step; slopes times half the step."""
+"""Value and slope of a series at the start, in the middle and at the end of a step.
+
+Slopes are times half the step.
+"""
 
 Motion = tuple[float, float, float, float, float, float]
 """Centre of mass (x, y), its velocity, slip of rotation and its rate."""
@@ -55,7 +57,7 @@ def product(a: Array, b: Array, n: int) -> float:
 @inlined_kernel
 def value(c: Array, t: float) -> float:
     """Value of a series at a time."""
-    total = c[ORDER]
+    total: float = c[ORDER]
     for n in range(ORDER - 1, -1, -1):
         total = total * t + c[n]
     return total
@@ -64,7 +66,7 @@ def value(c: Array, t: float) -> float:
 @inner_kernel
 def slope(c: Array, t: float) -> float:
     """Derivative of a series at a time."""
-    total = ORDER * c[ORDER]
+    total: float = ORDER * c[ORDER]
     for n in range(ORDER - 1, 0, -1):
         total = total * t + n * c[n]
     return total
@@ -253,9 +255,7 @@ def cubic_zero(start: float, start_slope: float, last: float, last_slope: float)
 
 
 @inlined_kernel
-def earliest_zero(
-    c: Array, at: Knots, sign: float, early: int, late: int, end: float, noise: float
-) -> float:
+def earliest_zero(c: Array, at: Knots, sign: float, early: int, late: int, end: float, noise: float) -> float:
     """First zero as by `first_zero`, where it is known what each half of the step does, and the knots."""
     start, rise, middle, turn, last, fall = at
     if early == FALLS:
@@ -324,7 +324,7 @@ def peak(c: Array, sign: float, end: float) -> float:
     for n in range(ORDER - 1, -1, -1):
         last_slope = last_slope * end + last
         last = last * end + c[n]
-    largest = max(sign * c[0], sign * last)
+    largest: float = max(sign * c[0], sign * last)
     if sign * c[1] <= 0.0 or sign * last_slope >= 0.0:
         return largest
     low, high, step = 0.0, end, 0.0
@@ -346,4 +346,4 @@ def peak(c: Array, sign: float, end: float) -> float:
         if abs(step) < LAST_TURN:
             break
         t += step
-    return max(largest, sign * (g + 0.5 * d * step))
+    return max(largest, float(sign * (g + 0.5 * d * step)))

@@ -149,7 +149,7 @@ def cage(state: Any) -> Document:
 
 def simulation(record: Any) -> Document:
     """Return the course of one run, how it ended, and the cage."""
-    from separatrix.cage.drive import drift_rate_law
+    from separatrix.cage.closed_forms import drift_rate_law
 
     history = record.history
     return (

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage, settings_for
-from separatrix.cage.drive import drift_rate_law, drifts
+from separatrix.cage.closed_forms import drift_rate_law, drifts
 from separatrix.ledger import Ledger
 from separatrix.runner import Progress, Runner
 from separatrix.stability.growth import GrowthCounter
