@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from separatrix.equilibrium import Equilibrium
-from separatrix.equilibrium.free import LEAST_SHARE
+from separatrix.equilibrium.balance import LEAST_SHARE
 from separatrix.hertz import ContactEllipse
 from separatrix.study import BallBearing, KinematicModel, Race
 from separatrix.units import Pascal, Radian, Ratio, format_quantity

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Material, Race
 from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
@@ -138,7 +138,7 @@ def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pasca
         )
 
 
-@kernel
+@part
 def elliptic_integrals(k: float) -> tuple[float, float, float]:
     """K(m), (K - E)/m and (E - k^2 K)/m for m = 1 - k^2 from k in (0, 1]: AGM, without cancellation."""
     # K = pi/(2 agm); K - E = K S, S = sum 2^(n-1) c_n^2, c_0^2 = m; terms are divided by m = (1-k)(1+k).
@@ -178,7 +178,7 @@ def ellipse_shape(ratio: float, guess: float) -> tuple[float, float, float]:
     return k, K, D
 
 
-@kernel
+@part
 def approach_coefficient(
     curvature_rolling: float, curvature_transverse: float, modulus: float, guess: float
 ) -> tuple[float, float, float]:

@@ -8,8 +8,8 @@ from scipy.optimize import brentq
 
 from separatrix.study import Material
 from separatrix.traction import dundurs_coupling, solve_strip
-from separatrix.traction.influence import node_positions, node_pressure, strip_influence
 from separatrix.traction.master import film_tables, master_traction, matched_knots, nested_sticks
+from separatrix.traction.strip import node_positions, node_pressure, strip_influence
 
 
 def toeplitz(nodes, lam):

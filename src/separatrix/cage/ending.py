@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from separatrix.cage.closed_forms import drifts, drive_energy, room, time_unit
 from separatrix.cage.planar import RunOutcome
-from separatrix.compiled import kernel
+from separatrix.compiled import part
 
 if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
@@ -192,7 +192,7 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
     return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
 
 
-@kernel
+@part
 def mean_energy(looks: Sequence[Look], first: int, last: int, length: float) -> float:
     """Mean kinetic energy of the looks from `first` to before `last`, each of this length."""
     total = 0.0
@@ -201,7 +201,7 @@ def mean_energy(looks: Sequence[Look], first: int, last: int, length: float) -> 
     return total / ((last - first) * length)
 
 
-@kernel
+@part
 def mean_offset(looks: Sequence[Look], first: int, last: int, length: float) -> float:
     """Mean offset in the looks from `first` to before `last`."""
     total = 0.0
@@ -210,7 +210,7 @@ def mean_offset(looks: Sequence[Look], first: int, last: int, length: float) -> 
     return total / ((last - first) * length)
 
 
-@kernel
+@part
 def fed(looks: Sequence[Look], first: int, last: int) -> tuple[float, float, float]:
     """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
     pocket = land = balls = gravity = frame = 0.0
@@ -226,13 +226,13 @@ def fed(looks: Sequence[Look], first: int, last: int) -> tuple[float, float, flo
     return pocket, pocket / put_in, land / put_in
 
 
-@kernel
+@part
 def high_end(looks: Sequence[Look], end: int) -> int:
     """`WHIRLS` if pocket friction feeds a motion that grows without limit, else `SETTLES`."""
     return WHIRLS if fed(looks, max(0, end - FED), end)[1] > HALF else SETTLES
 
 
-@kernel
+@part
 def plain_end(looks: Sequence[Look], i: int, length: float, met: bool, limits: Limits, memory: Memory) -> int:
     """Outcome that is plain after look i; `UNKNOWN` if none is."""
     mean = looks[i].kinetic / length
@@ -265,7 +265,7 @@ def plain_end(looks: Sequence[Look], i: int, length: float, met: bool, limits: L
     return at_rest(looks, i + 1, limits.window, share, length, limits)
 
 
-@kernel
+@part
 def keeps_up(looks: Sequence[Look], end: int, length: float) -> bool:
     """Whether the last half of the last `LOOKS_FAR` looks has no less energy than the half before."""
     middle = end - LOOKS_FAR // 2
@@ -273,7 +273,7 @@ def keeps_up(looks: Sequence[Look], end: int, length: float) -> bool:
     return mean_energy(looks, middle, end, length) >= (1.0 - EVEN) * before
 
 
-@kernel
+@part
 def kept_up(looks: Sequence[Look], end: int, length: float, limits: Limits) -> bool:
     """Whether pocket friction kept up the motion in its place for a whole duration, in both its halves."""
     first, middle = end - limits.looks, end - limits.looks // 2
@@ -286,7 +286,7 @@ def kept_up(looks: Sequence[Look], end: int, length: float, limits: Limits) -> b
     return min(pockets, still) > HALF and work + more > TURNED_OVER * after and moved <= limits.held
 
 
-@kernel
+@part
 def at_rest(looks: Sequence[Look], end: int, quiet: int, share: float, length: float, limits: Limits) -> int:
     """`SETTLES` at rest, or where pocket friction put in at most this share over this many quiet looks."""
     first, half = end - limits.window, limits.window // 2
@@ -301,7 +301,7 @@ def at_rest(looks: Sequence[Look], end: int, quiet: int, share: float, length: f
     return SETTLES if pockets <= share or work < mean else UNKNOWN
 
 
-@kernel
+@part
 def arrived(looks: Sequence[Look], end: int, length: float, limits: Limits) -> bool:
     """Whether the cage is in its place: on its land if anything moves it, and no further than before."""
     half = limits.window // 2
@@ -310,7 +310,7 @@ def arrived(looks: Sequence[Look], end: int, length: float, limits: Limits) -> b
     return late >= limits.reach and abs(late - early) <= limits.place
 
 
-@kernel
+@part
 def end_by_trend(looks: Sequence[Look], end: int, length: float, limits: Limits) -> int:
     """Outcome of the longest run, by its last fifth and the looks half way."""
     n, middle = end // FEWEST_LOOKS, end // 2

@@ -18,7 +18,7 @@ from separatrix.cage.ending import GROWN, energy_scale
 from separatrix.cage.ensemble import Ensemble, chosen, gathered, random_starts, settings_for, spread
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.records import Evidence, dtype_of, records
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.errors import InputError
 from separatrix.units import Array
 
@@ -73,7 +73,7 @@ class Flight:
     peak: float  # largest force of an undamped spring
 
 
-@kernel
+@part
 def fly(p: Walls, s: Flight, dt: float) -> None:
     """Advance the free motion exactly: a line in space, seen in the turning frame."""
     W = p.turning
@@ -86,13 +86,13 @@ def fly(p: Walls, s: Flight, dt: float) -> None:
     s.theta += s.spin * dt
 
 
-@kernel
+@part
 def energy_of(p: Walls, s: Flight) -> float:
     """Kinetic energy in the turning frame [J]."""
     return 0.5 * (p.mass * (s.vx**2 + s.vy**2) + p.inertia * s.spin**2)
 
 
-@kernel
+@part
 def next_impact(
     p: Walls, cos: Array, sin: Array, lead: Array, s: Flight, longest: float
 ) -> tuple[float, int, float]:
@@ -121,7 +121,7 @@ def next_impact(
     return first, ball, side
 
 
-@kernel
+@part
 def coast(p: Walls, s: Flight, dt: float) -> None:
     """Fly freely for a time, and note the frame's work and the energy in the last fifth of the run."""
     before, swept, far = energy_of(p, s), s.x * s.vy - s.y * s.vx, s.x * s.x + s.y * s.y
@@ -138,7 +138,7 @@ def coast(p: Walls, s: Flight, dt: float) -> None:
     s.area += dt * (far + farther)
 
 
-@kernel
+@part
 def impact(p: Walls, c: float, i: float, s: Flight, side: float) -> None:
     """Impact of the ball in direction (c, i), if its pocket comes at it, and note its work."""
     before = energy_of(p, s)
@@ -160,7 +160,7 @@ def impact(p: Walls, c: float, i: float, s: Flight, side: float) -> None:
     s.peak = max(s.peak, speed * np.sqrt(p.stiffness * p.struck))
 
 
-@kernel
+@part
 def go(p: Walls, cos: Array, sin: Array, lead: Array, s: Flight, grown: float) -> int:
     """Go from impact to impact until the time is over, the energy has grown, or impacts come in no time."""
     horizon = p.duration if p.turning == 0.0 else min(p.duration, 0.1 / abs(p.turning))

@@ -44,7 +44,7 @@ from separatrix.cage.records import (
     room_for,
     series,
 )
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
 DRIFTS = int(RunOutcome.DRIFTS)
@@ -76,7 +76,7 @@ def books_for(balls: int, lobes: int, runs: int, most: int) -> Books:
     )
 
 
-@kernel
+@part
 def held_energy(p: Coefficients, balls: Balls, count: int) -> float:
     """Energy in the pockets' springs, over the mass."""
     held = 0.0
@@ -85,7 +85,7 @@ def held_energy(p: Coefficients, balls: Balls, count: int) -> float:
     return held
 
 
-@kernel
+@part
 def watch(
     p: Coefficients,
     balls: Balls,
@@ -152,7 +152,7 @@ def watch(
     return outcome, judged, BY_LAND if lively and fed(looks, first, judged)[2] > HALF else NONE
 
 
-@kernel
+@part
 def offset_of(looks: Sequence[Look], first: int, last: int) -> float:
     """Distance of the mean place in some looks from the axis, times their time."""
     x = y = 0.0
@@ -162,7 +162,7 @@ def offset_of(looks: Sequence[Look], first: int, last: int) -> float:
     return float(np.hypot(x, y))
 
 
-@kernel
+@part
 def drift_rate(looks: Sequence[Look], end: int, window: int) -> float:
     """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset.
 
@@ -175,7 +175,7 @@ def drift_rate(looks: Sequence[Look], end: int, window: int) -> float:
     return float(np.log(last / before) / n) if last > 0.0 and before > 0.0 else 0.0
 
 
-@kernel
+@part
 def growth(looks: Sequence[Look], end: int, length: float, start: float) -> float:
     """Half the logarithmic rate of the mean energy from half way to the last fifth.
 
@@ -192,7 +192,7 @@ def growth(looks: Sequence[Look], end: int, length: float, start: float) -> floa
     return float(0.5 * np.log(max(last, least) / max(before, least)) / (span * length))
 
 
-@kernel
+@part
 def imbalance(
     p: Coefficients, balls: Balls, state: State, w: Series, ledger: Ledger, start: float, room: Room
 ) -> float:
@@ -204,7 +204,7 @@ def imbalance(
     return abs(unexplained) / (ledger.gross + start)
 
 
-@kernel
+@part
 def run_one(
     p: Coefficients,
     balls: Balls,
@@ -253,7 +253,7 @@ def run_one(
     enter_end(p, looks, end, length, limits, out)
 
 
-@kernel
+@part
 def enter_end(
     p: Coefficients, looks: Sequence[Look], end: int, length: float, limits: Limits, out: Evidence
 ) -> None:

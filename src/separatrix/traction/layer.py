@@ -15,11 +15,11 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import expm
 
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Film, Material
-from separatrix.traction.influence import log_kernel
 from separatrix.traction.master import MasterTable, master_tables
+from separatrix.traction.strip import log_kernel
 from separatrix.units import Array, Metre, Pascal, Ratio
 
 TERMS = 16  # exponentials exp(-j kh/2) that carry c(kh); the test measures what they leave
@@ -144,7 +144,7 @@ def _monomials() -> Array:
     return rows
 
 
-@kernel
+@part
 def _smooth_kernel(x: float, half_width: float, depth: float) -> float:
     """As `log_kernel`, for exp(-k depth)/k: -(1/pi) ln(x^2 + depth^2) integrated over the element."""
     displacement = 0.0

@@ -8,11 +8,10 @@ import numpy as np
 
 from separatrix.creep import Creep
 from separatrix.hertz import ContactEllipse
+from separatrix.traction.curve import ScaledContact, scaled_contact
 from separatrix.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, strip_places
-from separatrix.traction.influence import strip_influence
 from separatrix.traction.layer import BondedLayer, strip_layer
-from separatrix.traction.scaled import ScaledContact, scaled_contact
-from separatrix.traction.strip import StripSolution, solve_strip, stick_solution
+from separatrix.traction.strip import StripSolution, solve_strip, stick_solution, strip_influence
 from separatrix.units import Array, Ratio
 
 
