@@ -109,20 +109,20 @@ def learn_wave(c: Array, k: int, waves: Array) -> None:
 
 
 @inlined_kernel
-def gone_at(p: Coefficients, balls: Balls, waves: Array, row: int, j: int) -> float:
+def gone_at(p: Coefficients, balls: Balls, knot: Array, j: int) -> float:
     """How far ball j has gone at a knot by its free speed, or how fast it goes."""
     total = 0.0
     for k in range(2 * p.harmonics):
-        total += balls.drive[k, j] * waves[row, k]
+        total += balls.drive[k, j] * knot[k]
     return total
 
 
 @inlined_kernel
-def bend_of(p: Coefficients, balls: Balls, waves: Array, row: int, j: int) -> float:
+def bend_of(p: Coefficients, balls: Balls, bound: Array, j: int) -> float:
     """Bound of the fourth derivative of that way in one half of the step."""
     total = 0.0
     for k in range(2 * p.harmonics):
-        total += abs(balls.drive[k, j]) * waves[row, k]
+        total += abs(balls.drive[k, j]) * bound[k]
     return total
 
 
@@ -178,13 +178,13 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
         fall = sign * held(q, cos, sin, ex[5], ey[5], es[5], kept[5])
         early, late = off, late_off
         if waves > 0:
-            rise -= sign * gone_at(p, balls, room.felt, 1, j)
-            middle -= sign * gone_at(p, balls, room.felt, 2, j)
-            turn -= sign * gone_at(p, balls, room.felt, 3, j)
-            last -= sign * gone_at(p, balls, room.felt, 4, j)
-            fall -= sign * gone_at(p, balls, room.felt, 5, j)
-            early += bend_of(p, balls, room.felt, EARLY_BOUND, j)
-            late += bend_of(p, balls, room.felt, LATE_BOUND, j)
+            rise -= sign * gone_at(p, balls, room.felt[1], j)
+            middle -= sign * gone_at(p, balls, room.felt[2], j)
+            turn -= sign * gone_at(p, balls, room.felt[3], j)
+            last -= sign * gone_at(p, balls, room.felt[4], j)
+            fall -= sign * gone_at(p, balls, room.felt[5], j)
+            early += bend_of(p, balls, room.felt[EARLY_BOUND], j)
+            late += bend_of(p, balls, room.felt[LATE_BOUND], j)
         deepest = larger(deepest, top(start, rise, middle, turn, early))
         deepest = larger(deepest, top(middle, turn, last, fall, late))
         at = (start, rise, middle, turn, last, fall)
@@ -277,13 +277,13 @@ def meet_balls(
         a, b, c, d, e, f = places_of(balls, j, x, y, s)
         early, late = off, late_off
         if waves > 0:
-            b -= gone_at(p, balls, room.gone, 1, j)
-            c -= gone_at(p, balls, room.gone, 2, j)
-            d -= gone_at(p, balls, room.gone, 3, j)
-            e -= gone_at(p, balls, room.gone, 4, j)
-            f -= gone_at(p, balls, room.gone, 5, j)
-            early += bend_of(p, balls, room.gone, EARLY_BOUND, j)
-            late += bend_of(p, balls, room.gone, LATE_BOUND, j)
+            b -= gone_at(p, balls, room.gone[1], j)
+            c -= gone_at(p, balls, room.gone[2], j)
+            d -= gone_at(p, balls, room.gone[3], j)
+            e -= gone_at(p, balls, room.gone[4], j)
+            f -= gone_at(p, balls, room.gone[5], j)
+            early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
+            late += bend_of(p, balls, room.gone[LATE_BOUND], j)
         for side in (1, -1):
             sign = float(side)
             gap = (play - sign * a, -sign * b, play - sign * c, -sign * d, play - sign * e, -sign * f)
@@ -311,10 +311,10 @@ def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, room: Roo
     if row.change == 0:
         sign = float(balls.side[j])
         left: float = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
-        return left - sign * gone_at(p, balls, room.felt, AT_END, j)
+        return left - sign * gone_at(p, balls, room.felt[AT_END], j)
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
-    return left - sign * gone_at(p, balls, room.gone, AT_END, j)
+    return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 
 @inlined_kernel

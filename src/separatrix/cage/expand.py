@@ -32,6 +32,7 @@ from separatrix.cage.records import (
     Pace,
     Room,
     Series,
+    State,
     Sums,
 )
 from separatrix.cage.series import centre, product
@@ -66,27 +67,9 @@ def gather(balls: Balls, waves: int, count: int, sums: Sums) -> None:
 
 
 @inlined_kernel
-def expand(p: Coefficients, balls: Balls, w: Series, count: int, land: int, now: Pace, room: Room) -> None:
-    """Fill the series of the motion from the state in their first coefficients.
-
-    Parameters
-    ----------
-    p : Coefficients
-        The cage.
-    balls : Balls
-        Its balls and pockets.
-    w : Series
-        Series of the step.
-    count : int
-        How many pockets touch their balls.
-    land : int
-        Mode of the land.
-    now : Pace
-        Share of the full speed, and its rate.
-    room : Room
-        Room for the sums.
-    """
-    share, rise, sums = now.share, now.rise, room.sums
+def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, room: Room) -> None:
+    """Fill the series of the motion from the state in their first coefficients."""
+    count, land, share, rise, sums = state.touching, state.land, now.share, now.rise, room.sums
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
     yielding, softer = p.yielding * p.stiffness * share, p.yielding * p.stiffness * rise

@@ -220,24 +220,29 @@ def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
 
 
 @inner_kernel
-def land_after(p: Coefficients, balls: Balls, w: Series, count: int, now: Pace, kind: int, room: Room) -> int:
+def change_land(
+    p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, kind: int, room: Room
+) -> None:
     """Mode of the land after a change; the series' first coefficients hold the state."""
     if kind == LAND_CLEAR:
-        return CLEAR
+        state.land = CLEAR
+        return
     if kind == LAND_LEAVE:
         land_geometry(p, w, room.lobes, 0)
-        return RELEASED if w[0].depth > ROUNDING * p.land_gap else CLEAR
-    if kind == SLIDE_START:
-        return BACKWARD if w[0].tangent > 0.0 else FORWARD
+        state.land = RELEASED if w[0].depth > ROUNDING * p.land_gap else CLEAR
+        return
     if kind in (LAND_TOUCH, LAND_PRESS):
         sliding = first_sliding(p, w, now)
         if abs(sliding) > ROUNDING * (abs(w[0].vs) + abs(p.ring_slide)):
-            return FORWARD if sliding > 0.0 else BACKWARD
-    # Nothing slides: it sticks if |F_t| <= mu P, else it starts to slide
-    expand(p, balls, w, count, STICK, now, room)
-    if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
-        return STICK
-    return BACKWARD if w[0].tangent > 0.0 else FORWARD
+            state.land = FORWARD if sliding > 0.0 else BACKWARD
+            return
+    if kind != SLIDE_START:
+        # Nothing slides: it sticks if |F_t| <= mu P, else it starts to slide
+        state.land = STICK
+        expand(p, balls, w, state, now, room)
+        if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
+            return
+    state.land = BACKWARD if w[0].tangent > 0.0 else FORWARD
 
 
 @inlined_kernel
@@ -365,7 +370,7 @@ def advance(
         now, land = pace_at(p, state.clock), state.land
         pressed = land != CLEAR and land != RELEASED
         load_state(p, balls, state, w)
-        expand(p, balls, w, state.touching, land, now, room)
+        expand(p, balls, w, state, now, room)
         if pressed and land != STICK:
             for n in range(ORDER + 1):
                 w[n].sliding = slide_speed(p, w, now, n)
@@ -389,7 +394,7 @@ def advance(
             leave_ball(p, balls, w, state, ball, h, end)
         elif kind != NOTHING:
             load_state(p, balls, state, w)
-            state.land = land_after(p, balls, w, state.touching, now, kind, room)
+            change_land(p, balls, w, state, now, kind, room)
             look.land_hits += kind == LAND_TOUCH
     look.steps += taken
     return True
