@@ -19,7 +19,7 @@ from separatrix.equilibrium.problem import Problem, Work
 from separatrix.units import Array
 
 STEEPEST = 1.4
-"""Largest contact angle for which kinematics are asked [rad]."""
+"""Largest contact angle for which kinematics are computed [rad]."""
 
 
 @part

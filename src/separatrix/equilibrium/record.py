@@ -14,23 +14,23 @@ from separatrix.units import Array, Metre, Newton, NewtonMetre, Radian
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Equilibrium:
-    """Loads, angles and speeds of every ball, and where the inner ring stands; arrays have shape (ball,).
+    """Loads, angles and speeds of every ball, and displacements of the inner ring; arrays have shape (ball,).
 
-    `azimuth` is counted from the radial load, turning as the +x axis says; x is the bearing axis along
+    `azimuth` is counted from the radial load, positive about the +x axis; x is the bearing axis along
     positive axial load. Angles [rad], loads [N], speeds [rad/s] or [m/s]. `ball_spin`, shape (ball, 3), is
     the spin in the frame that turns with the ball's orbit: along x, outward, and along the orbit [rad/s].
     `pitch_angle` leans the spin axis in the plane of the ball, positive as a contact angle is; `yaw_angle`
     out of it, along the orbit. `spin_roll_ratio_*` are the paper's Eq. 16, `rolling_speed_*` the mean speed
     of both surfaces through the contact. `gyroscopic_moment` is a magnitude [N m].
 
-    A contact that carries nothing has `inner_contact` or `outer_contact` False and load 0. Its angle is
+    A contact without load has `inner_contact` or `outer_contact` False and load 0. Its angle is
     nominal: that of the line from the ball to the centre of the groove, turned towards the radial direction
     as the gap opens, and within 90 degrees; orbit and spin are those of the first touch.
     `axial_displacement` counts from first contact at the free angle. `moment` is what the balls carry: the
     load, or the reaction to rings that are held (`is_tilt_held`, parallel or at a given tilt); positive loads
     the balls at azimuth 0, as positive `tilt` does. `cross_tilt` (about the radial load) and
     `transverse_displacement` lie across the plane of the radial load. `residual` is the unbalanced force of
-    the ring [N]. `race_control` says which race Jones's criterion would let control the ball.
+    the ring [N]. `race_control` is the race that controls the ball by Jones's criterion.
     """
 
     model: KinematicModel

@@ -26,7 +26,7 @@ NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the
 INTERPOLATION = (
     3e-4  # largest relative error of a slope by the interpolation of the tables (measured in the tests)
 )
-RIGID = 1e-9  # saturation creep over the largest creep that stands for the limit of no friction
+RIGID = 1e-9  # saturation creep over the largest creep that represents the limit of no friction
 
 Tables = Callable[[int], tuple[MasterTable, MasterTable]]
 
@@ -35,7 +35,7 @@ Tables = Callable[[int], tuple[MasterTable, MasterTable]]
 class ScaledContact:
     """Spin sigma = s a/xi_s, Heathcote eta = q a^2/xi_s, film lam = L E*/b; xi_s = 2 mu p0/E*.
 
-    Under a bonded layer `lam` is h/b. `steepness` is mu/xi_s; `idle` says that nothing is transmitted: no
+    Under a bonded layer `lam` is h/b. `steepness` is mu/xi_s; `idle`: nothing is transmitted, for no
     friction or no load.
     """
 
@@ -278,7 +278,7 @@ def _checked_case(
     if layer is None and thickness > THIN * ellipse.semi_minor > 0.0:
         warnings.warn(
             f"film of {thickness:g} m is {thickness / ellipse.semi_minor:.3g} of the semi-minor axis: "
-            f"a film in series with the half-planes holds up to {THIN:g} (docs/theory/traction.md).",
+            f"a film in series with the half-planes is valid up to {THIN:g} (docs/theory/traction.md).",
             ValidityWarning,
             stacklevel=3,
         )

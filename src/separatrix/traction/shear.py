@@ -17,7 +17,7 @@ from separatrix.units import Array, Ratio
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShearField:
-    """Traction over the ellipse from direct strips; arrays of shape (strip, node) unless said.
+    """Traction over the ellipse from direct strips; arrays of shape (strip, node) unless stated.
 
     across : y of the strips, shape (strip,) [m]; along : x of the elements, leading edge first [m];
     creep_ratio : xi of the strips, shape (strip,) [-]; pressure, shear, shear_without_slip [Pa]; slip : 0 in
