@@ -14,9 +14,9 @@ from collections import Counter
 from dataclasses import replace
 
 from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
+from separatrix.limits import SEARCHED_FRICTION, cage_at, critical_friction
 from separatrix.runner import Runner
-from separatrix.stability import SEARCHED_FRICTION, cage_at, critical_friction
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -58,7 +58,7 @@ def report(pairs: Pairs) -> str:
 def main() -> None:
     """Count over all restitution factors."""
     study = read_study("cryogenic-turbopump")
-    cage, total = cage_state(study).cage, Counter[tuple[Verdict, ...]]()
+    cage, total = solve(study).cage, Counter[tuple[Verdict, ...]]()
     for eta in [float(text) for text in sys.argv[1:]] or FACTORS:
         found = pairs_at(cage, study.stability, eta)
         total += found

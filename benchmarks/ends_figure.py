@@ -16,7 +16,7 @@ import numpy as np
 
 from separatrix.cage import simulate
 from separatrix.cage.closed_forms import drive_energy
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
 from separatrix.study_file import read_study
 
 mpl.use("Agg")
@@ -39,7 +39,7 @@ def main() -> None:
     warnings.simplefilter("ignore")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
     for label, study, friction, kick, colour, line in RUNS:
-        cage = replace(cage_state(read_study(study), friction=0.1).cage, ball_cage_friction=friction)
+        cage = replace(solve(read_study(study)).cage_with(0.1), ball_cage_friction=friction)
         run = simulate(cage, kick=kick, samples=60_000)
         edges = np.geomspace(0.5e-3, run.time[-1], BINS)
         places = np.searchsorted(run.time, edges)

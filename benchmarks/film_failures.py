@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "physics"))
 from synthetic_friction import Recipe, made, recipes
 
 from separatrix.cage import wilson_interval
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.friction.reduction import reduce_log
 
 SEED = 60606
 PLACES, SIZES = (0.05, 0.3), (2.0, 5.0)

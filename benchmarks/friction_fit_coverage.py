@@ -19,9 +19,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage import wilson_interval
-from separatrix.friction_fit import FrictionTest, fit_friction
-from separatrix.friction_fit.components import variance_components
-from separatrix.friction_fit.fit import FrictionFit, MaterialFit, linear_model
+from separatrix.friction.fit import FrictionFit, MaterialFit, fit_friction, linear_model
+from separatrix.friction.records import FrictionTest
+from separatrix.friction.scatter import variance_components
 
 ENVIRONMENT = {"counterface": "440C", "medium": "liquid nitrogen"}
 NAME = "liquid nitrogen, 440C"

@@ -16,7 +16,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "unit"))
 import raw_logs
 
-from separatrix.tribometer.reading import read_log
+from separatrix.friction.logs import read_log
 
 
 def jobs(rows: int) -> dict[str, Callable[[], bytes]]:

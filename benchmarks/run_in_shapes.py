@@ -19,7 +19,7 @@ sys.path[:0] = [str(Path(__file__).parent.parent / "tests" / "physics")]
 
 from running_in import LEVEL, SHAPES, made
 
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.friction.reduction import reduce_log
 
 
 def row(name: str, logs: int, rng: np.random.Generator, *, correlated: bool) -> tuple[float, ...]:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
+from separatrix.limits import GrowthCounter, critical_friction
 from separatrix.ranking import rank
-from separatrix.stability import GrowthCounter, critical_friction
 from separatrix.study_file import read_study
 
 
@@ -12,18 +12,18 @@ from separatrix.study_file import read_study
 def study():
     """The shipped study, everything compiled."""
     found = read_study("cryogenic-turbopump")
-    cage_state(found)
+    solve(found)
     return found
 
 
 def test_chain_up_to_the_cage(benchmark, study):
     """Equilibrium without race control, both traction curves, restitution."""
-    benchmark(cage_state, study)
+    benchmark(lambda: solve(study).cage)
 
 
 def test_one_point_of_the_stability_curve(benchmark, study):
     """Critical friction with its band at a restitution factor of 0.6, on one core."""
-    cage, settings = cage_state(study).cage, study.stability
+    cage, settings = solve(study).cage, study.stability
 
     def point():
         return critical_friction(cage, 0.6, settings, counter=GrowthCounter(cage, settings))

@@ -10,6 +10,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from separatrix import chain
 from separatrix.errors import ValidityWarning
 from separatrix.explore.sweep import Sweep, sweep
+from separatrix.runner import Runner
 from separatrix.study_file import read_study
 
 
@@ -25,7 +26,7 @@ def test_sweep_of_the_chain(benchmark: BenchmarkFixture) -> None:
     def whole() -> Sweep:
         chain._bearing.cache_clear()
         chain._traction.cache_clear()
-        return sweep(study, cases, jobs=2)
+        return sweep(study, cases, runner=Runner(jobs=2))
 
     found = benchmark.pedantic(whole, rounds=3)
     assert found.complete

@@ -30,11 +30,10 @@ from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipe
 
 from separatrix.cage import wilson_interval
 from separatrix.errors import InputError
-from separatrix.tribometer.column_map import ColumnMap
-from separatrix.tribometer.friction_test import TestFriction
-from separatrix.tribometer.log import RawLog
-from separatrix.tribometer.reading import read_log
-from separatrix.tribometer.reduction import ReductionOptions, reduce_log
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import ColumnMap
+from separatrix.friction.logs.log import RawLog
+from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log
 
 SEED = 20260
 MOST_ROWS = 4000

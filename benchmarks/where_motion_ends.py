@@ -24,7 +24,7 @@ import numpy as np
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
 from separatrix.cage.ensemble import pocket_speed
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))
@@ -62,7 +62,7 @@ def main() -> None:
     total, spent = 0, [0.0, 0.0]
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         for seed in range(asked.first, asked.first + asked.studies):
-            state = cage_state(sane_study(seed, Path(folder)), friction=0.1)
+            state = solve(sane_study(seed, Path(folder)), friction=0.1)
             streams = [np.random.default_rng((29, seed, k)) for k in range(asked.runs)]
             begun = time.perf_counter()
             pairs = list(pool.map(lambda rng, s=state: pair(s.cage, s.stability, rng), streams))

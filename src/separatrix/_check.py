@@ -3,14 +3,69 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import fields
 from enum import Enum
+from functools import cache
+from itertools import pairwise
 from numbers import Real
+from typing import TYPE_CHECKING, Concatenate, ParamSpec
 
 from separatrix.errors import InputError, together
-from separatrix.units import format_quantity, shown, unit_of
+from separatrix.units import UNITS, format_quantity, parse, shown, unit_of
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Problems = Iterator[InputError]
+Check = Callable[[object, str], Problems]
+"""From a record and the name of one of its fields to what is wrong with it."""
+
+Arguments = ParamSpec("Arguments")
+
+
+def must(
+    check: Callable[Concatenate[object, str, Arguments], Problems],
+    *args: Arguments.args,
+    **kwargs: Arguments.kwargs,
+) -> dict[str, Check]:
+    """Metadata of a field: the check that it must pass, with the arguments of the check."""
+
+    def checked(record: object, field: str) -> Problems:
+        return check(record, field, *args, **kwargs)
+
+    return {"check": checked}
+
+
+def each_field(record: DataclassInstance) -> Problems:
+    """Check each field by its metadata (`must`); a text such as ``"25 g"`` becomes the number in SI first."""
+    for name, unit, check, is_optional in _plan(type(record)):
+        value = getattr(record, name)
+        if value is None and (is_optional or check is not None):
+            if not is_optional:
+                yield InputError(f"{type(record).__name__}.{name}", "is missing")
+            continue
+        texts = value if isinstance(value, tuple | list) else (value,)
+        if unit and any(isinstance(text, str) for text in texts):
+            where = f"{type(record).__name__}.{name}"
+            try:
+                numbers = tuple(parse(text, unit, where) if isinstance(text, str) else text for text in texts)
+            except InputError as error:
+                yield error
+                continue
+            object.__setattr__(record, name, numbers if texts is value else numbers[0])
+        if check is not None:
+            yield from check(record, name)
+
+
+@cache
+def _plan(record: type[DataclassInstance]) -> tuple[tuple[str, str, Check | None, bool], ...]:
+    """Name, unit in which text is read, and check of each field of a record; whether it may be None."""
+    units = {f.name: unit_of(record, f.name) for f in fields(record)}
+    return tuple(
+        (f.name, units[f.name] if units[f.name] in UNITS else "", f.metadata.get("check"), f.default is None)
+        for f in fields(record)
+    )
 
 
 def settle(*checks: Iterable[InputError]) -> None:
@@ -33,7 +88,7 @@ def between(
     open_low: bool = False,
     open_high: bool = False,
 ) -> Problems:
-    """Refuse what is no finite number in [low, high], without its open ends. None passes."""
+    """Refuse what is not a finite number in [low, high], without its open ends. None passes."""
     value = getattr(record, field)
     if value is None:
         return
@@ -100,12 +155,28 @@ def problem(record: object, field: str, rule: str, cure: str = "") -> InputError
     """Build the refusal of one field: where, rule, value and cure."""
     value = getattr(record, field)
     unit = unit_of(type(record), field)
-    text = (
-        format_quantity(float(value), unit, 8)
-        if unit and is_number(value) and math.isfinite(value)
-        else shown(value)
-    )
+    text = shown(value)
+    if unit and is_number(value) and math.isfinite(value):
+        text = format_quantity(float(value), unit, 8) + (f" ({value:.5g} rad)" if unit == "rad" else "")
     return InputError(f"{type(record).__name__}.{field}", rule, text, cure)
+
+
+def increasing(
+    record: object, field: str, low: float, high: float, *, least: int = 0, most: int, hint: str = ""
+) -> Problems:
+    """Refuse a tuple that is too short or long, or not strictly inside the limits or increasing."""
+    values, where = getattr(record, field), f"{type(record).__name__}.{field}"
+    unit = unit_of(type(record), field)
+    of_unit = f" [{unit}]" if unit != "-" else ""
+    if not least <= len(values) <= most:
+        yield InputError(where, f"must have {least} to {most} values", str(len(values)))
+    outside = [value for value in values if not is_number(value) or not low < value < high]
+    if outside:
+        rule = f"must each be a finite number > {low:g} and < {high:g}{of_unit}"
+        yield InputError(where, rule, str(outside[0]), hint)
+    falls = [f"{b:g} after {a:g}" for a, b in pairwise(values) if not outside and a >= b]
+    if falls:
+        yield InputError(where, f"must be strictly increasing{of_unit}", falls[0])
 
 
 def is_number(value: object) -> bool:

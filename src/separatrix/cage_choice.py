@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from separatrix.errors import InputError
-from separatrix.study import Candidate, Friction, RankingQuestion, Study
-from separatrix.units import Ratio, shown
+from separatrix.study import Candidate, RankingQuestion, Study
+from separatrix.units import shown
 
 NAMELESS = "given in the study"
 """Name of a material in place that has none."""
@@ -58,55 +58,23 @@ def required_environment(study: Study, question: RankingQuestion) -> str:
     return found
 
 
-def known_friction(study: Study) -> Ratio | None:
-    """Return f_BC of the study's own cage: the given one, or that of its material; None if not known."""
+def require_friction(study: Study) -> None:
+    """Refuse a study whose cage has no known friction: what is missing, and what can be given instead."""
     if study.cage is not None and study.cage.ball_cage_friction is not None:
-        return study.cage.ball_cage_friction
-    friction = cage_friction(study)
-    return None if friction is None else friction.mean
-
-
-def cage_friction(study: Study) -> Friction | None:
-    """Friction of the cage's candidate in the bearing's environment; None if it is not known."""
-    candidate = cage_candidate(study)
-    environment = environment_of(study.ranking) if study.ranking else None
-    return candidate.friction.get(environment) if candidate and environment else None
-
-
-def pocket_friction(study: Study) -> Ratio:
-    """Return f_BC of the study's own cage.
-
-    Raises
-    ------
-    InputError
-        It is not known: what is missing, and what can be said instead.
-    """
-    friction = known_friction(study)
-    if friction is not None:
-        return friction
+        return
     where = f"{study.name}: [cage] ball_cage_friction"
     if study.ranking is None:
         raise InputError(where, "is missing", cure="Give it, or [ranking] with measured frictions.")
-    names = ", ".join(candidate.name for candidate in study.ranking.candidates)
-    cure = f"Give it, or name a candidate as [cage] material: {names}."
-    candidate = cage_candidate(study)
+    candidate, named = cage_candidate(study), _name(study)
     if candidate is None:
-        name = _name(study)
-        named = f"{shown(name)} is not a candidate" if name else "[cage] material does not name a candidate"
-        raise InputError(where, f"is missing, and {named}", cure=cure)
+        who = f"{shown(named)} is not a candidate" if named else "[cage] material does not name a candidate"
+        names = ", ".join(one.name for one in study.ranking.candidates)
+        cure = f"Give it, or name a candidate as [cage] material: {names}."
+        raise InputError(where, f"is missing, and {who}", cure=cure)
     environment = required_environment(study, study.ranking)
-    raise InputError(
-        where, f"is missing: {candidate.name} was not measured in {environment}", cure="Give it."
-    )
-
-
-def reference_friction(study: Study, question: RankingQuestion) -> Ratio:
-    """Return f_BC of the reference candidate's cage in a ranking; 0 where none is known."""
-    known = known_friction(study)
-    if known is not None:
-        return known
-    friction = reference_candidate(study, question).friction.get(environment_of(question) or "")
-    return friction.mean if friction else 0.0
+    if candidate.friction.get(environment) is None:
+        rule = f"is missing: {candidate.name} was not measured in {environment}"
+        raise InputError(where, rule, cure="Give it.")
 
 
 def _name(study: Study) -> str:

@@ -11,15 +11,16 @@ best at powers of two (Owen 2022, "On dropping the first Sobol' point").
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import exp, expm1, isclose, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from separatrix.distribution import Distribution, LogNormal
 from separatrix.errors import InputError
-from separatrix.friction_fit import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.study import Candidate, Friction, Study
 from separatrix.study_numbers import Setter, setter, settled_in, study_numbers, value_of
 from separatrix.units import Array, Ratio
@@ -31,6 +32,13 @@ STREAM = 0x50B0
 BITS = 30
 MOST_VARIANCE = 100.0
 """Of the logarithm of a friction from tests: with more of it the tests tell nothing."""
+
+
+class Case(NamedTuple):
+    """A candidate in an environment; "" for the mean friction over all."""
+
+    candidate: str
+    environment: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,8 +121,12 @@ class Draws:
         return setter(self.study, self.names)
 
 
-def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
-    """Every uncertain number of a study: those that it says are, then the frictions of the candidates.
+def uncertain_inputs(
+    study: Study, frictions: Mapping[Case, Friction] | None = None
+) -> tuple[UncertainInput, ...]:
+    """Every uncertain number of a study: those that it states so, then the frictions of the candidates.
+
+    `frictions` are those of the candidates that were measured, by default as the study states them.
 
     Raises
     ------
@@ -128,33 +140,42 @@ def uncertain_inputs(study: Study) -> tuple[UncertainInput, ...]:
         )
         for key, one in study.distributions.items()
     ]
-    return (*found, *_frictions(study))
+    return (*found, *_frictions(study, stated_frictions(study) if frictions is None else frictions))
 
 
-def _frictions(study: Study) -> Iterator[UncertainInput]:
+def stated_frictions(study: Study) -> dict[Case, Friction]:
+    """Measured friction of each case, as the study states it."""
+    return {
+        Case(candidate.name, environment): friction
+        for candidate in (study.ranking.candidates if study.ranking else ())
+        for environment, friction in candidate.friction.items()
+        if friction is not None
+    }
+
+
+def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[UncertainInput]:
     """Measured frictions whose distribution the study does not give, with their scatter.
 
     Log-normal, as the fit to tests and `probability_lowest` take them: friction scatters by a share of
     itself.
     """
-    ranking = study.ranking
-    for candidate in ranking.candidates if ranking else ():
-        for environment, friction in candidate.friction.items():
-            key = f"ranking.{candidate.name}.{environment}"
-            if friction is None or key in study.distributions:
-                continue
-            scatter = ranking.friction_scatter if ranking else 0.0
-            deviation, source = next_cage_deviation(friction, scatter)
-            if deviation > 0.0:
-                where = f"Friction from tests of {candidate.name} in {environment}"
-                scattered = _next_cage(friction, deviation, where)
-                yield UncertainInput(
-                    key=key,
-                    unit="-",
-                    distribution=settled_in(study, key, scattered),
-                    central=friction.mean,
-                    source=source,
-                )
+    for (candidate, environment), friction in frictions.items():
+        key = f"ranking.{candidate}.{environment}"
+        if key in study.distributions:
+            continue
+        scatter = study.ranking.friction_scatter if study.ranking else 0.0
+        deviation, source = next_cage_deviation(friction, scatter)
+        if deviation > 0.0:
+            scattered = _next_cage(
+                friction, deviation, f"Friction from tests of {candidate} in {environment}"
+            )
+            yield UncertainInput(
+                key=key,
+                unit="-",
+                distribution=settled_in(study, key, scattered),
+                central=friction.mean,
+                source=source,
+            )
 
 
 def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
@@ -197,7 +218,13 @@ def next_cage_deviation(friction: Friction, default_scatter: Ratio) -> tuple[Rat
     return deviation, "assumed" if friction.assumed_scatter else "measured"
 
 
-def sample(study: Study, samples: int, seed: int | None = None) -> Draws:
+def sample(
+    study: Study,
+    samples: int,
+    seed: int | None = None,
+    *,
+    frictions: Mapping[Case, Friction] | None = None,
+) -> Draws:
     """Draw the uncertain inputs of a study.
 
     Parameters
@@ -208,6 +235,8 @@ def sample(study: Study, samples: int, seed: int | None = None) -> Draws:
         1 to `MOST_SAMPLES`, best a power of two. The first of more samples are the same as fewer samples.
     seed : int, optional
         Of the scrambling; without it the study's.
+    frictions : mapping, optional
+        Measured friction of each case; by default as the study states it.
 
     Returns
     -------
@@ -221,7 +250,7 @@ def sample(study: Study, samples: int, seed: int | None = None) -> Draws:
     """
     if not 1 <= samples <= MOST_SAMPLES:
         raise InputError("samples", f"must be a whole number from 1 to {MOST_SAMPLES}", str(samples))
-    inputs = uncertain_inputs(study)
+    inputs = uncertain_inputs(study, frictions)
     if not inputs:
         cure = 'Write one like "0.5 um +- 20 %".'
         raise InputError(study.name, "has no uncertain number to draw", cure=cure)

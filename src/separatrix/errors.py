@@ -30,6 +30,8 @@ class InputError(SeparatrixError, ValueError):
         self.problems: tuple[InputError, ...] = ()
 
     def __str__(self) -> str:
+        if self.problems:
+            return "\n".join(map(str, self.problems))
         text = f"{self.path} {self.rule}".rstrip()
         text += f"; got {self.got}." if self.got else "."
         return f"{text} {self.cure}".rstrip()
@@ -44,7 +46,7 @@ def together(problems: Sequence[InputError]) -> InputError:
     single = [one for problem in problems for one in problem.problems or (problem,)]
     if len(single) == 1:
         return single[0]
-    error = InputError("\n".join(map(str, single)).removesuffix("."), "")
+    error = InputError("\n".join(map(str, single)), "")
     error.problems = tuple(single)
     return error
 

@@ -96,11 +96,11 @@ class Ledger:
 def key_of(*parts: object) -> bytes:
     """Checksum of what a piece depends on, by its exact text, and of the program's sources."""
     text = "\n".join(map(repr, parts))
-    return hashlib.sha256(_program() + text.encode()).digest()
+    return hashlib.sha256(program() + text.encode()).digest()
 
 
 @cache
-def _program() -> bytes:
-    """Version and checksum of the sources of the package."""
+def program() -> bytes:
+    """Checksum of the sources of the package."""
     sources = sorted(Path(separatrix.__file__).parent.rglob("*.py"))
     return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).digest()

@@ -16,7 +16,7 @@ LEAST_FRICTION = 1e-5
 
 
 class PredictedFriction(Protocol):
-    """Friction foretold for some conditions, as `separatrix.friction_fit.Prediction`."""
+    """Friction foretold for some conditions, as `separatrix.friction.records.Prediction`."""
 
     @property
     def mean(self) -> Ratio:
@@ -44,7 +44,7 @@ class PredictedFriction(Protocol):
 
 
 class FrictionLaw(Protocol):
-    """Friction as a function of the conditions, from tests, as `separatrix.friction_fit.TestedFriction`."""
+    """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""
 
     def at(
         self,
@@ -57,6 +57,9 @@ class FrictionLaw(Protocol):
         """Friction for these conditions; one that is None is not asked about. The medium by all its names."""
 
 
+_SPREAD = _check.must(_check.not_negative, FRICTION_LIMIT)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Friction:
     """A measured ball/cage friction: its mean and, if known, its scatter.
@@ -67,10 +70,10 @@ class Friction:
     `widening` is the part of the standard deviation that stands for it.
     """
 
-    mean: Ratio
-    standard_deviation: Ratio | None = None
-    count: int | None = None
-    standard_error: Ratio | None = None
+    mean: Ratio = field(metadata=_check.must(_check.between, 0.0, FRICTION_LIMIT))
+    standard_deviation: Ratio | None = field(default=None, metadata=_SPREAD)
+    count: int | None = field(default=None, metadata=_check.must(_check.whole, 1, 1_000_000_000))
+    standard_error: Ratio | None = field(default=None, metadata=_SPREAD)
     assumed_scatter: bool = False
     extrapolation: tuple[str, ...] = ()
     widening: Ratio = 0.0
@@ -79,12 +82,7 @@ class Friction:
     confidence: str = "given in the study"
 
     def __post_init__(self) -> None:
-        _check.settle(
-            _check.between(self, "mean", 0.0, FRICTION_LIMIT),
-            _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
-            _check.not_negative(self, "standard_error", FRICTION_LIMIT),
-            () if self.count is None else _check.whole(self, "count", 1, 1_000_000_000),
-        )
+        _check.settle(_check.each_field(self))
 
 
 def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:

@@ -7,12 +7,18 @@ a round one there is less clearance, and the contact leans towards the axis.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from enum import Enum
+from typing import Protocol
 
 from separatrix.units import Metre, Ratio
 
-if TYPE_CHECKING:
-    from separatrix.study import PocketShape
+
+class PocketShape(Enum):
+    """Wall of a pocket, seen along the radius."""
+
+    SQUARE = "square"
+    CYLINDRICAL = "cylindrical"
+    ELONGATED = "elongated"
 
 
 class Pocket(Protocol):
@@ -37,9 +43,9 @@ class Pocket(Protocol):
 
 def end_half_play(pocket: Pocket) -> Metre:
     """Half the clearance along the axis, and around a pocket's round end [m]; inf if square."""
-    if pocket.pocket_shape.value == "square":
+    if pocket.pocket_shape is PocketShape.SQUARE:
         return math.inf
-    if pocket.pocket_shape.value == "cylindrical":
+    if pocket.pocket_shape is PocketShape.CYLINDRICAL:
         return pocket.pocket_clearance / 2.0
     return (pocket.pocket_axial_clearance or 0.0) / 2.0
 

@@ -1,4 +1,4 @@
-"""The one runner of long jobs: threads, progress, interrupts, and the runs that were finished before."""
+"""The one runner of long jobs: threads or a cluster, progress, interrupts, and the runs finished before."""
 
 from __future__ import annotations
 
@@ -7,22 +7,37 @@ import signal
 import threading
 import zlib
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import fields
 from queue import Empty, SimpleQueue
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from separatrix.cage import Ensemble, PlanarCage, run_ensemble
 from separatrix.ledger import Ledger, key_of
 from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond
+from separatrix.units import MetrePerSecond, Second
 
-Item = TypeVar("Item")
 Place = TypeVar("Place", bound=Hashable)
 Result = TypeVar("Result")
-Progress = Callable[[int, int], None]
+Answer = TypeVar("Answer")
+
+
+class Progress(Protocol):
+    """Hears how far a long job is."""
+
+    def __call__(self, done: int, total: int, /) -> None:
+        """So many points of those known so far are done."""
+
+
+@runtime_checkable
+class Expecting(Progress, Protocol):
+    """Hears beforehand what a long job will take, too."""
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Take in an estimate, which costs something to make."""
+
 
 LOOK = 0.1
 """Time between two looks at whether the work was interrupted [s]."""
@@ -33,8 +48,18 @@ PART = 16
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
 
 
-class Stopped(Exception):  # noqa: N818 - not an error: an interrupt on its way out of a thread
-    """The work was interrupted while a thread was inside a point."""
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM ended a long job.
+
+    Parameters
+    ----------
+    finished : object
+        The answer made of what was finished, a record that names what it lacks; None if nothing was.
+    """
+
+    def __init__(self, finished: object = None) -> None:
+        super().__init__("interrupted")
+        self.finished = finished
 
 
 class Runner:
@@ -51,13 +76,45 @@ class Runner:
         Called with (done, total so far) after each point.
     ledger : Ledger, optional
         Where finished runs are kept, and looked for.
+    executor : Executor, optional
+        Computes the pieces elsewhere, as `separatrix.cluster` does; by default the threads compute them.
     """
 
     def __init__(
-        self, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
+        self,
+        *,
+        jobs: int = 1,
+        progress: Progress | None = None,
+        ledger: Ledger | None = None,
+        executor: Executor | None = None,
     ) -> None:
-        self.jobs, self.progress, self.ledger = jobs, progress, ledger
+        self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
         self.stop = threading.Event()
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Report what the work will take; at most that where an earlier call has kept runs."""
+        if isinstance(self.progress, Expecting):
+            resumed = self.ledger is not None and self.ledger.goes_on
+            self.progress.expect(estimate, at_most=at_most or resumed)
+
+    def call(self, compute: Callable[..., Result], *arguments: object) -> Result:
+        """Result of a pure function of plain arguments, computed by the executor or here.
+
+        Raises
+        ------
+        Interrupted
+            Before it was started, or while another process was at it.
+        """
+        if self.stop.is_set():
+            raise Interrupted
+        if self.executor is None:
+            return compute(*arguments)
+        future = self.executor.submit(compute, *arguments)
+        while not self.stop.is_set():
+            with contextlib.suppress(TimeoutError):
+                return future.result(timeout=LOOK)
+        future.cancel()
+        raise Interrupted
 
     def ensemble(
         self,
@@ -72,21 +129,18 @@ class Runner:
 
         Raises
         ------
-        Stopped
+        Interrupted
             The work was interrupted.
         """
-        if self.stop.is_set():
-            raise Stopped
+        piece = cage, settings, tuple(kicks), runs, first_run
         if self.ledger is None:
-            return run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
-        drawn = settings.seed, settings.duration, settings.ball_scatter
-        key = key_of(cage, drawn, tuple(kicks), first_run, runs)
-        shape = len(kicks), runs, cage.ball_count
-        known = _unpacked(self.ledger.get(key), shape)
+            return self.call(_ensemble, *piece)
+        key = key_of(cage, (settings.seed, settings.duration, settings.ball_scatter), *piece[2:])
+        known = _unpacked(self.ledger.get(key), (len(kicks), runs, cage.ball_count))
         if known is not None:
             self.ledger.taken += len(kicks) * runs
             return known
-        found = run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
+        found = self.call(_ensemble, *piece)
         self.ledger.put(key, _packed(found))
         return found
 
@@ -95,7 +149,7 @@ class Runner:
 
         Raises
         ------
-        Stopped
+        Interrupted
             The work was interrupted before the last part.
         """
         firsts = range(0, settings.runs, PART)
@@ -112,24 +166,18 @@ class Runner:
             ]
         )
 
-    def each(self, compute: Callable[[Item], Result], items: Sequence[Item]) -> list[Result | None]:
-        """Results of `compute` for each item, in their order; None for what an interrupt left out."""
-        places = range(len(items))
-        found = self.work_out(lambda place: compute(items[place]), places)
-        return [found.get(place) for place in places]
-
     def work_out(
         self,
         compute: Callable[[Place], Result],
         places: Iterable[Place],
         *,
+        into: Callable[[dict[Place, Result]], Answer],
         more: Callable[[Place, Mapping[Place, Result]], Iterable[Place]] | None = None,
         progress: Progress | None = None,
-    ) -> dict[Place, Result]:
-        """Results of `compute` at each place, and at the places that follow from them.
+    ) -> Answer:
+        """Answer made of the results of `compute` at each place, and at the places that follow from them.
 
-        Threads, because the kernels below release the interpreter's lock. An interrupt leaves out the places
-        that were not finished, and sets `stop`.
+        Threads, because the kernels below release the interpreter's lock.
 
         Parameters
         ----------
@@ -137,13 +185,20 @@ class Runner:
             Called once with each place; must not depend on when it is called, so that `jobs` changes nothing.
         places : iterable
             Where to begin; put the longest first.
+        into : callable
+            Makes the answer of the results by their places; after an interrupt some are missing.
         more : callable, optional
             Given a place just finished and all results so far: which places it makes wanted. Those that are
             known or under way are not computed again. What it answers must not depend on the order.
         progress : callable, optional
             Called instead of the runner's own.
+
+        Raises
+        ------
+        Interrupted
+            With the answer made of the places that were finished; without one if none was.
         """
-        tell = progress or self.progress
+        report = progress or self.progress
         results: dict[Place, Result] = {}
         done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
         wanted: set[Place] = set()
@@ -159,12 +214,12 @@ class Runner:
             try:
                 submit(() if self.stop.is_set() else places)
                 while len(results) < len(wanted) and not self.stop.is_set():
-                    with contextlib.suppress(Empty, Stopped):
+                    with contextlib.suppress(Empty, Interrupted):
                         place, future = done.get(timeout=LOOK)
                         results[place] = future.result()
                         submit(more(place, results) if more is not None else ())
-                        if tell is not None:
-                            tell(len(results), len(wanted))
+                        if report is not None:
+                            report(len(results), len(wanted))
             except KeyboardInterrupt:
                 self.stop.set()
             finally:
@@ -173,7 +228,23 @@ class Runner:
                 place, future = done.get()
                 if not future.cancelled() and future.exception() is None:
                     results[place] = future.result()
-        return results
+        if not self.stop.is_set():
+            return into(results)
+        raise Interrupted(into(results) if results else None)
+
+
+def made_into(make: Callable[[Result], Answer], compute: Callable[[], Result]) -> Answer:
+    """Make the result of a long job into another record, also the part that an interrupt carries."""
+    try:
+        return make(compute())
+    except Interrupted as stop:
+        raise Interrupted(None if stop.finished is None else make(stop.finished)) from None  # type: ignore[arg-type]
+
+
+def _ensemble(
+    cage: PlanarCage, settings: StabilitySettings, kicks: Sequence[MetrePerSecond], runs: int, first_run: int
+) -> Ensemble:
+    return run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
 
 
 @contextlib.contextmanager

@@ -1,6 +1,7 @@
 """What is asked: one bearing, its operating point, film, cage and candidate cage materials. SI inside.
 
-Every record is frozen and checks itself when built; what computes with it trusts it.
+Every record is frozen and checks itself when built; what computes with it trusts it. A number may be given
+as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in SI.
 """
 
 from __future__ import annotations
@@ -11,37 +12,40 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from separatrix import _cage_rules, _check, _rules
+from separatrix import _check, cage_design
+from separatrix._check import between, increasing, must, not_negative, positive, whole
+from separatrix.bearing_design import MOST_BALLS as MOST_BALLS
+from separatrix.bearing_design import BallBearing as BallBearing
+from separatrix.bearing_design import Material as Material
+from separatrix.cage_design import CageDesign as CageDesign
+from separatrix.cage_design import Guidance as Guidance
+from separatrix.cage_design import PocketContact as PocketContact
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.measured_friction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.measured_friction import Friction as Friction
+from separatrix.pocket_shape import PocketShape as PocketShape
 from separatrix.units import (
     Kelvin,
-    Kilogram,
-    KilogramMetre,
-    KilogramMetre2,
-    KilogramPerMetre3,
     Metre,
     MetrePerSecond,
-    MetrePerSecond2,
     Newton,
     NewtonMetre,
-    NewtonPerMetre,
-    Pascal,
     Radian,
     RadianPerSecond,
     Ratio,
     Second,
+    format_quantity,
+    shown,
 )
 
-MOST_BALLS = 200
 LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""
 
 MOST_KICK: MetrePerSecond = 1e4
 NO_KICK = "A kick of zero starts no motion."
-_START_HINT = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
+_LIFTS = "A load the other way lifts the inner ring off its balls; turn the bearing round."
+_START = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
 
 class Race(Enum):
@@ -59,92 +63,6 @@ class KinematicModel(Enum):
     INNER_RACE_CONTROL = "inner race control"
 
 
-class Guidance(Enum):
-    """What guides the cage; BALL means it has no land."""
-
-    OUTER = "outer"
-    INNER = "inner"
-    BALL = "ball"
-
-
-class PocketShape(Enum):
-    """Wall of a pocket, seen along the radius."""
-
-    SQUARE = "square"
-    CYLINDRICAL = "cylindrical"
-    ELONGATED = "elongated"
-
-
-class PocketContact(Enum):
-    """How the force between ball and pocket grows: with the approach, or with its power 1.5."""
-
-    LINEAR = "linear"
-    HERTZ = "hertz"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Material:
-    """An isotropic elastic material and where its numbers come from."""
-
-    name: str
-    elastic_modulus: Pascal
-    poisson_ratio: Ratio
-    density: KilogramPerMetre3 | None = None
-    compressive_strength: Pascal | None = None
-    source: str = "given in the study"
-    confidence: str = "given in the study"
-    record: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
-    """The whole record of the library behind it, as plain data: it goes into every result."""
-
-    cautions: tuple[str, ...] = field(default=(), compare=False)
-    """What must be said of its numbers at the study's temperature."""
-
-    def __post_init__(self) -> None:
-        _check.settle(
-            _check.printable_text(self, "name"),
-            _check.positive(
-                self, "elastic_modulus", 1e5, 5e12, hint="Steel has about 200 GPa, PTFE 0.5 GPa."
-            ),
-            _check.between(self, "poisson_ratio", 0.0, 0.5, open_high=True),
-            _check.positive(self, "density", 1.0, 1e5),
-            _check.positive(self, "compressive_strength", 1e4, 1e11),
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BallBearing:
-    """Geometry and materials of a single-row ball bearing."""
-
-    ball_diameter: Metre
-    pitch_diameter: Metre
-    ball_count: int
-    contact_angle: Radian
-    inner_conformity: Ratio
-    outer_conformity: Ratio
-    ball_material: Material
-    ring_material: Material
-    bore: Metre | None = None
-
-    def __post_init__(self) -> None:
-        groove = "If you have the groove radius, divide it by the ball diameter."
-        _check.settle(
-            _check.positive(self, "ball_diameter", 1e-5, 10.0),
-            _check.positive(self, "pitch_diameter", 1e-5, 100.0),
-            _check.whole(self, "ball_count", 3, MOST_BALLS, hint="Two balls cannot centre a ring."),
-            _check.between(self, "contact_angle", 0.0, math.pi / 2, open_high=True),
-            _check.between(self, "inner_conformity", 0.5, 0.6, open_low=True, hint=groove),
-            _check.between(self, "outer_conformity", 0.5, 0.6, open_low=True, hint=groove),
-            _check.positive(self, "bore", 1e-6, 100.0),
-        )
-        _check.settle(_rules.balls_that_do_not_fit(self))
-        _check.settle(_rules.bore_too_wide(self))
-
-    @property
-    def ball_gap(self) -> Metre:
-        """Distance between the surfaces of neighbouring balls: chord of the pitch circle less a diameter."""
-        return self.pitch_diameter * math.sin(math.pi / self.ball_count) - self.ball_diameter
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Operation:
     """Speeds and loads on the inner ring.
@@ -153,32 +71,24 @@ class Operation:
     until the balls balance it.
     """
 
-    inner_speed: RadianPerSecond
-    axial_load: Newton
-    outer_speed: RadianPerSecond = 0.0
-    radial_load: Newton = 0.0
-    moment: NewtonMetre | None = None
-    tilt: Radian | None = None
-    temperature: Kelvin | None = None
-    fluid: str | None = None
-    ramp_time: Second = 0.0
-    ramp_start: Ratio = 0.1
+    inner_speed: RadianPerSecond = field(metadata=must(between, -1e6, 1e6))
+    axial_load: Newton = field(metadata=must(not_negative, 1e9, hint=_LIFTS))
+    outer_speed: RadianPerSecond = field(default=0.0, metadata=must(between, -1e6, 1e6))
+    radial_load: Newton = field(
+        default=0.0, metadata=must(not_negative, 1e9, hint="Its direction is the x axis: give its size.")
+    )
+    moment: NewtonMetre | None = field(default=None, metadata=must(between, -1e9, 1e9))
+    tilt: Radian | None = field(default=None, metadata=must(between, -0.1, 0.1))
+    temperature: Kelvin | None = field(default=None, metadata=must(positive, 1e-3, 5000.0))
+    fluid: str | None = field(default=None, metadata=must(_check.printable_text))
+    ramp_time: Second = field(
+        default=0.0, metadata=must(not_negative, 1e4, hint="Leave it out for a bearing at speed.")
+    )
+    ramp_start: Ratio = field(default=0.1, metadata=must(between, 0.0, 1.0, open_low=True, hint=_START))
 
     def __post_init__(self) -> None:
-        lifts = "A load the other way lifts the inner ring off its balls; turn the bearing round."
-        _check.settle(
-            _check.between(self, "inner_speed", -1e6, 1e6),
-            _check.between(self, "outer_speed", -1e6, 1e6),
-            _check.not_negative(self, "axial_load", 1e9, hint=lifts),
-            _check.not_negative(self, "radial_load", 1e9, hint="Its direction is the x axis: give its size."),
-            _check.between(self, "moment", -1e9, 1e9),
-            _check.between(self, "tilt", -0.1, 0.1),
-            _check.positive(self, "temperature", 1e-3, 5000.0),
-            _check.printable_text(self, "fluid"),
-            _check.not_negative(self, "ramp_time", 1e4, hint="Leave it out for a bearing at speed."),
-            _check.between(self, "ramp_start", 0.0, 1.0, open_low=True, hint=_START_HINT),
-        )
-        _check.settle(_rules.moment_and_tilt(self), _rules.nothing_presses(self))
+        _check.settle(_check.each_field(self))
+        _check.settle(_loads(self))
 
     @property
     def is_tilt_held(self) -> bool:
@@ -186,82 +96,32 @@ class Operation:
         return self.moment is None
 
 
+def _loads(operation: Operation) -> _check.Problems:
+    """A held tilt takes any moment; without a load, even with a tilt, nothing is pressed together."""
+    if operation.tilt is not None and operation.moment is not None:
+        yield _check.problem(operation, "tilt", "and moment exclude each other", "Give one of the two.")
+    if not any((operation.axial_load, operation.radial_load, operation.moment)):
+        rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
+        yield _check.problem(operation, "axial_load", rule, "Give the preload.")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Film:
     """Solid lubricant on the races; without material and thickness the races are bare."""
 
-    race_friction: Ratio
+    race_friction: Ratio = field(metadata=must(between, 0.0, FRICTION_LIMIT))
     material: Material | None = None
-    thickness: Metre | None = None
+    thickness: Metre | None = field(
+        default=None,
+        metadata=must(positive, 1e-10, 1e-2, hint="For bare races leave material and thickness out."),
+    )
 
     def __post_init__(self) -> None:
-        _check.settle(
-            _check.between(self, "race_friction", 0.0, FRICTION_LIMIT),
-            _check.positive(
-                self, "thickness", 1e-10, 1e-2, hint="For bare races leave material and thickness out."
-            ),
-        )
+        _check.settle(_check.each_field(self))
         if (self.material is None) != (self.thickness is None):
             missing = "material" if self.material is None else "thickness"
-            cure = "Give both, or neither for bare races."
-            raise InputError(
-                f"Film.{missing}", "is missing: a film needs its material and its thickness", cure=cure
-            )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CageDesign:
-    """The cage: inertia, pockets and guidance."""
-
-    mass: Kilogram
-    pocket_clearance: Metre
-    material: Material | None = None
-    material_name: str | None = None
-    """Candidate of the ranking that the cage is made of; by default the one named like `material`."""
-
-    ball_cage_stiffness: NewtonPerMetre | None = None
-    impact_speed: MetrePerSecond | None = None
-    """Speed at which a Hertz pocket's stiffness is taken; by default 2.5 times the pocket speed."""
-
-    ball_cage_friction: Ratio | None = None
-    pocket_shape: PocketShape = PocketShape.SQUARE
-    pocket_axial_clearance: Metre | None = None
-    pocket_axial_offset: Metre = 0.0
-    pocket_contact: PocketContact = PocketContact.LINEAR
-    pocket_angles: tuple[Radian, ...] = ()
-    pocket_spacing_scatter: Ratio = 0.0
-    pocket_position_scatter: Metre = 0.0
-    ball_diameter_scatter: Metre = 0.0
-    guidance: Guidance = Guidance.BALL
-    land_clearance: Metre | None = None
-    land_friction: Ratio = 0.1
-    land_stiffness: NewtonPerMetre = 1e7
-    land_restitution: Ratio = 0.5
-    land_count: int = 1
-    land_out_of_round: Metre = 0.0
-    land_lobes: int = 2
-    moment_of_inertia: KilogramMetre2 | None = None
-    unbalance: KilogramMetre = 0.0
-    gravity: MetrePerSecond2 = 0.0
-
-    def __post_init__(self) -> None:
-        _check.settle(
-            _check.positive(self, "mass", 1e-9, 1e4),
-            _check.positive(self, "ball_cage_stiffness", 1.0, 1e12),
-            _check.positive(self, "impact_speed", 1e-6, 1e3),
-            _check.between(self, "ball_cage_friction", 0.0, FRICTION_LIMIT),
-            _check.one_of(self, "pocket_contact", PocketContact),
-            *_cage_rules.pocket_fields(self),
-            *_cage_rules.land_fields(self),
-            _check.positive(self, "land_clearance", 1e-9, 1.0),
-            _check.between(self, "land_friction", 0.0, FRICTION_LIMIT),
-            _check.positive(self, "land_stiffness", 1.0, 1e12),
-            _check.positive(self, "moment_of_inertia", 1e-18, 1e4),
-            _check.not_negative(self, "unbalance", 1e2),
-            _check.not_negative(self, "gravity", 1e4),
-        )
-        gripped = self.pocket_contact is PocketContact.HERTZ
-        _check.settle(_rules.land(self), *_cage_rules.together(self, hertz=gripped))
+            rule = "is missing: a film needs its material and its thickness"
+            raise InputError(f"Film.{missing}", rule, cure="Give both, or neither for bare races.")
 
 
 def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
@@ -277,26 +137,24 @@ class StabilitySettings:
     Without kicks they scale with the bearing; `cage.settings_for` puts numbers in their place.
     """
 
-    kicks: tuple[MetrePerSecond, ...] = ()
-    reference_kick: MetrePerSecond | None = None
+    kicks: tuple[MetrePerSecond, ...] = field(
+        default=(), metadata=must(increasing, LEAST_KICK, MOST_KICK, most=20, hint=NO_KICK)
+    )
+    reference_kick: MetrePerSecond | None = field(
+        default=None, metadata=must(positive, 1e-6, 1e3, hint=NO_KICK)
+    )
     """The kick of critical friction and threshold, and what default kicks scale with."""
 
-    runs: int = 64
-    duration: Second = 0.3
-    ball_scatter: Ratio = 0.3
-    restitution_factors: tuple[Ratio, ...] = ()
-    seed: int = 1
+    runs: int = field(default=64, metadata=must(whole, 1, 1_000_000))
+    duration: Second = field(
+        default=0.3, metadata=must(positive, 1e-9, 1e4, hint="Some tenths of a second show the motion.")
+    )
+    ball_scatter: Ratio = field(default=0.3, metadata=must(between, 0.0, 1.0))
+    restitution_factors: tuple[Ratio, ...] = field(default=(), metadata=must(increasing, 0.0, 1.0, most=1000))
+    seed: int = field(default=1, metadata=must(whole, 0, 2**63 - 1))
 
     def __post_init__(self) -> None:
-        _check.settle(
-            _rules.rising(self, "kicks", LEAST_KICK, MOST_KICK, least=0, most=20, hint=NO_KICK),
-            _check.positive(self, "reference_kick", 1e-6, 1e3, hint=NO_KICK),
-            _check.whole(self, "runs", 1, 1_000_000),
-            _check.positive(self, "duration", 1e-9, 1e4, hint="Some tenths of a second show the motion."),
-            _check.between(self, "ball_scatter", 0.0, 1.0),
-            _rules.rising(self, "restitution_factors", 0.0, 1.0, least=0, most=1000),
-            _check.whole(self, "seed", 0, 2**63 - 1),
-        )
+        _check.settle(_check.each_field(self))
 
     @property
     def middle_kick(self) -> MetrePerSecond:
@@ -310,12 +168,14 @@ class StabilitySettings:
 class Candidate:
     """A candidate cage material with its friction in each environment; None where it was not measured."""
 
-    name: str
+    name: str = field(metadata=must(_check.printable_text))
     friction: Mapping[str, Friction | None]
     material: Material | None = None
 
     def __post_init__(self) -> None:
-        _check.settle(_check.printable_text(self, "name"), _rules.nothing_measured(self))
+        _check.settle(_check.each_field(self))
+        if all(value is None for value in self.friction.values()):
+            raise InputError("Candidate.friction", f'of "{self.name}" has no measured value')
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -327,26 +187,40 @@ class RankingQuestion:
     environment: str | None = None
     """The bearing's own: the headline of a ranking, and the column of the cage's friction."""
 
-    friction_scatter: Ratio = 0.09
+    friction_scatter: Ratio = field(default=0.09, metadata=must(between, 1e-3, 1.0, hint="0.09 is 9 %."))
     """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess."""
 
     def __post_init__(self) -> None:
-        _check.settle(
-            _check.between(self, "friction_scatter", 1e-3, 1.0, hint="0.09 stands for 9 %."),
-        )
-        _check.settle(
-            _rules.named_twice(self),
-            _rules.unknown_environments(self),
-            _rules.environment_of_a_candidate(self),
-        )
+        _check.settle(_check.each_field(self))
+        _check.settle(_names_of_question(self))
+
+
+def _names_of_question(question: RankingQuestion) -> _check.Problems:
+    """Results are keyed by names, so these differ; every environment is one of the question."""
+    for key, names in (
+        ("candidates", [candidate.name for candidate in question.candidates]),
+        ("environments", list(question.environments)),
+    ):
+        if not names:
+            yield InputError(f"RankingQuestion.{key}", "must not be empty")
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield InputError(f"RankingQuestion.{key}", "must have different names", f'"{name}" twice')
+    for candidate in question.candidates:
+        for name in sorted(set(candidate.friction) - set(question.environments)):
+            rule = f'of "{candidate.name}" must be in the environments of the question'
+            yield InputError("RankingQuestion.candidates", rule, f'"{name}"')
+    if question.environment is not None and question.environment not in question.environments:
+        cure = f"Known: {'; '.join(question.environments)}."
+        rule = "must be one in which candidates were measured"
+        yield InputError("RankingQuestion.environment", rule, shown(question.environment), cure)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
     """Everything that was asked, resolved: library names are replaced by their records."""
 
-    name: str
-    title: str
+    name: str = field(metadata=must(_check.printable_text))
+    title: str = field(metadata=must(_check.printable_text))
     bearing: BallBearing
     operation: Operation
     film: Film
@@ -356,21 +230,99 @@ class Study:
     ranking: RankingQuestion | None = None
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
+
     distributions: Mapping[str, Distribution] = field(default_factory=dict)
-    """What is known of uncertain numbers, by their names (`study_numbers`); the records hold the means."""
+    """Distributions of uncertain inputs by name (`study_numbers`); the records hold the means."""
 
     records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
-    """Whole records of the library that are no material: "operation.fluid", "ranking.friction"."""
+    """Whole records of the library that are not materials: "operation.fluid", "ranking.friction"."""
 
     def __post_init__(self) -> None:
-        _check.settle(
-            _check.printable_text(self, "name"),
-            _check.printable_text(self, "title"),
-            _rules.no_density(self),
-            _rules.free_kinematics_without_friction(self),
-            _rules.pockets_that_overlap(self),
-            _rules.pockets_for_balls(self),
-            _rules.land_wider_than_a_ball(self),
-            _rules.unbalance_beyond_the_cage(self),
-            _rules.stiffness_of_unknown_origin(self),
+        checks = [_check.each_field(self), _turning_balls(self), _stiffness_of_unknown_origin(self)]
+        if self.cage is not None:
+            checks += [_cage_in_bearing(self.cage, self.bearing), _pockets_for_balls(self.cage, self.bearing)]
+        _check.settle(*checks)
+
+
+def _turning_balls(study: Study) -> _check.Problems:
+    """A turning ball needs its density, and without race control it is friction that turns it."""
+    turns = study.operation.inner_speed != 0.0 or study.operation.outer_speed != 0.0
+    if turns and study.bearing.ball_material.density is None:
+        rule = "needs a density, for the centrifugal force of the balls"
+        yield InputError("BallBearing.ball_material", rule, cure='Add density = "7650 kg/m3" or the like.')
+    if study.kinematics is KinematicModel.FREE and study.film.race_friction == 0.0:
+        cure = "Without friction nothing turns the balls; choose a race control model."
+        yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "0", cure)
+
+
+def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """Clearances are smaller than what they are clearances of, and the centre of mass is inside the cage."""
+    gap, ball = bearing.ball_gap, bearing.ball_diameter
+    if cage.pocket_clearance >= gap:  # no bar would be left between pockets
+        rule = f"must be smaller than the gap between balls, {format_quantity(gap, 'm')}"
+        cure = "It is the clearance of one ball, stop to stop."
+        yield _check.problem(cage, "pocket_clearance", rule, cure)
+    if cage.land_clearance is not None and cage.land_clearance >= ball:  # it would lose its balls first
+        rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
+        cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
+        yield _check.problem(cage, "land_clearance", rule, cure)
+    most = cage.mass * bearing.pitch_diameter / 2.0
+    if cage.unbalance >= most:
+        rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
+        yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
+
+
+def _pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """Uneven pockets: one for each ball, and a bar between any two."""
+    room = (bearing.ball_diameter + cage.pocket_clearance) / bearing.pitch_diameter
+    if not 0.0 < room < math.sin(math.pi / bearing.ball_count):
+        return  # overlapping already when even
+    needed = 2.0 * math.asin(room)
+    most = (1.0 - needed * bearing.ball_count / (2.0 * math.pi)) / 2.0
+    if cage.pocket_spacing_scatter >= most:
+        rule = (
+            f"must be < {most:.4g}, where two neighbours that come close leave no bar between their pockets"
         )
+        yield _check.problem(cage, "pocket_spacing_scatter", rule, "Fewer balls leave more room.")
+    yield from cage_design.angles_for(cage, bearing.ball_count)
+    if len(cage.pocket_angles) == bearing.ball_count:
+        step, i = cage_design.least_step(cage.pocket_angles)
+        if step <= needed:
+            rule = (
+                f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
+                f"must be more than {format_quantity(needed, 'rad')} apart"
+            )
+            yield InputError("CageDesign.pocket_angles", rule, format_quantity(step, "rad"))
+
+
+def _stiffness_of_unknown_origin(study: Study) -> _check.Problems:
+    """Without a stiffness, the cage or every candidate needs a material, for the modulus of the pocket."""
+    cage, candidates = study.cage, study.ranking.candidates if study.ranking else ()
+    if cage is None or cage.ball_cage_stiffness is not None or cage.material is not None:
+        return
+    bare = [candidate.name for candidate in candidates if candidate.material is None]
+    if bare or not candidates:
+        who = f'the candidate "{bare[0]}"' if bare else "the cage"
+        rule = f"is missing, and {who} has no material to compute it from"
+        yield InputError("CageDesign.ball_cage_stiffness", rule, cure="Give the stiffness or the material.")
+
+
+SECTIONS: dict[str, type] = {
+    "bearing": BallBearing,
+    "operation": Operation,
+    "film": Film,
+    "cage": CageDesign,
+    "stability": StabilitySettings,
+}
+"""Sections of a study file whose keys are the fields of a record."""
+
+_SECTION_OF = {record.__name__: section for section, record in SECTIONS.items()} | {
+    "RankingQuestion": "ranking",
+    "Friction": "ranking",
+}
+
+
+def key_of(path: str) -> str:
+    """Name in a study file of a field of a record: ``CageDesign.mass`` is ``[cage] mass``."""
+    record, _, key = path.partition(".")
+    return f"[{_SECTION_OF[record]}] {key}" if record in _SECTION_OF else path

@@ -13,29 +13,10 @@ from typing import Any
 
 from separatrix.distribution import Distribution, LogNormal, Normal, described, positive_alternative
 from separatrix.errors import InputError
-from separatrix.study import (
-    BallBearing,
-    CageDesign,
-    Candidate,
-    Film,
-    Friction,
-    Material,
-    Operation,
-    RankingQuestion,
-    StabilitySettings,
-    Study,
-)
+from separatrix.study import SECTIONS as SECTIONS
+from separatrix.study import BallBearing, Candidate, Material, Study, key_of
 from separatrix.toml_values import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
-
-SECTIONS: dict[str, type] = {
-    "bearing": BallBearing,
-    "operation": Operation,
-    "film": Film,
-    "cage": CageDesign,
-    "stability": StabilitySettings,
-}
-"""Sections that hold numbers, and their records."""
 
 WHOLE = ""
 """Unit of a whole number."""
@@ -48,8 +29,6 @@ SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
 
 _ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
 """What the contact angle depends on where the clearance is held."""
-
-_SECTION_OF = {record.__name__: section for section, record in SECTIONS.items()}
 
 Path = tuple[str | int, ...]
 Setter = Callable[[Sequence[float]], Study]
@@ -170,7 +149,8 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
             parts = {name: _changed(getattr(study, name), name, part) for name, part in changes.items()}
             return replace(study, **parts, distributions=left)
         except InputError as error:
-            raise in_the_words_of_a_file(error) from None
+            first = (error.problems or (error,))[0]
+            raise first.at(key_of(first.path)) from None
 
     return with_these
 
@@ -178,7 +158,7 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
 def _known(known: Mapping[str, StudyNumber], key: str) -> StudyNumber:
     if key not in known:
         raise InputError(
-            shown(key), "is no number of this study, or the name of two", cure=nearest(key, known)
+            shown(key), "is not a numeric input of this study, or is ambiguous", cure=nearest(key, known)
         )
     return known[key]
 
@@ -245,15 +225,6 @@ def _held_clearance(study: Study, keys: Sequence[str]) -> Metre | None:
         return None
     moved = any(f"bearing.{key}" in keys for key in _ANGLE_FROM)
     return radial_clearance(study.bearing) if moved else None
-
-
-def in_the_words_of_a_file(error: InputError) -> InputError:
-    """Name the key as a study file does: ``[cage] pocket_clearance``."""
-    problem = (error.problems or (error,))[0]
-    record, _, key = problem.path.partition(".")
-    names = {**_SECTION_OF, RankingQuestion.__name__: "ranking", Friction.__name__: "ranking"}
-    where = f"[{names[record]}] {key}" if record in names else problem.path
-    return problem.at(where)
 
 
 def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +99,53 @@ def lines_of_keys(text: str) -> dict[str, int]:
             for depth in range(1, min(len(parts), 4) + 1):
                 lines.setdefault(prefix + ".".join(parts[:depth]), number)
     return lines
+
+
+@dataclass(slots=True)
+class Places:
+    """File and line, or sheet and cell, of the paths of faults, as ``[ranking] candidates[2].name``."""
+
+    label: str
+    """Of the file, the place of what has none of its own."""
+
+    known: dict[str, str] = field(default_factory=dict)
+
+    def of(self, path: str) -> str:
+        """Return the place of the longest part of a path that has one."""
+        found = [p for p in self.known if path.startswith(p) and path[len(p) : len(p) + 1] in (*".,[ ", "")]
+        return self.known[max(found, key=len)] if found else self.label
+
+    def locate(self, path: str) -> str:
+        """Return a path with its place: ``case.toml, line 7: [cage] mass``."""
+        return f"{self.of(path)}: {path}" if path else self.label
+
+
+def places_of(label: str, data: dict[str, Any], lines: Mapping[str, int]) -> Places:
+    """Return the places of the keys of a TOML file, from the lines of its dotted keys."""
+    places = Places(label)
+    for dotted, line in lines.items():
+        for path in _paths(dotted, data):
+            places.known.setdefault(path, f"{label}, line {line}")
+    return places
+
+
+def _paths(dotted: str, data: dict[str, Any]) -> Iterator[str]:
+    """Yield a dotted key as the paths of faults, and those of what it is in."""
+    name, *keys = dotted.split(".")
+    inside: Any = data.get(name)
+    if not keys and not isinstance(inside, dict | list):
+        yield name
+        return
+    path = f"[{printable(name)}]"
+    yield path
+    for i, key in enumerate(keys):
+        if isinstance(inside, list) and key.isdigit():
+            path += f"[{int(key) + 1}]" if i > 0 else ""
+            inside = inside[int(key)] if int(key) < len(inside) else None
+        else:
+            path += f"{' ' if i == 0 else '.'}{printable(key)}"
+            inside = inside.get(key) if isinstance(inside, dict) else None
+        yield path
 
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:

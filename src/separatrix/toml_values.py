@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
+import re
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from enum import Enum
 from typing import Any, TypeVar
 
 from separatrix.errors import InputError, together
-from separatrix.units import parse, printable, shown
+from separatrix.units import NUMBER, parse, printable, shown
 
 Record = TypeVar("Record")
 Reader = Callable[[Any, str], Any]
@@ -49,9 +49,7 @@ def quantity(unit: str) -> Reader:
 def ratio(value: Any, where: str) -> float:
     """Read a plain number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        cure = "Write it without quotes." if isinstance(value, str) and _is_plain_number(value) else ""
-        if isinstance(value, str) and "," in value:
-            cure = "Write a decimal point, without quotes."
+        cure = _as_number(value)
         raise InputError(where, "must be a plain number, without a unit", shown(value), cure)
     if not -1e300 < value < 1e300:  # an integer may be too long for a float
         raise InputError(where, "must be a finite number", shown(value))
@@ -62,9 +60,7 @@ def whole(value: Any, where: str) -> int:
     """Read an integer."""
     if isinstance(value, bool) or not isinstance(value, int):
         near = isinstance(value, float) and -1e15 < value < 1e15 and value == int(value)
-        cure = f"Write {int(value)}." if near else ""
-        if isinstance(value, str) and _is_plain_number(value):
-            cure = "Write it without quotes."
+        cure = f"Write {int(value)}." if near else _as_number(value)
         raise InputError(where, "must be a whole number", shown(value), cure)
     return value
 
@@ -72,7 +68,7 @@ def whole(value: Any, where: str) -> int:
 def text(value: Any, where: str) -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text in quotes", shown(value))
+        raise InputError(where, "must be text", shown(value))
     if not 0 < len(value.strip()) <= 200 or not value.isprintable():
         raise InputError(where, "must be one line of 1 to 200 printable characters", shown(value))
     return value
@@ -108,11 +104,11 @@ def list_of(reader: Reader) -> Reader:
 def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[str, ...]) -> dict[str, Any]:
     """Read a table in place: every key known, every required key there."""
     if not isinstance(value, dict):
-        raise InputError(where, f"must be a table in {{braces}} with {', '.join(required)}", shown(value))
+        raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
     for key in value:
         if key not in readers:
             at = f"{where}.{printable(key)}"
-            raise InputError(at, "is no key of this table", cure=nearest(key, readers))
+            raise InputError(at, "is not a key of this table", cure=nearest(key, readers))
     if missing := [key for key in required if key not in value]:
         raise InputError(where, f"lacks: {', '.join(missing)}")
     return {key: readers[key](item, f"{where}.{key}") for key, item in value.items()}
@@ -127,8 +123,12 @@ def build(record: type[Record], values: dict[str, Any], where: str) -> Record:
         raise together(found) from None
 
 
-def _is_plain_number(value: str) -> bool:
-    try:
-        return math.isfinite(float(value))
-    except ValueError:
-        return False
+def _as_number(value: Any) -> str:
+    """What helps where a number is given as text."""
+    number = value.replace(",", ".") if isinstance(value, str) else ""
+    if number.endswith("%") and re.fullmatch(NUMBER, share := number.removesuffix("%").strip()):
+        return f"Write {float(share) / 100.0:.12g}."
+    if re.fullmatch(NUMBER, number.strip()) is None:
+        return ""
+    point = " with a decimal point" if "," in value else ""
+    return f"Write {number.strip()} as a number{point}, not as text."

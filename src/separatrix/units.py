@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Annotated, get_type_hints
+from typing import TYPE_CHECKING, Annotated, NamedTuple, get_type_hints
 
 from separatrix.errors import InputError
 
@@ -33,6 +33,7 @@ else:
 
 Ratio = Annotated[float, "-"]
 Metre = Annotated[float, "m"]
+PerSecond = Annotated[float, "1/s"]
 PerMetre = Annotated[float, "1/m"]
 PerMetre2 = Annotated[float, "1/m2"]
 Second = Annotated[float, "s"]
@@ -54,6 +55,20 @@ Pascal = Annotated[float, "Pa"]
 Kelvin = Annotated[float, "K"]
 Joule = Annotated[float, "J"]
 Watt = Annotated[float, "W"]
+
+
+class Rows(NamedTuple):
+    """In the type of a field with records: how these become labelled arrays.
+
+    They lie along `dimension`, and `label` is the field that names the places on it; a single record has
+    neither. `prefix` goes before the names of their fields. A field with an array has its unit and its axes
+    there: ``Annotated[Array, "Pa", ("strip", "node")]``.
+    """
+
+    dimension: str = ""
+    prefix: str = ""
+    label: str = ""
+
 
 QUANTITIES = {
     "m": "length",
@@ -152,9 +167,10 @@ UNITS: dict[str, dict[str, str]] = {
 LONGEST = 60
 """Characters a quantity may have."""
 
-_QUANTITY = re.compile(
-    r"([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?) ?([A-Za-z\u00b5\u03bc\u00b0].*)?"
-)
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+"""Pattern of a plain number."""
+
+_QUANTITY = re.compile(rf"({NUMBER}) ?([A-Za-z\u00b5\u03bc\u00b0].*)?")
 _GROUPS = re.compile(r"(?<![0-9.])[0-9]{1,3}(?:['\u2019][0-9]{3})+(?![0-9'\u2019])")
 """Digits in groups of three, with apostrophes between: 40'000."""
 
@@ -188,14 +204,14 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
     (77.0, 77.0)
     """
     if not isinstance(text, str):
-        raise _needs_unit(text, unit, where)
+        raise missing_unit(text, unit, where)
     stripped = _GROUPS.sub(lambda groups: re.sub("[^0-9]", "", groups[0]), text.strip(" "), count=1)
     match = _QUANTITY.fullmatch(stripped) if len(stripped) <= LONGEST else None
     if match is None:
         raise _refusal(text, unit, where)
     number, spelling = match.groups()
     if spelling is None:
-        raise _needs_unit(number, unit, where)
+        raise missing_unit(number, unit, where)
     scale = UNITS[unit].get(spelling.translate(_SPELLINGS))
     if scale is None:
         raise _wrong_unit(text, spelling, unit, where)
@@ -203,7 +219,7 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
 
 
 def unit_of(record: type, field: str) -> str:
-    """SI unit in the type of a record's field; ``"-"`` for a ratio, empty for what is no quantity."""
+    """SI unit in the type of a record's field; ``"-"`` for a ratio, empty for what is not a quantity."""
     hint = str(get_type_hints(record, include_extras=True)[field])
     found = re.search(r"Annotated\[float, '([^']+)'\]", hint)
     return found.group(1) if found else ""
@@ -258,10 +274,12 @@ def _integers(text: str) -> tuple[int, int]:
     return int(whole + part) * 10 ** max(power, 0), 10 ** max(-power, 0)
 
 
-def _needs_unit(value: object, unit: str, where: str) -> InputError:
+def missing_unit(value: object, unit: str, where: str, *, in_cell: bool = False) -> InputError:
+    """Refusal of a number without a unit; `in_cell` where the unit has a cell of its own."""
     example = str(value) if _is_number(value) else "1.5"
-    rule = f"needs a unit of {QUANTITIES[unit]}"
-    return InputError(where, rule, shown(value), f'Write "{example} {_HABITS[unit]}".')
+    cure = f"Write {_HABITS[unit]} there." if in_cell else f'Write "{example} {_HABITS[unit]}".'
+    got = str(value) if in_cell else shown(value)
+    return InputError(where, f"needs a unit of {QUANTITIES[unit]}", got, cure)
 
 
 def _is_number(value: object) -> bool:
@@ -288,18 +306,15 @@ def _refusal(text: str, unit: str, where: str) -> InputError:
 
 def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     plain = spelling.translate(_SPELLINGS)
-    others = [QUANTITIES[other] for other, known in UNITS.items() if plain in known]
     rule = f"needs a unit of {QUANTITIES[unit]} ({spellings(unit)})"
-    value = shown(text) + (f", which is a {others[0]}" if others else "")
-    return InputError(where, rule, value, "" if others else _near(plain, unit))
-
-
-def _near(spelling: str, unit: str) -> str:
+    others = [QUANTITIES[other] for other, known in UNITS.items() if plain in known]
+    if others:
+        return InputError(where, rule, f"{shown(text)}, which is a {others[0]}")
     from difflib import get_close_matches
 
     known = {name.casefold(): name for name in UNITS[unit]}
-    found = get_close_matches(spelling.casefold(), known, 1, 0.5)
-    return f'Did you mean "{known[found[0]]}"?' if found else ""
+    found = get_close_matches(plain.casefold(), known, 1, 0.5)
+    return InputError(where, rule, shown(text), f'Did you mean "{known[found[0]]}"?' if found else "")
 
 
 _HABITS = {

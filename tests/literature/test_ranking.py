@@ -12,8 +12,10 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.ranking import rank
-from separatrix.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.cage import Verdict
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.ranking import NotMeasured, Ranked, rank
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -26,7 +28,7 @@ INAPT = {"PEEK 450 GL 30", "Meldin HTC 100"}
 @pytest.fixture(scope="module")
 def ranking():
     """The shipped study, ranked with a small ensemble."""
-    return rank(replace(read_study("cryogenic-turbopump"), stability=SETTINGS), jobs=2)
+    return rank(replace(read_study("cryogenic-turbopump"), stability=SETTINGS), runner=Runner(jobs=2))
 
 
 def test_armalon_is_first_in_each_environment(ranking):
@@ -46,7 +48,7 @@ def test_the_two_inapt_materials_need_the_lowest_restitution_factor(ranking):
 
 def test_within_reach_is_what_the_paper_grants_solid_lubrication(ranking):
     """A threshold of 0.6 or more, no less: the paper's section 5."""
-    rows = [row for place in ranking.environments for row in place.materials if row.rank]
+    rows = [row for place in ranking.environments for row in place.materials if isinstance(row, Ranked)]
     assert all(row.within_reach == (row.restitution_threshold >= 0.6) for row in rows)
     assert any(0.5 < row.restitution_threshold < 0.6 for row in rows)
 
@@ -60,14 +62,19 @@ def test_what_the_paper_did_not_measure_is_not_ranked(ranking):
     """Meldin HTC 100 has a cross in both columns of gaseous nitrogen."""
     for environment in ranking.environments[:2]:
         row = next(row for row in environment.materials if row.name == "Meldin HTC 100")
-        assert row.rank is None
+        assert isinstance(row, NotMeasured)
         assert row.reason.startswith("not measured in gaseous nitrogen")
 
 
 def test_the_papers_statement_stands_beside_every_verdict_it_contradicts(ranking):
     """Whatever is stable here although it needs less than 0.6 says that the paper would reject it."""
-    rows = [row for environment in ranking.environments for row in environment.materials if row.rank]
-    contradicted = [row for row in rows if row.verdict == "STABLE" and not row.within_reach]
+    rows = [
+        row
+        for environment in ranking.environments
+        for row in environment.materials
+        if isinstance(row, Ranked)
+    ]
+    contradicted = [row for row in rows if row.judgement.verdict is Verdict.STABLE and not row.within_reach]
     assert contradicted
     assert all("By the paper's limit" in row.reason for row in contradicted)
     assert "0.6" in ranking.paper_statement

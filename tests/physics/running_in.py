@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.signal import lfilter
 
-from separatrix.tribometer.log import RawLog
+from separatrix.friction.logs.log import RawLog
 
 ROWS = 2000
 LEVEL = 0.15

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
-from separatrix.tribometer.log import Conditions, RawLog
+from separatrix.friction.logs.log import Conditions, RawLog
 
 SPEED = 0.5
 """Slip speed [m/s]."""

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from separatrix.cage.planar import turned_forward
-from separatrix.chain import cage_state, lubrication, restitution_state
-from separatrix.lubrication import lubrication_curve
-from separatrix.orbit import orbital_waves
+from separatrix.chain.lubrication import lubrication_curve
+from separatrix.chain.orbit import orbital_waves
+from separatrix.chain.solution import solve
 from separatrix.study import Film, KinematicModel
 from separatrix.study_file import read_study
 
@@ -18,7 +18,7 @@ STUDY = replace(SHIPPED, kinematics=KinematicModel.OUTER_RACE_CONTROL)  # quick,
 
 def eta(study):
     """Restitution factor of a study."""
-    return restitution_state(study).restitution.restitution_factor
+    return solve(study).restitution.restitution_factor
 
 
 def film(**changes):
@@ -41,11 +41,10 @@ def test_more_race_friction_returns_more():
 def test_a_stiffer_film_returns_more():
     """E_film/h up, eta up; where spin saturates the contact, C_mu may fall by up to 3 % instead."""
     soft, stiff = (
-        restitution_state(film(material=replace(STUDY.film.material, elastic_modulus=E))).restitution
-        for E in (1e7, 1e10)
+        solve(film(material=replace(STUDY.film.material, elastic_modulus=E))).restitution for E in (1e7, 1e10)
     )
     assert stiff.race_damping > 0.97 * soft.race_damping
-    bare = restitution_state(replace(STUDY, film=Film(race_friction=0.1))).restitution
+    bare = solve(replace(STUDY, film=Film(race_friction=0.1))).restitution
     assert bare.race_damping > 0.97 * soft.race_damping
 
 
@@ -62,21 +61,21 @@ def test_more_speed_returns_less():
 
 def test_turning_the_bearing_the_other_way_changes_nothing():
     """The sign of the speed is a matter of the side one looks from; tolerance: the equilibrium's residual."""
-    there, back = cage_state(STUDY), cage_state(operation(inner_speed=-STUDY.operation.inner_speed))
+    there, back = solve(STUDY), solve(operation(inner_speed=-STUDY.operation.inner_speed))
     assert back.cage.cage_speed == pytest.approx(-there.cage.cage_speed, rel=1e-6)
     assert back.cage.race_damping == pytest.approx(there.cage.race_damping, rel=1e-6)
 
 
 def test_free_spin_damps_less_than_the_sum():
     """4 C_I C_E/(C_I + C_E) against C_I + C_E, with the numbers of a real bearing."""
-    found = restitution_state(SHIPPED).restitution
+    found = solve(SHIPPED).restitution
     assert found.restitution_factor_free_spin < found.restitution_factor
 
 
 def test_the_lubrication_curve_goes_through_the_study():
     """At the study's own film and friction it has the study's restitution factor; rounding."""
-    state = restitution_state(SHIPPED)
-    contacts = state.traction.bearing
+    state = solve(SHIPPED)
+    contacts = state.bearing
     curve = lubrication_curve(
         contacts.inner,
         contacts.outer,
@@ -91,7 +90,7 @@ def test_the_lubrication_curve_goes_through_the_study():
 
 def test_a_thick_soft_film_lowers_the_restitution_factor():
     """From bare to thick at any race friction; the paper's Fig. 8 in words (section 2.1.1)."""
-    curve = lubrication(SHIPPED, restitution_state(SHIPPED))
+    curve = solve(SHIPPED).lubrication
     eta = curve.restitution_factor
     gripping = curve.race_friction >= 0.1
     assert np.all(eta[gripping, -1] < eta[gripping, 0])
@@ -108,7 +107,7 @@ def waves_at(cage, azimuth):
 def test_an_axial_load_runs_its_balls_alike():
     """No radial load, moment or tilt: no harmonics, whatever the kinematics."""
     for study in (STUDY, SHIPPED):
-        state = cage_state(study)
+        state = solve(study)
         assert (state.cage.orbital_cosines, state.cage.orbital_sines) == ((), ())
         assert state.orbital_share is None
 
@@ -117,8 +116,8 @@ def test_an_axial_load_runs_its_balls_alike():
 @pytest.mark.parametrize("change", [{"radial_load": 400.0}, {"moment": 5.0}])
 def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change):
     """R times each ball's speed beyond the mean; the first harmonics leave less than 1e-4 of its variance."""
-    state = cage_state(replace(study, operation=replace(study.operation, **change)))
-    found = state.restitution.traction.bearing.equilibrium
+    state = solve(replace(study, operation=replace(study.operation, **change)))
+    found = state.bearing.equilibrium
     beyond = state.cage.pitch_radius * (found.orbital_speed - state.cage.cage_speed)
     left = waves_at(state.cage, found.azimuth) - beyond
     assert np.abs(beyond).max() > 0.01
@@ -130,7 +129,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
 
 def test_the_ball_that_a_radial_load_presses_runs_slower():
     """At azimuth 0 the groove is deeper, the contact angle smaller, gamma = D cos/d_m larger: A_1 < 0."""
-    assert cage_state(operation(radial_load=400.0)).cage.orbital_cosines[0] < 0.0
+    assert solve(operation(radial_load=400.0)).cage.orbital_cosines[0] < 0.0
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 9, 20])
@@ -167,10 +166,8 @@ def test_the_share_tells_what_the_harmonics_leave_out():
 def test_a_bearing_that_turns_backward_is_the_mirror_image_of_one_that_turns_forward():
     """Orbital waves and gravity included; tolerance: the residual of the equilibrium."""
     loaded = replace(SHIPPED.operation, radial_load=400.0)
-    there = cage_state(replace(SHIPPED, operation=loaded)).cage
-    back = cage_state(
-        replace(SHIPPED, operation=replace(loaded, inner_speed=-SHIPPED.operation.inner_speed))
-    ).cage
+    there = solve(replace(SHIPPED, operation=loaded)).cage
+    back = solve(replace(SHIPPED, operation=replace(loaded, inner_speed=-SHIPPED.operation.inner_speed))).cage
     mirror = turned_forward(back)
     assert mirror.cage_speed == pytest.approx(there.cage_speed, rel=1e-9)
     assert mirror.orbital_cosines == pytest.approx(there.orbital_cosines, abs=1e-7)

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.cage import RunOutcome, judge, run_ensemble
-from separatrix.chain import cage_state
+from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
+from separatrix.chain.solution import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
 from separatrix.ranking import rank
 from separatrix.ranking.drawn import Case, drawn_bearings
-from separatrix.ranking.friction import as_pockets_see, candidate_seen
 from separatrix.runner import Runner
 from separatrix.study import Candidate, Friction
 from separatrix.study_file import read_study
@@ -38,9 +37,9 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
     study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=2.5e-14))
     study = with_distributions(study, {FRICTION: Normal(mean=0.2, standard_deviation=2e-13)})
     drawn = drawn_bearings(study, 8)
-    state = cage_state(study, friction=0.2)
-    kicks = state.stability.kicks
-    certain = judge(state.cage, run_ensemble(state.cage, state.stability, kicks=kicks, runs=8))
+    central = solve(study)
+    cage, kicks = central.cage_with(0.2), central.stability.kicks
+    certain = judge(cage, run_ensemble(cage, central.stability, kicks=kicks, runs=8))
     found = drawn.judge(CASE, kicks, Runner())
     # settled and whirling runs alike: a change of 1e-12 is a different motion after some impacts
     assert [count.settles for count in found.by_kick] == [count.settles for count in certain.by_kick]
@@ -49,14 +48,14 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
 def test_the_probability_is_that_of_counting_over_the_distribution():
     """Friction between 0.1 and 0.3: the mean of P(settles) counted at frictions one by one, by other runs."""
     study = with_distributions(study_of(0.2), {FRICTION: Uniform(low=0.1, high=0.3)})
-    state = cage_state(study, friction=0.2)
-    kick, runs = state.stability.kicks[1], 256
+    central = solve(study)
+    kick, runs = central.stability.kicks[1], 256
     found = drawn_bearings(study, runs).judge(CASE, (kick,), Runner())
     middles = np.linspace(0.1, 0.3, 33)[1::2]  # of 16 equal parts
     shares = [
-        run_ensemble(
-            replace(state.cage, ball_cage_friction=f), state.stability, kicks=(kick,), runs=16, first_run=5000
-        ).count(RunOutcome.SETTLES)[0]
+        run_ensemble(central.cage_with(f), central.stability, kicks=(kick,), runs=16, first_run=5000).count(
+            RunOutcome.SETTLES
+        )[0]
         / 16
         for f in middles
     ]
@@ -91,15 +90,15 @@ def test_a_friction_from_tests_follows_the_pocket_of_its_draw(tmp_path):
         encoding="utf-8",
     )
     study = read_study(tmp_path / "study.toml")
-    asked = as_pockets_see(study)
-    drawn, draws = drawn_bearings(study, 8), sample(asked, 8)
+    drawn = drawn_bearings(study, 8)
+    draws = sample(study, 8, frictions=drawn.stated)
     column = draws.names.index(FRICTION)
-    central = asked.ranking.candidates[0].friction[PLACE].mean
+    central = drawn.stated[CASE].mean
     ratios = []
-    for run, states in enumerate(drawn.states):
+    for run in range(8):
         changed = draws.setter()(draws.values[run].tolist())
-        own = candidate_seen(changed, study.ranking.candidates[0], states["A"]).friction[PLACE].mean
-        ratios.append(own / central)
+        unchanged = solve(changed, study.ranking.candidates[0])  # the law, not its draw
+        ratios.append(unchanged.frictions[PLACE].mean / central)
         # the same law by two ways: rounding
         assert drawn.friction[CASE][run] == pytest.approx(draws.values[run, column] * ratios[-1], rel=1e-9)
     assert max(ratios) / min(ratios) > 1.05
@@ -115,7 +114,7 @@ def test_draws_that_make_no_bearing_are_left_out_and_counted():
     }
     found = drawn_bearings(with_distributions(study_of(0.1), given), 16)
     assert 0 < len(found.failures) < 16
-    assert len(found.runs) == len(found.states) == 16 - len(found.failures)
+    assert len(found.runs) == len(found.solved) == 16 - len(found.failures)
     assert found.friction[CASE].shape == (len(found.runs),)
 
 
@@ -124,9 +123,10 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
     few = {"runs": 4, "restitution_factors": (0.5,)}
     certain = study_of(0.05)
     certain = replace(certain, stability=replace(certain.stability, **few))
-    row = rank(certain, jobs=2).environments[0].materials[0]
-    assert (row.uncertain_verdict, row.uncertain_runs) == (None, None)
+    row = rank(certain, runner=Runner(jobs=2)).environments[0].materials[0]
+    assert row.over_inputs is None
     uncertain = with_distributions(certain, {"cage.mass": Normal(mean=0.025, standard_deviation=0.002)})
-    row = rank(uncertain, jobs=2).environments[0].materials[0]
-    assert (row.verdict, row.uncertain_verdict, row.uncertain_runs) == ("STABLE", "STABLE", 4)
-    assert row.uncertain_probability_low < row.uncertain_probability_stable == 1.0
+    row = rank(uncertain, runner=Runner(jobs=2)).environments[0].materials[0]
+    both = row.judgement.verdict, row.over_inputs.verdict
+    assert (*both, row.over_inputs.runs) == (Verdict.STABLE, Verdict.STABLE, 4)
+    assert row.over_inputs.probability_low < row.over_inputs.probability_stable == 1.0

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import ellipe
 
-from separatrix.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
-from separatrix.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
-from separatrix.equilibrium.problem import problem
+from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
+from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
+from separatrix.chain.equilibrium.problem import problem
 from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
 from separatrix.units import Array
 

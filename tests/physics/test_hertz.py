@@ -7,14 +7,14 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import elliprd, elliprf
 
-from separatrix.errors import InputError
-from separatrix.hertz import (
+from separatrix.chain.hertz import (
     axis_ratio,
     contact_ellipse,
     contact_modulus,
     elliptic_integrals,
     race_curvatures,
 )
+from separatrix.errors import InputError
 from separatrix.study import BallBearing, Material, Race
 
 STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)

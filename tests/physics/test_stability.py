@@ -6,9 +6,7 @@ from itertools import pairwise
 import pytest
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
-from separatrix.report.stability import drift_note
-from separatrix.runner import PART, Runner, Stopped
-from separatrix.stability import (
+from separatrix.limits import (
     GrowthCounter,
     cage_at,
     critical_friction,
@@ -19,6 +17,8 @@ from separatrix.stability import (
     stability_curve,
     threshold_points,
 )
+from separatrix.present.text.stability import drift_note
+from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05
@@ -53,7 +53,7 @@ def test_the_curve_without_clearance_brackets_the_linear_limit():
 @pytest.fixture(scope="module")
 def points():
     """Critical frictions from 0 to 1, where they are wanted."""
-    return threshold_points(CAGE, SETTINGS, jobs=2)
+    return threshold_points(CAGE, SETTINGS, runner=Runner(jobs=2))
 
 
 @pytest.mark.parametrize("friction", [0.09, 0.13])
@@ -76,7 +76,9 @@ def test_the_followed_curve_equals_a_dense_one(points):
     Of nine 95 % intervals on either side one may miss (probability of two or more below 1 %).
     """
     given = tuple((i + 0.5) / 10 for i in range(9))
-    dense = threshold_points(CAGE, replace(SETTINGS, seed=17, restitution_factors=given), jobs=2)
+    dense = threshold_points(
+        CAGE, replace(SETTINGS, seed=17, restitution_factors=given), runner=Runner(jobs=2)
+    )
     misses = 0
     for at in dense:
         if at.restitution_factor in given:
@@ -112,8 +114,12 @@ def test_more_friction_never_raises_a_threshold(points):
 def test_the_number_of_threads_changes_nothing():
     """One thread, two and eight give the same curve, its points among it, to the last bit."""
     settings = replace(SETTINGS, runs=8, duration=0.02, kicks=(0.2, 0.5, 1.0))
-    one = stability_curve(CAGE, settings, jobs=1)
-    assert one == stability_curve(CAGE, settings, jobs=2) == stability_curve(CAGE, settings, jobs=8)
+    one = stability_curve(CAGE, settings, runner=Runner(jobs=1))
+    assert (
+        one
+        == stability_curve(CAGE, settings, runner=Runner(jobs=2))
+        == stability_curve(CAGE, settings, runner=Runner(jobs=8))
+    )
     assert one.complete
 
 
@@ -121,7 +127,7 @@ def test_the_number_of_threads_changes_nothing():
 def curve():
     """Curve with its band at given restitution factors."""
     given = replace(SETTINGS, kicks=(0.2, 0.5, 1.0), restitution_factors=(0.3, 0.6, 0.9))
-    return stability_curve(CAGE, given, jobs=2)
+    return stability_curve(CAGE, given, runner=Runner(jobs=2))
 
 
 def test_restitution_factors_that_are_given_are_used_as_they_are(curve):
@@ -213,7 +219,9 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
         if done == 2:
             raise KeyboardInterrupt
 
-    found = stability_curve(CAGE, replace(SETTINGS, runs=8, duration=0.02), progress=interrupt)
+    with pytest.raises(Interrupted) as stop:
+        stability_curve(CAGE, replace(SETTINGS, runs=8, duration=0.02), runner=Runner(progress=interrupt))
+    found = stop.value.finished
     assert 2 <= len(found.curve) < 5
     assert found.complete is False
 
@@ -223,7 +231,7 @@ def test_an_interrupt_ends_a_point_between_its_batches():
     counter = GrowthCounter(CAGE, replace(SETTINGS, duration=0.01))
     assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=8).runs == 8
     counter.runner.stop.set()
-    with pytest.raises(Stopped):
+    with pytest.raises(Interrupted):
         counter.count(0.5, 0.1, 0.5, first_run=8, runs=8)
 
 
@@ -240,7 +248,7 @@ def test_a_verdict_is_interrupted_between_its_parts():
     """Once the flag is set no further part is run."""
     runner = Runner()
     runner.stop.set()
-    with pytest.raises(Stopped):
+    with pytest.raises(Interrupted):
         runner.whole_ensemble(CAGE, SETTINGS)
 
 
@@ -251,9 +259,9 @@ def test_the_curve_of_a_landless_cage_says_that_it_drifts():
     found = curve_of_points(landless, SETTINGS, [])
     assert found.drifts
     assert found.drift_rate_law == law
-    text = " ".join(drift_note({"drifts": found.drifts, "drift_rate_law": law}).split())
+    text = " ".join(drift_note(found).split())
     assert f"drifts at any friction, by the linear law at {law:.3f} 1/s" in text
     assert "no verdict there is STABLE" in text
     held = curve_of_points(replace(landless, cage_speed=0.0), SETTINGS, [])
     assert not held.drifts
-    assert drift_note({"drifts": held.drifts, "drift_rate_law": held.drift_rate_law}) == ""
+    assert drift_note(held) == ""

@@ -10,9 +10,9 @@ import running_in
 from scipy.stats import binom
 from synthetic_friction import Recipe, made, recipes
 
-from separatrix.tribometer import run_in, steady
-from separatrix.tribometer.log import RawLog
-from separatrix.tribometer.reduction import reduce_log
+from separatrix.friction.logs.log import RawLog
+from separatrix.friction.reduction import reduce_log, steady
+from separatrix.friction.reduction.run_in import run_in
 
 LOGS = 200
 CHANCE = 1e-4
@@ -99,7 +99,7 @@ def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
     n, size = 256, 1.0
     x = (np.arange(n) + 0.5) / n
     values = 2.0 + size * np.exp(-3.0 * x / share) + 0.02 * rng.standard_normal(n)
-    found = run_in.run_in(values)
+    found = run_in(values)
     behind = x > found.end
     rest = size * np.exp(-3.0 * x[behind] / share).mean()
     error = 0.02 / np.sqrt(behind.sum())
@@ -115,7 +115,7 @@ def test_an_excess_that_is_over_is_seldom_told_not_to_end():
     """
     rng = np.random.default_rng(16)
     x = (np.arange(256) + 0.5) / 256
-    found = [run_in.run_in(100.0 + 30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
+    found = [run_in(100.0 + 30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
     assert sum(not one.ends for one in found) <= 5
 
 
@@ -128,7 +128,7 @@ def test_an_excess_that_goes_on_is_told(excess):
     """A slow exponential, and a straight fall of nine tenths of the test: eight of ten logs say so."""
     rng = np.random.default_rng(17)
     x = (np.arange(256) + 0.5) / 256
-    found = [run_in.run_in(30.0 * excess(x) + rng.standard_normal(256)) for _ in range(40)]
+    found = [run_in(30.0 * excess(x) + rng.standard_normal(256)) for _ in range(40)]
     assert sum(not one.ends for one in found) >= 32
 
 
@@ -142,7 +142,7 @@ def test_an_excess_that_noise_hides_is_in_the_error():
     held = 0
     for _ in range(300):
         values = 1.1 * np.exp(-10.0 * x) + rng.standard_normal(256)
-        found = run_in.run_in(values)
+        found = run_in(values)
         mean = steady.steady_mean(values[round(found.end * 256) :])
         error = np.hypot(mean.standard_error, found.rest)
         held += abs(mean.mean) <= steady.half_width(error, mean.degrees_of_freedom)
@@ -154,7 +154,7 @@ def test_a_fall_that_is_no_exponential_is_cut_too():
     rng = np.random.default_rng(12)
     x = (np.arange(256) + 0.5) / 256
     values = np.maximum(0.0, 1.0 - x / 0.2) + 0.05 * rng.standard_normal(256)
-    assert 0.17 < run_in.run_in(values).end < 0.35
+    assert 0.17 < run_in(values).end < 0.35
 
 
 def test_noise_and_drift_are_seldom_cut():
@@ -164,7 +164,7 @@ def test_noise_and_drift_are_seldom_cut():
     """
     rng = np.random.default_rng(13)
     cut = [
-        run_in.run_in(made(Recipe(rows=768, drift=0.02, correlation=c), rng).log.friction[::3]).end > 0.02
+        run_in(made(Recipe(rows=768, drift=0.02, correlation=c), rng).log.friction[::3]).end > 0.02
         for c in (0.0, 0.003, 0.01, 0.03)
         for _ in range(25)
     ]

@@ -22,8 +22,8 @@ from separatrix.cage.closed_forms import drive_energy, linear_roots
 from separatrix.cage.ending import LONGEST
 from separatrix.cage.reason import largest_room
 from separatrix.cage.verdict import kick_counts
-from separatrix.chain import cage_state
-from separatrix.stability.growth import cage_at
+from separatrix.chain.solution import solve
+from separatrix.limits.growth import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -38,7 +38,7 @@ def shipped(name: str, radial_load: float = 0.0, friction: float = 0.08) -> Plan
     """Cage of a shipped study with another radial load [N] and pocket friction [-]."""
     study = read_study(name)
     study = replace(study, operation=replace(study.operation, radial_load=radial_load))
-    return cage_state(study, friction=friction).cage
+    return solve(study).cage_with(friction)
 
 
 def wheel(friction: float) -> PlanarCage:
@@ -203,7 +203,7 @@ moment_of_inertia = "10.758 kg mm2"
 def test_a_cage_driven_21_mm_into_its_land_is_not_stable(tmp_path):
     """A kick of 1000 m/s goes through a clearance of 1 mm: whatever it ends as, no verdict is STABLE."""
     (tmp_path / "study.toml").write_text(INTO_THE_LAND, encoding="utf-8")
-    cage = cage_state(read_study(tmp_path / "study.toml"), friction=0.01).cage
+    cage = solve(read_study(tmp_path / "study.toml")).cage_with(0.01)
     settings = StabilitySettings(kicks=(1000.0,), runs=4, duration=1.7256639e-3, seed=0)
     found = judge(cage, run_ensemble(cage, settings))
     assert found.largest_offset > largest_room(cage)

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction_file import read_friction, write_friction
-from separatrix.friction_fit import FrictionTest, fit_friction
+from separatrix.friction.file import read_friction, write_friction
+from separatrix.friction.fit import fit_friction
+from separatrix.friction.records import FrictionTest
 from separatrix.ranking.lowest import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)

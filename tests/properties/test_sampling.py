@@ -11,7 +11,7 @@ from scipy.special import ndtr
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import next_cage_deviation, sample, sobol_points, uncertain_inputs
 from separatrix.errors import InputError
-from separatrix.friction_fit import TestedFriction
+from separatrix.friction.fit import TestedFriction
 from separatrix.study import BallBearing, Candidate, Film, Friction, Operation, RankingQuestion, Study
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions

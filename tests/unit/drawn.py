@@ -1,4 +1,4 @@
-"""Datasets as `results.load` returns them, made by hand, for the tests of the figures."""
+"""Datasets as `present.load` returns them, made by hand, for the tests of the figures."""
 
 from __future__ import annotations
 
@@ -96,3 +96,40 @@ def plane(share, *, x=None, y=None, **changes):
     y = np.linspace(0.0, 0.5, rows) if y is None else y
     coords = {"x": ("x", x, {"units": "-"}), "y": ("y", y, {"units": "-"})}
     return xr.Dataset(variables, coords=coords).assign(changes)
+
+
+def swept(names, verdict=("", "", "")):
+    """A sweep of three cases over parameters of these names, the first a length."""
+    units = {"film.thickness": "m", "operation.inner_speed": "rad/s", "operation.temperature": "K"}
+    cases = {name: ("case", 1e-6 * np.arange(1.0, 4.0), {"units": units[name]}) for name in names}
+    factors = {"restitution_factor": ("case", [0.1, 0.2, 0.3]), "verdict": ("case", list(verdict))}
+    return xr.Dataset(cases | factors | {"parameter": ("parameter", names)})
+
+
+def ranking(**changes):
+    """A ranking of four materials in two environments on a curve, with these columns changed."""
+    frictions = [[0.1, 0.2, 0.3, 0.4], [0.4, np.nan, 0.1, 0.1]]
+    columns = {"rank": [[1.0, 2.0, 3.0, 4.0]] * 2, "margin": [[0.1] * 4] * 2, "friction": frictions}
+    columns |= {"restitution_factor": [[0.27] * 4] * 2, "verdict": [["STABLE"] * 4] * 2}
+    columns |= {f"restitution_threshold{end}": [[0.4] * 4] * 2 for end in ("", "_low", "_high")}
+    columns |= {"extrapolation": np.full((2, 4), "", dtype=object)}
+    made = {f"material_{name}": column for name, column in columns.items()}
+    made |= {f"overall_{name}": column[0] for name, column in columns.items()} | changes
+    dims = {name: ("environment", "material")[name.startswith("overall") :] for name in made}
+    made = {name: (dims[name], one) for name, one in made.items()}
+    return curve(**made).assign_coords(environment=["air", "vacuum"], material=list("ABCD"))
+
+
+def cloud(eta):
+    """A sensitivity of two candidates, with bearings of these restitution factors (material, sample)."""
+    at, count = ("environment", "material"), np.shape(eta)[1]
+    friction = np.linspace(0.1, 0.3, 2 * count).reshape(1, 2, count)
+    variables = {
+        "cloud_restitution_factor": ((*at, "sample"), np.asarray(eta)[np.newaxis]),
+        "cloud_friction": ((*at, "sample"), friction),
+        "cloud_settles": ((*at, "sample"), (friction < 0.2).astype(float)),
+        "material_friction": (at, [[0.15, 0.25]]),
+        "material_probability_stable": (at, [[1.0, 0.0]]),
+        "material_extrapolation": (at, np.array([["", "too fast"]], dtype=object)),
+    }
+    return xr.Dataset(variables, coords={"environment": ["air"], "material": ["A", "B"]})

@@ -7,11 +7,15 @@ import zipfile
 from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
-from separatrix.spreadsheet import cell_name
+from openpyxl.utils import get_column_letter
 
+SPREADSHEET = "application/vnd.openxmlformats-officedocument.spreadsheetml"
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/'
-    'content-types"><Default Extension="xml" ContentType="application/xml"/></Types>'
+    'content-types"><Default Extension="xml" ContentType="application/xml"/>'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    f'<Override PartName="/xl/workbook.xml" ContentType="{SPREADSHEET}.sheet.main+xml"/>'
+    f'<Override PartName="/xl/styles.xml" ContentType="{SPREADSHEET}.styles+xml"/></Types>'
 )
 REL = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006/relationships"
@@ -80,7 +84,7 @@ def sheet(rows: list[list[object]]) -> str:
 
 def cell(row: int, column: int, value: object) -> str:
     """Return one cell; nothing for None."""
-    at = f'r="{cell_name(row, column)}"'
+    at = f'r="{get_column_letter(column)}{row}"'
     if value is None:
         return ""
     if isinstance(value, Formula):

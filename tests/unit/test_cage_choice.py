@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.cage_choice import other_than_candidates, pocket_friction, required_environment
-from separatrix.chain import restitution_state
+from separatrix.cage_choice import other_than_candidates, require_friction, required_environment
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study
 
@@ -57,16 +57,16 @@ def test_the_cage_material_names_the_candidate(tmp_path, name):
     """Its friction in the environment of the bearing, not that of the first candidate on another steel."""
     study = extended(tmp_path, f'[cage]\nmaterial = "{name}"\n')
     assert study.ranking.environment == "liquid nitrogen, 440C"
-    assert pocket_friction(study) == (0.32 if name[0] in "Mm" else 0.08)
+    assert solve(study).cage.ball_cage_friction == (0.32 if name[0] in "Mm" else 0.08)
 
 
 def test_the_cage_may_be_a_candidate_that_no_library_has(tmp_path):
     """With the candidate's own modulus for the pocket's stiffness."""
     study = case(tmp_path)
-    assert pocket_friction(study) == 0.3
+    assert solve(study).friction.mean == 0.3
     assert study.cage.material == study.ranking.candidates[0].material
     soft = replace(study, cage=replace(study.cage, ball_cage_stiffness=None))
-    assert restitution_state(soft).stiffness_source.startswith("Hertz")
+    assert solve(soft).stiffness_source.startswith("Hertz")
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_an_environment_that_nothing_matches_must_be_said(tmp_path):
     with pytest.raises(InputError, match=r'environment is missing.*or "liquid nitrogen, 440C"'):
         required_environment(study, study.ranking)
     with pytest.raises(InputError, match="environment is missing"):
-        pocket_friction(study)
+        require_friction(study)
     given = '[operation]\nfluid = "LOX"\n[ranking]\nenvironment = "Liquid Nitrogen, 440c"\n'
     assert extended(tmp_path, given).ranking.environment == "liquid nitrogen, 440C"
 
@@ -100,18 +100,22 @@ def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
     """The refusal lists the candidates; it comes only from a verb that needs the friction."""
     study = case(tmp_path, 'material = "Vespel SP 211"')
     with pytest.raises(InputError, match=r'"Vespel SP 211" is not a candidate.*My compound, Other'):
-        pocket_friction(study)
-    assert pocket_friction(case(tmp_path, 'material = "Armalon"\nball_cage_friction = 0.2')) == 0.2
+        require_friction(study)
+    given = case(tmp_path, 'material = "Armalon"\nball_cage_friction = 0.2')
+    assert solve(given).friction.mean == 0.2
     nameless = replace(study, cage=replace(study.cage, material=None, material_name=None))
     with pytest.raises(InputError, match=r"does not name a candidate.*My compound, Other"):
-        pocket_friction(nameless)
+        require_friction(nameless)
     alone = replace(nameless, ranking=replace(study.ranking, candidates=study.ranking.candidates[1:]))
-    assert pocket_friction(alone) == 0.1
+    require_friction(alone)
+    assert solve(alone).friction.mean == 0.1
 
 
 def test_a_name_that_nobody_has_is_refused(tmp_path):
     """With the library's names and the candidates'."""
-    with pytest.raises(InputError, match=r"is no cage material of the library.*Candidates are My compound"):
+    with pytest.raises(
+        InputError, match=r"is not a cage material of the library.*Candidates are My compound"
+    ):
         case(tmp_path, 'material = "Unobtainium"')
 
 

@@ -4,23 +4,26 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from separatrix import chain
+from separatrix.answers import OfCage
 from separatrix.cage import PlanarCage, settings_for
-from separatrix.chain import (
-    bearing_state,
-    cage_state,
-    known_friction,
-    lubrication,
-    pocket_friction,
-    pocket_stiffness,
-    restitution_state,
-    traction_state,
-)
+from separatrix.cage_choice import require_friction
+from separatrix.chain import solution
+from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.report.cage import chain_facts
-from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
-from separatrix.results import documents
-from separatrix.study import Film, Guidance, Material, PocketContact, PocketShape, StabilitySettings
+from separatrix.present import plain
+from separatrix.present.shapes import shape
+from separatrix.present.text.chain import basis
+from separatrix.study import (
+    Candidate,
+    Film,
+    Friction,
+    Guidance,
+    Material,
+    PocketContact,
+    PocketShape,
+    StabilitySettings,
+)
 from separatrix.study_file import read_study
 
 STUDY = read_study("cryogenic-turbopump")
@@ -40,35 +43,37 @@ def cage(**changes):
 def test_a_bearing_at_rest_has_no_traction():
     """Equilibrium answers at 0 rpm; traction and restitution say in one line that they cannot."""
     still = study(operation=replace(STUDY.operation, inner_speed=0.0))
-    assert bearing_state(still).inner.load > 0.0
+    assert solve(still).bearing.inner.load > 0.0
     with pytest.raises(InputError, match="inner_speed must differ from outer_speed"):
-        traction_state(still)
+        _ = solve(still).traction
     with pytest.raises(InputError, match="inner_speed must differ from outer_speed"):
-        cage_state(still)
+        _ = solve(still).cage
 
 
 def test_races_without_friction_are_refused():
     """They hold no ball."""
     with pytest.raises(InputError, match="race_friction must be > 0"):
-        traction_state(study(film=Film(race_friction=0.0)))
+        _ = solve(study(film=Film(race_friction=0.0))).traction
 
 
 def test_a_study_without_a_cage_is_refused():
     """The section is named."""
     with pytest.raises(InputError, match=r"lacks the section \[cage\]"):
-        restitution_state(study(cage=None))
+        _ = solve(study(cage=None)).restitution
 
 
 def test_an_unknown_pocket_stiffness_is_refused_with_the_cure():
     """Neither a stiffness nor a material to compute it from."""
     nameless = cage(ball_cage_stiffness=None, material=None, material_name=None)
     with pytest.raises(InputError, match=r"ball_cage_stiffness is missing.*elastic_modulus"):
-        pocket_stiffness(nameless, 0.0)
+        _ = solve(nameless).ball_cage_stiffness
 
 
 def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_impact_speed():
     """A given stiffness wins; else the candidate's material, else the cage's."""
-    assert pocket_stiffness(STUDY, 0.0, POLYMER) == (3e6, "given in the study")
+    polymer = Candidate(name="polymer", material=POLYMER, friction={"vacuum, 440C": Friction(mean=0.1)})
+    given = solve(STUDY, polymer)
+    assert (given.ball_cage_stiffness, given.stiffness_source) == (3e6, "given in the study")
     expected = ball_pocket_stiffness(
         STUDY.bearing.ball_diameter,
         STUDY.bearing.ball_material,
@@ -78,15 +83,15 @@ def test_pocket_stiffness_is_the_given_one_or_hertz_at_the_impact_speed():
     )
     other = replace(POLYMER, name="other", elastic_modulus=9e9)
     own = cage(ball_cage_stiffness=None, impact_speed=0.5, material=POLYMER)
-    assert pocket_stiffness(own, 600.0)[0] == expected
-    stiffness, source = pocket_stiffness(replace(own, cage=replace(own.cage, material=other)), 600.0, POLYMER)
-    assert stiffness == expected
-    assert source == "Hertz, ball on a flat wall of polymer at 0.5 m/s"
+    assert solve(own).ball_cage_stiffness == expected
+    asked = solve(replace(own, cage=replace(own.cage, material=other)), polymer)
+    assert asked.ball_cage_stiffness == expected
+    assert asked.stiffness_source == "Hertz, ball on a flat wall of polymer at 0.5 m/s"
 
 
 def test_default_kicks_scale_with_the_bearing():
     """0.5, 2.5 and 10 times cage speed times half the pocket clearance, to three digits."""
-    state = cage_state(STUDY)
+    state = solve(STUDY)
     speed = state.cage.cage_speed * STUDY.cage.pocket_clearance / 2
     assert state.stability.kicks == pytest.approx([0.5 * speed, 2.5 * speed, 10 * speed], rel=5e-3)
     assert state.stability.reference_kick == state.stability.kicks[1] == float(f"{2.5 * speed:.3g}")
@@ -95,7 +100,7 @@ def test_default_kicks_scale_with_the_bearing():
 
 def test_a_ball_set_at_rest_and_a_gripping_pocket_have_kicks():
     """The pocket speed counts as at least 0.02 m/s."""
-    cage_at_rest = replace(cage_state(STUDY).cage, cage_speed=0.0)
+    cage_at_rest = replace(solve(STUDY).cage, cage_speed=0.0)
     found = settings_for(StabilitySettings(), cage_at_rest)
     assert (found.kicks, found.reference_kick) == ((0.01, 0.05, 0.2), 0.05)
 
@@ -111,8 +116,8 @@ def test_a_ball_set_at_rest_and_a_gripping_pocket_have_kicks():
 )
 def test_given_kicks_stay(given, kicks, reference):
     """The reference is the given one, or the bearing's own, whatever the list of kicks."""
-    reference = reference or cage_state(STUDY).stability.reference_kick
-    found = settings_for(StabilitySettings(**given), cage_state(STUDY).cage)
+    reference = reference or solve(STUDY).stability.reference_kick
+    found = settings_for(StabilitySettings(**given), solve(STUDY).cage)
     assert (found.kicks, found.reference_kick) == (kicks, reference)
 
 
@@ -120,56 +125,55 @@ def test_eta_does_not_move_with_the_list_of_kicks():
     """Phenolic's eta fell from 0.42 to 0.28 with kicks of 2 and 3 m/s: a property of the bearing must not."""
     soft = cage(ball_cage_stiffness=None, material=POLYMER)
     hard = replace(soft, stability=StabilitySettings(kicks=(2.0, 3.0)))
-    assert restitution_state(hard).restitution == restitution_state(soft).restitution
+    assert solve(hard).restitution == solve(soft).restitution
 
 
 def test_the_cage_has_the_numbers_of_the_chain():
     """Thin ring at the pitch radius, orbital speed of the balls, race damping of the film."""
-    state = cage_state(STUDY)
+    state = solve(STUDY)
     found = state.cage
     assert found.moment_of_inertia == pytest.approx(0.025 * 0.0325**2)
-    assert found.race_damping == state.restitution.restitution.race_damping
-    orbit = state.restitution.traction.bearing.equilibrium.orbital_speed
+    assert found.race_damping == state.restitution.race_damping
+    orbit = state.bearing.equilibrium.orbital_speed
     assert found.cage_speed == pytest.approx(orbit.mean())
     assert found.pitch_radius == STUDY.bearing.pitch_diameter / 2
 
 
 def test_the_chain_of_a_study_is_solved_once():
     """What does not depend on the cage is the same object for every cage, and for another study like it."""
-    known = traction_state(STUDY)
-    assert known.bearing is bearing_state(STUDY)
+    known = solve(STUDY).traction
     heavier = replace(STUDY, cage=replace(STUDY.cage, mass=0.03))
-    assert restitution_state(heavier).traction is known
+    assert solve(heavier).traction is known
     thicker = replace(STUDY, film=replace(STUDY.film, thickness=2.0 * STUDY.film.thickness))
-    assert traction_state(thicker) is not known
-    assert traction_state(thicker).bearing is known.bearing
+    assert solve(thicker).traction is not known
+    assert solve(thicker).bearing is solve(STUDY).bearing
     with pytest.raises(ValueError, match="read-only"):  # or the next caller would get what was written
-        known.bearing.equilibrium.load_inner[0] = 0.0
+        solve(STUDY).bearing.equilibrium.load_inner[0] = 0.0
     with pytest.raises(ValueError, match="read-only"):
         known.inner.traction_coefficient[0] = 0.0
 
 
 def test_pocket_friction_is_given_or_that_of_the_named_material():
     """The study's own, else that of the cage's candidate in the bearing's environment, else a refusal."""
-    assert pocket_friction(cage(ball_cage_friction=0.2)) == 0.2
-    assert pocket_friction(STUDY) == 0.08  # Armalon in liquid nitrogen on 440C
+    assert solve(cage(ball_cage_friction=0.2)).cage.ball_cage_friction == 0.2
+    assert solve(STUDY).cage.ball_cage_friction == 0.08  # Armalon in liquid nitrogen on 440C
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
-        pocket_friction(study(ranking=None))
+        require_friction(study(ranking=None))
 
 
 def test_bare_races_have_no_lubrication_curve():
     """Which film it would be is not known."""
     bare = study(film=Film(race_friction=0.1))
-    assert lubrication(bare, restitution_state(bare)) is None
+    assert solve(bare).lubrication is None
 
 
 def test_a_stability_curve_needs_no_measured_friction():
     """It runs through all frictions: none known is no fault; one run alone is refused."""
     unknown = study(ranking=None)
-    assert known_friction(unknown) is None
-    assert cage_state(unknown, friction=0.0).cage.ball_cage_friction == 0.0
+    assert solve(unknown).friction is None
+    assert solve(unknown).cage_with(0.0).ball_cage_friction == 0.0
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
-        cage_state(unknown)
+        _ = solve(unknown).cage
 
 
 def test_the_cage_in_the_plane_takes_the_design_as_it_is():
@@ -191,23 +195,23 @@ def test_the_cage_in_the_plane_takes_the_design_as_it_is():
         "gravity": 9.81,
     }
     started = replace(STUDY.operation, ramp_time=0.05, ramp_start=0.2)
-    found = cage_state(replace(cage(**changes), operation=started)).cage
+    found = solve(replace(cage(**changes), operation=started)).cage
     assert {name: getattr(found, name) for name in changes} == changes
     assert (found.ramp_time, found.ramp_start, found.hertz_coefficient) == (0.05, 0.2, None)
     angles = tuple(0.1 + 0.483 * j for j in range(13))
-    assert cage_state(cage(pocket_angles=angles)).cage.pocket_angles == angles
+    assert solve(cage(pocket_angles=angles)).cage.pocket_angles == angles
 
 
 def test_hertz_contact_has_the_coefficient_of_the_material():
     """Through the stiffness of equal energy and depth at the impact speed, and back; rounding."""
     soft = cage(ball_cage_stiffness=None, material=POLYMER, pocket_contact=PocketContact.HERTZ)
     expected = hertz_coefficient(STUDY.bearing.ball_diameter, STUDY.bearing.ball_material, POLYMER)
-    assert cage_state(soft).cage.hertz_coefficient == pytest.approx(expected, rel=1e-12)
+    assert solve(soft).cage.hertz_coefficient == pytest.approx(expected, rel=1e-12)
 
 
 def test_hertz_contact_behind_a_given_stiffness_stores_the_kick_as_deep():
     """It has k = 0.8 K sqrt(depth), where 0.4 K depth^2.5 is the energy of an impact at 0.5 m/s."""
-    found = cage_state(cage(impact_speed=0.5, pocket_contact=PocketContact.HERTZ)).cage
+    found = solve(cage(impact_speed=0.5, pocket_contact=PocketContact.HERTZ)).cage
     K, energy = found.hertz_coefficient, 0.5 * found.mass * 0.5**2
     depth = (2.5 * energy / K) ** 0.4
     assert 0.8 * K * depth**0.5 == pytest.approx(3e6, rel=1e-12)  # rounding
@@ -218,24 +222,30 @@ def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
     """1500 N across the shipped bearing, whose inner ring may tilt; 100 N does not."""
     tilting = replace(STUDY.operation, moment=0.0)
     with pytest.warns(ValidityWarning, match="the balls would lead and lag by up to 681 um"):
-        pushed = cage_state(study(operation=replace(tilting, radial_load=1500.0))).cage
+        pushed = solve(study(operation=replace(tilting, radial_load=1500.0))).cage
     assert pushed.lead_amplitude > pushed.half_play
-    free = cage_state(study(operation=replace(tilting, radial_load=100.0))).cage
+    free = solve(study(operation=replace(tilting, radial_load=100.0))).cage
     assert 0.0 < free.lead_amplitude < free.half_play
+
+
+def of_cage(asked):
+    """The cage of a study, with its chain."""
+    solution = solve(asked)
+    return OfCage(solution=solution, cage=solution.cage)
 
 
 def test_results_and_report_say_how_far_balls_lead_and_lag():
     """Beside half their play, with what the harmonics keep; nothing of it where all balls run alike."""
-    loaded = cage_state(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
-    chain = documents.cage(loaded)["chain"]
+    loaded = of_cage(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
+    chain = plain(shape(loaded)["chain"])
     assert chain["half_play"] == 3e-4
     assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
-    assert dict(chain_facts(chain))["Free balls lead and lag"] == (
+    assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
         "up to 63.57 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
     )
-    alike = documents.cage(cage_state(STUDY))["chain"]
-    assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)
-    assert "Free balls lead and lag" not in dict(chain_facts(alike))
+    alike = of_cage(STUDY)
+    assert (alike.cage.lead_amplitude, alike.solution.orbital_share) == (0.0, None)
+    assert "Free balls lead and lag" not in dict(basis(STUDY, alike))
 
 
 def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():
@@ -246,6 +256,6 @@ def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():
         mass: float = 0.025
         pocket_clearances: float = 1e-4
 
-    assert chain._as_designed(Renamed()) == {"mass": 0.025, "pocket_clearances": 1e-4}
+    assert solution._as_designed(Renamed()) == {"mass": 0.025, "pocket_clearances": 1e-4}
     with pytest.raises(TypeError, match="pocket_clearances"):
-        PlanarCage(**chain._as_designed(Renamed()))
+        PlanarCage(**solution._as_designed(Renamed()))

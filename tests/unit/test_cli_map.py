@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from separatrix import results
-from separatrix.chain import restitution_state
+from separatrix import present
+from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.cli.axes import read_axis
 from separatrix.errors import InputError
+from separatrix.explore.axes import read_axis
 from separatrix.ledger import NAME
 from separatrix.study_file import read_study
 
@@ -182,7 +182,7 @@ def test_a_film_without_thickness_is_bare_races(capsys):
     coated = {point["y"]: point["restitution_factor"] for point in found["points"]}
     study = read_study("small.toml")
     bare = replace(study, film=replace(study.film, material=None, thickness=None))
-    assert coated[0.0] == restitution_state(bare).restitution.restitution_factor
+    assert coated[0.0] == solve(bare).restitution.restitution_factor
     assert coated[0.0] != coated[2.5e-6]
 
 
@@ -201,7 +201,7 @@ def test_the_dataset_stands_on_x_and_y(capsys):
     """Points have the dimensions (y, x) with the parameters' names and units."""
     clearance = "cage.pocket_clearance=0.2..1mm:3"
     found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
-    data = results.load("m/map.nc")
+    data = present.load("m/map.nc")
     assert data["probability_whirl"].dims == ("y", "x")
     assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
     for point in found["points"]:

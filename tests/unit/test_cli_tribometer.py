@@ -12,9 +12,9 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.cli.tribometer import file_name
-from separatrix.friction_file import read_friction
+from separatrix.friction.file import read_friction
+from separatrix.friction.logs.column_map import column_map
 from separatrix.study_file import read_study
-from separatrix.tribometer.column_map import column_map
 
 MAP = """
 [test]
@@ -112,7 +112,7 @@ def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, 
     assert "Nothing written; use --out friction.toml" in capsys.readouterr().out
     assert main(["tribometer", "a.csv", "b.csv", "--out", "friction.toml"]) == 2
     line = capsys.readouterr().err
-    assert line.startswith("separatrix: a.csv does not say: material, counterface, medium.")
+    assert line.startswith("separatrix: a.csv does not state: material, counterface, medium.")
     assert line.endswith("--map map.toml. 1 other file is refused too.\n")
     assert names(logs) == ["a.csv", "b.csv", "map.toml"]
 
@@ -163,7 +163,7 @@ WRONG = {
     "plots is a file": (["a.csv", "--plots", "b.csv"], ("b.csv cannot be written",)),
     "plots is empty": (["a.csv", "--plots", " "], ("--plots needs the name of a folder",)),
     "running-in in newtons": (["a.csv", "--run-in", "5 N"], ("--run-in must be a time", "got")),
-    "running-in beyond": (["a.csv", "--run-in", "5 h"], ("a.csv: --run-in must lie before",)),
+    "running-in beyond": (["a.csv", "--run-in", "5 h"], ("a.csv: the end of running-in must lie before",)),
     "running-in in cycles": (["a.csv", "--run-in", "5 cycles"], ("a.csv", "needs a column of cycles")),
     "no jobs": (["a.csv", "--jobs", "0"], ("--jobs must lie between 1",)),
     "no files": ([], ("Missing argument 'FILES...'",)),
@@ -236,7 +236,7 @@ def test_a_column_map_says_where_running_in_ends_in_each_file(logs, capsys):
     [
         ('"5"', 'map.toml: [files."b.csv"] run_in_end must be a time, a distance'),
         ("5.0", "run_in_end must be a time, a distance"),
-        ('"5 h"', "b.csv: run_in_end must lie before the end of the test"),
+        ('"5 h"', "b.csv: the end of running-in must lie before the end of the test"),
         ('"5 m"', "b.csv needs a column of distance"),
     ],
 )

@@ -18,8 +18,8 @@ PACKAGE = Path(separatrix.__file__).parent
 
 SOME_KERNELS = """
 import json
-from separatrix import hertz
-from separatrix.traction import solve_strip, strip
+from separatrix.chain import hertz
+from separatrix.chain.traction import solve_strip, strip
 
 values = [*hertz.ellipse_shape(3.0, 0.0), *solve_strip(0.4, 0.3, nodes=20).shear.tolist()]
 stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.active_set)]
@@ -101,7 +101,7 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
 def test_the_cage_and_the_study_are_sources_of_kernels_and_a_report_is_not():
     """What the files of today come to."""
     found = {str(path.relative_to(PACKAGE)) for path in kernel_sources(PACKAGE)}
-    assert {"cage/records.py", "cage/planar.py", "study.py", "hertz.py", "compiled.py"} <= found
+    assert {"cage/records.py", "cage/planar.py", "study.py", "chain/hertz.py", "compiled.py"} <= found
     assert not any(name.startswith(("report", "figures", "cli", "results")) for name in found)
 
 

@@ -6,11 +6,10 @@ import drawn
 import numpy as np
 import pytest
 
-from separatrix.cage import PlanarCage, linear_critical_friction
+from separatrix.chain.restitution import restitution_factor
 from separatrix.figures import map as maps
 from separatrix.figures import stability
 from separatrix.figures.style import journal
-from separatrix.restitution import restitution_factor
 
 ON = "restitution_factor"
 NAN = np.nan
@@ -35,13 +34,13 @@ CURVES = {
 }
 AGREE = np.array([["not run: the points around agree", "As they do."], ["not run: interrupted", ""]])
 MAPS = {
-    "ordinary": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
+    "an ordinary map": drawn.plane([[0.0, 0.4], [0.6, 1.0]]),
     "all refused": drawn.plane([[NAN, NAN], [NAN, NAN]]),
     "all undecided": drawn.plane([[0.5, 0.4], [0.4, 0.5]]),
     "all undecided at one half": drawn.plane([[0.5, 0.5], [0.5, 0.5]]),
     "all grow": drawn.plane([[1.0, 1.0], [1.0, 1.0]]),
     "one column": drawn.plane([[0.0], [0.6], [1.0]]),
-    "one point": drawn.plane([[0.6]]),
+    "one cell": drawn.plane([[0.6]]),
     "partly run": drawn.plane([[NAN, 0.0], [NAN, 1.0]]).assign(reason=(("y", "x"), AGREE)),
     "other parameters": drawn.plane(
         [[0.0, 0.4]] * 3, y=np.array([1e-4, 1e-3, 1e-2]), y_parameter="cage.mass"
@@ -51,42 +50,24 @@ MAPS = {
 }
 
 
-@pytest.mark.parametrize("data", CURVES.values(), ids=CURVES.keys())
-def test_every_curve_is_drawn_without_a_warning(data):
+@pytest.mark.parametrize("kind", [*CURVES, *MAPS])
+def test_every_curve_and_every_map_is_drawn_without_a_warning(kind):
     """Warnings are errors here."""
     with journal():
-        stability.stability(data).draw_without_rendering()
-
-
-@pytest.mark.parametrize("data", MAPS.values(), ids=MAPS.keys())
-def test_every_map_is_drawn_without_a_warning(data):
-    """Warnings are errors here."""
-    with journal():
-        maps.map(data).draw_without_rendering()
+        figure = stability.stability(CURVES[kind]) if kind in CURVES else maps.stability_map(MAPS[kind])
+        figure.draw_without_rendering()
 
 
 @pytest.mark.parametrize("zeta", [0.02, 0.3, 0.9])
 def test_the_linear_limit_is_that_of_the_cage(zeta):
-    """Drawn from restitution factor and number of balls alone: 2 zeta sqrt(2/Z) of the engine."""
-    cage = PlanarCage(
-        mass=0.05,
-        moment_of_inertia=5e-5,
-        ball_count=11,
-        pitch_radius=0.03,
-        cage_speed=0.0,
-        inner_speed=1.0,
-        outer_speed=0.0,
-        pocket_clearance=6e-4,
-        ball_cage_stiffness=3e6,
-        race_damping=np.sqrt(3e6 * 0.05) / (2 * zeta),
-        ball_cage_friction=0.0,
-    )
-    drawn_limit = stability.linear_limit(np.array([restitution_factor(zeta)]), 11)
-    assert drawn_limit[0] == pytest.approx(linear_critical_friction(cage), rel=1e-9)  # eta to zeta and back
+    """Drawn from restitution factor and number of balls alone: 2 zeta sqrt(2/Z), as the engine has it."""
+    limit = stability.linear_limit(np.array([restitution_factor(zeta)]), 11)
+    # eta to zeta and back
+    assert limit[0] == pytest.approx(2.0 * zeta * np.sqrt(2.0 / 11.0), rel=1e-9)
 
 
 def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
-    """Growth without friction: from 0; death up to the most: beyond the top; nothing known: nothing drawn."""
+    """Whirl without friction: from 0; settling up to the most: beyond the top; unknown: nothing drawn."""
     low, middle, high = [NAN, 0.1, NAN], [0.2, 0.2, NAN], [0.3, NAN, NAN]
     ends = {"critical_friction_low": (ON, low), "critical_friction_high": (ON, high)}
     found = stability.band_ends(drawn.curve(points=3, critical_friction=(ON, middle), **ends), 0.5)
@@ -96,21 +77,14 @@ def test_a_band_without_an_end_reaches_the_edge_and_an_unknown_point_has_none():
 
 def test_the_picture_holds_every_curve_and_every_mark():
     """A curve from 0.51 to 0.9, its kicks, and a critical friction of 0.77: all below the top."""
-    high = np.linspace(0.9, 0.51, 4)
+    high, ends = np.linspace(0.9, 0.51, 4), {"scatter_low": 0.95, "scatter_high": 1.02}
+    ends |= {f"critical_friction{end}": part for end, part in (("", 1.0), ("_low", 0.8), ("_high", 1.05))}
     kicks = np.stack([0.8 * high, high, 1.1 * high], axis=1)
     data = drawn.curve(
-        critical_friction=(ON, high),
-        critical_friction_low=(ON, 0.8 * high),
-        critical_friction_high=(ON, 1.05 * high),
-        scatter_low=(ON, 0.95 * high),
-        scatter_high=(ON, 1.02 * high),
         kick_critical_friction=((ON, "kick"), kicks),
         here_restitution_factor=0.3,
-        here_critical_friction=0.77,
-        here_scatter_low=0.75,
-        here_scatter_high=0.79,
-        here_critical_friction_low=0.7,
-        here_critical_friction_high=0.8,
+        **{name: (ON, part * high) for name, part in ends.items()},
+        **{f"here_{name}": 0.77 * part for name, part in ends.items()},
     )
     axes = stability.stability(data).axes[0]
     top = axes.get_ylim()[1]
@@ -138,24 +112,16 @@ def test_the_warning_colour_of_a_map_is_for_the_unstable():
     assert brightness[-1] > 0.8
 
 
-def test_each_candidate_is_drawn_at_its_friction_in_each_environment():
-    """Beside the curve, in rising order of the mean."""
-    figure = stability.stability(drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]])))
-    beside = figure.axes[1]
-    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0"]
+@pytest.mark.parametrize(("reason", "mark"), [("too fast", " *"), ("", "")])
+def test_each_candidate_is_drawn_at_its_friction_in_each_environment(reason, mark):
+    """Beside the curve, in rising order of the mean; marked if extrapolated in one environment."""
+    data = drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]]))
+    data["material_extrapolation"][1, 0] = reason
+    _, beside = stability.stability(data).axes
+    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", f"material 0{mark}"]
     points = [line.get_ydata().tolist() for line in beside.lines if line.get_marker() in ("o", "s")]
     assert points == [[0.1, 0.3], [0.12, 0.2]]
-
-
-def test_a_candidate_asked_for_where_it_was_not_tested_is_marked():
-    """In one environment is enough; the legend says what the mark is, and is silent where all was tested."""
-    data = drawn.curve(**drawn.candidates([[0.3, 0.1], [0.2, 0.12]]))
-    data["material_extrapolation"][1, 0] = "too fast"
-    _, beside = stability.stability(data).axes
-    assert [label.get_text() for label in beside.get_xticklabels()] == ["material 1", "material 0 *"]
-    assert "friction extrapolated" in beside.get_legend_handles_labels()[1]
-    _, beside = stability.stability(CURVES["candidates"]).axes
-    assert "friction extrapolated" not in beside.get_legend_handles_labels()[1]
+    assert ("friction extrapolated" in beside.get_legend_handles_labels()[1]) is bool(reason)
 
 
 def test_cells_are_halfway_between_values():
@@ -166,18 +132,15 @@ def test_cells_are_halfway_between_values():
     assert maps.cell_edges(np.array([0.0])).tolist() == [-0.5, 0.5]
 
 
-@pytest.mark.parametrize(
-    ("values", "answer"),
-    [
-        (np.geomspace(0.02, 0.3, 40), True),
-        (np.linspace(0.0, 1.0, 9), False),
-        (np.linspace(1.0, 1.2, 9), False),
-        (np.array([1.0, 2.0]), False),
-    ],
-)
-def test_only_values_in_proportion_make_an_axis_logarithmic(values, answer):
-    """Two values are no evidence."""
-    assert maps.is_proportional(values) is answer
+def test_only_values_in_proportion_make_an_axis_logarithmic():
+    """Two values are not evidence."""
+    axes = (
+        np.geomspace(0.02, 0.3, 40),
+        np.linspace(0.0, 1.0, 9),
+        np.linspace(1.0, 1.2, 9),
+        np.array([1.0, 2.0]),
+    )
+    assert [maps.is_proportional(values) for values in axes] == [True, False, False, False]
 
 
 def test_a_length_is_shown_as_an_engineer_writes_it():
@@ -188,13 +151,13 @@ def test_a_length_is_shown_as_an_engineer_writes_it():
     data["x"].attrs["units"] = "m"
     assert maps.shown_unit(data, "x") == (1e-3, "mm")
     assert maps.axis_values(data, "x").tolist() == pytest.approx([0.1, 1.0])
-    axes = maps.map(data).axes[0]
+    axes = maps.stability_map(data).axes[0]
     assert axes.get_xlabel() == "cage pocket clearance [mm]"
     own = next(line for line in axes.lines if line.get_label() == "the study itself")
     assert own.get_xdata().tolist() == pytest.approx([0.5])
 
 
-def test_refused_not_run_and_agreed_points_are_told_apart():
+def test_refused_not_run_and_agreed_points_are_distinct():
     """A refusal has a reason of its own; an interrupt leaves nothing; agreeing points lend their value."""
     data = drawn.plane([[NAN, 0.25], [NAN, NAN]]).assign(
         reason=(
@@ -202,13 +165,15 @@ def test_refused_not_run_and_agreed_points_are_told_apart():
             np.array([["not run: the points around agree", ""], ["not run: interrupted", "No land."]]),
         )
     )
-    assert maps.refused(data).tolist() == [[False, False], [False, True]]
-    assert maps.not_run(data).tolist() == [[True, False], [True, False]]
-    assert maps.agreed(data).tolist() == [[True, False], [False, False]]
-    assert maps.filled(data) == pytest.approx(np.array([[0.25, 0.25], [NAN, NAN]]), nan_ok=True)
+    found = maps.cells(data)
+    assert found.refused.tolist() == [[False, False], [False, True]]
+    assert found.not_run.tolist() == [[True, False], [True, False]]
+    assert found.agreed.tolist() == [[True, False], [False, False]]
+    assert found.share == pytest.approx(np.array([[0.25, 0.25], [NAN, NAN]]), nan_ok=True)
 
 
-def test_the_kick_of_a_map_is_named_unless_it_is_an_axis():
+@pytest.mark.parametrize(("x", "words"), [("restitution_factor", "0.5 m/s"), ("kick", "as on the axis")])
+def test_the_kick_of_a_map_is_named_unless_it_is_an_axis(x, words):
     """In the title."""
-    assert maps.kick_text(drawn.plane([[0.0]])) == "0.5 m/s"
-    assert maps.kick_text(drawn.plane([[0.0]], x_parameter="kick")) == "as on the axis"
+    axes = maps.stability_map(drawn.plane([[0.0]], x_parameter=x)).axes[0]
+    assert axes.get_title().endswith(f"kick {words}")

@@ -8,13 +8,14 @@ from subprocess import run
 
 import pytest
 
-from separatrix.chain import known_friction
+from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.chain.pocket_friction import friction_in_pocket
+from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.friction_file import friction_text, read_friction, write_friction
-from separatrix.friction_fit import FrictionTest, TestedFriction
-from separatrix.pocket_contact import PocketConditions
-from separatrix.ranking.friction import cage_seen, friction_seen, frictions_seen
+from separatrix.errors import InputError
+from separatrix.friction.file import friction_text, read_friction, write_friction
+from separatrix.friction.fit import TestedFriction
+from separatrix.friction.records import FrictionTest
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 
@@ -113,8 +114,8 @@ def test_a_study_ranks_the_materials_of_a_friction_file(tmp_path):
 def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
     """The keys materials and friction_scatter hold for a file as for a table."""
     path = study(tmp_path, ranking='materials = ["My compound"]\nfriction_scatter = 0.2')
-    (candidate,) = frictions_seen(read_study(path)).ranking.candidates
-    seen = candidate.friction["liquid nitrogen, 440C"]
+    asked = read_study(path)
+    seen = solve(asked, asked.ranking.candidates[0]).frictions["liquid nitrogen, 440C"]
     assert seen.standard_error == pytest.approx(0.04, rel=1e-9)
     assert seen.assumed_scatter
 
@@ -140,8 +141,9 @@ def test_a_study_takes_the_tests_at_its_temperature_and_says_how_many_it_leaves_
 def test_tests_in_the_fluid_of_the_study_by_another_name_are_no_extrapolation(tmp_path):
     """LN2 is liquid nitrogen, and GN2 is not."""
     text = SMALL.replace("liquid nitrogen", "LN2") + SMALL.replace("liquid nitrogen", "GN2")
-    (armalon, _) = frictions_seen(read_study(study(tmp_path, text))).ranking.candidates
-    said = {env: " ".join(one.extrapolation) for env, one in armalon.friction.items()}
+    asked = read_study(study(tmp_path, text))
+    seen = solve(asked, asked.ranking.candidates[0]).frictions
+    said = {env: " ".join(one.extrapolation) for env, one in seen.items()}
     assert "tested in" not in said["LN2, 440C"]
     assert "tested in GN2, not in liquid nitrogen" in said["GN2, 440C"]
 
@@ -151,12 +153,11 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
     second = SMALL.split("[[test]]")[1].replace("0.08", '0.12\nslip_speed = "5 m/s"')
     text = SMALL.replace("0.08", '0.08\nslip_speed = "1 m/s"') + 2 * f"[[test]]{second}"
     asked = read_study(study(tmp_path, text))
-    assert known_friction(asked) == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
-    with pytest.warns(ValidityWarning, match=r"0\.12 of Armalon in liquid nitrogen, 440C, extrapolated"):
-        seen = cage_seen(asked)
-    assert known_friction(seen) == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
+    stated = asked.ranking.candidates[0].friction["liquid nitrogen, 440C"].mean
+    assert stated == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
+    assert solve(asked).friction.mean == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
     given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
-    assert cage_seen(given) is given
+    assert solve(given).friction.mean == 0.1
 
 
 @pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # not tested as the pocket rubs
@@ -172,14 +173,17 @@ def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsy
     few = '[stability]\nkicks = ["0.5 m/s"]\nruns = 2\nduration = "10 ms"\nrestitution_factors = [0.5]'
     path = study(tmp_path, text, few)
     assert main([verb[0], str(path), *verb[1:], "--json", "--jobs", "1"]) == 0
-    cage = json.loads(capsys.readouterr().out)["cage"]
+    answer = json.loads(capsys.readouterr().out)
+    cage, notes = answer["cage"], " ".join(answer["warnings"])
+    if verb[0] in ("stability", "simulate"):
+        assert "0.12 of Armalon in liquid nitrogen, 440C, extrapolated" in notes
     assert cage["ball_cage_friction"] == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
 
 
 def test_the_cage_asks_for_what_its_pocket_rubs():
     """A table of 1 to 5 m/s at 77 K, a pocket at 21 m/s in the other medium: the mean stays, words say so."""
     table = read_study("cryogenic-turbopump").ranking.candidates[2]
-    seen = friction_seen(table.friction["gaseous nitrogen, 440C"], POCKET, TURNING, 0.09)
+    seen = friction_in_pocket(table.friction["gaseous nitrogen, 440C"], POCKET, TURNING, 0.09)
     assert seen.mean == 0.07
     assert seen.standard_error == pytest.approx(0.0063)
     assert seen.standard_deviation == seen.standard_error  # stated without its tests: no number is added
@@ -192,10 +196,10 @@ def test_the_cage_asks_for_what_its_pocket_rubs():
 
 def test_a_bare_number_scatters_as_an_unrepeated_test():
     """A number without scatter gets the assumed one; a stated one stays; neither draws words."""
-    bare = friction_seen(Friction(mean=0.2), POCKET, TURNING, 0.09)
+    bare = friction_in_pocket(Friction(mean=0.2), POCKET, TURNING, 0.09)
     assert (bare.standard_error, bare.standard_deviation) == pytest.approx((0.018, 0.018))
     assert bare.assumed_scatter
-    stated = friction_seen(Friction(mean=0.2, standard_deviation=0.04, count=4), POCKET, TURNING, 0.09)
+    stated = friction_in_pocket(Friction(mean=0.2, standard_deviation=0.04, count=4), POCKET, TURNING, 0.09)
     assert (stated.standard_error, stated.standard_deviation) == pytest.approx((0.02, 0.04))
     assert not stated.assumed_scatter
     assert bare.extrapolation == stated.extrapolation == ()
@@ -203,11 +207,7 @@ def test_a_bare_number_scatters_as_an_unrepeated_test():
 
 def test_the_shipped_study_rubs_at_25_metres_a_second():
     """The pocket of the shipped study: regression, 25.1 m/s and 169 MPa in an impact of the middle kick."""
-    from separatrix.chain import cage_state
-    from separatrix.ranking.friction import conditions_of
-
-    shipped = read_study("cryogenic-turbopump")
-    found = conditions_of(shipped, cage_state(shipped))
+    found = solve(read_study("cryogenic-turbopump")).pocket
     assert found.slip_speed == pytest.approx(25.124, rel=1e-4)  # digits of the number
     assert found.pressure == pytest.approx(169.415e6, rel=1e-4)
     assert found.max_pressure == pytest.approx(1.5 * found.pressure)
@@ -218,7 +218,7 @@ def test_reading_a_friction_file_needs_no_numpy(tmp_path):
     path = tmp_path / "friction.toml"
     path.write_text(SMALL)
     code = (
-        "import sys, json; from pathlib import Path; from separatrix.friction_file import read_friction; "
+        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
         "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
@@ -230,22 +230,13 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from separatrix.figures.ranking import untested
+    from separatrix.figures.stability import explain_extrapolated
 
     axes = Figure().subplots()
-    untested(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
-    assert axes.get_legend_handles_labels()[1] == ["friction outside the tests"]
-    untested(bare := Figure().subplots(), xr.DataArray([["", ""]]))
+    explain_extrapolated(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
+    assert axes.get_legend_handles_labels()[1] == ["friction extrapolated"]
+    explain_extrapolated(bare := Figure().subplots(), xr.DataArray([["", ""]]))
     assert bare.get_legend_handles_labels()[1] == []
-
-
-def test_a_saved_ranking_holds_the_sentences_as_one_text():
-    """Lists of different length would not fit in one array."""
-    from separatrix.results.labelled import _flatten_one
-
-    assert _flatten_one("extrapolation", ["too fast", "too hot"]) == {
-        "extrapolation": ((), "too fast; too hot")
-    }
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):

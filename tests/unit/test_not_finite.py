@@ -16,7 +16,7 @@ def judgement(**changes) -> Judgement:
     one = object.__new__(Judgement)
     values = {f.name: 0.0 for f in fields(Judgement)}
     values |= {"verdict": Verdict.STABLE, "cage_motion": next(iter(CageMotion)), "reason": "So it is."}
-    for name, value in (values | {"pocket_impact_shares": np.zeros(3)} | changes).items():
+    for name, value in (values | {"pocket_impact_shares": (0.0,) * 3} | changes).items():
         object.__setattr__(one, name, value)
     return one
 

@@ -34,7 +34,7 @@ WRONG = [
     ({"pocket_clearance": 0.0, "hertz_coefficient": 1e9}, "pocket_clearance must be > 0 with Hertz contact"),
     ({"hertz_coefficient": 0.0}, "hertz_coefficient must be > 0; got 0 N/m1.5"),
     ({"pocket_axial_offset": 1e-5}, "pocket_axial_offset changes nothing in a square pocket"),
-    ({"pocket_position_scatter": 1e-4}, "pocket_position_scatter leaves no play"),
+    ({"pocket_position_scatter": 1e-4}, "pocket_position_scatter leaves no clearance"),
     ({"pocket_spacing_scatter": -0.1}, "pocket_spacing_scatter must be >= 0 and < 0.5"),
     ({"orbital_cosines": (1.0,)}, "orbital_sines must be as many as orbital_cosines, 1; got 0"),
     ({"orbital_cosines": (1.0,), "orbital_sines": (math.nan,)}, "orbital_sines must each be a finite number"),

@@ -6,17 +6,16 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.chain import bearing_state
-from separatrix.cli import answers
+from separatrix import verbs
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study
-from separatrix.study_file.plausible import beyond_bearings, plausible_cage_masses
+from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
 
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage
 assert CAGE is not None
-WORK = answers.Work(jobs=1, progress=None)
 
 
 def operated(**changes: float) -> Study:
@@ -28,7 +27,7 @@ def notes(study: Study) -> list[str]:
     """What its equilibrium warns of."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ValidityWarning)
-        bearing_state(study)
+        _ = solve(study).bearing
     return [str(one.message) for one in caught]
 
 
@@ -100,8 +99,8 @@ def test_an_overdamped_impact_is_called_so() -> None:
     """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
     with pytest.warns(ValidityWarning, match=r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every"):
-        found = answers.restitution(slippery, WORK).state.restitution
+        found = verbs.restitution(slippery).solution.restitution
     assert found.race_damping < found.least_damping
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert answers.restitution(SHIPPED, WORK).state.restitution.restitution_factor > 0.0
+        assert verbs.restitution(SHIPPED).solution.restitution.restitution_factor > 0.0

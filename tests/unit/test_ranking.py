@@ -2,22 +2,20 @@
 
 import math
 from dataclasses import fields, replace
-from enum import Enum
 
-import numpy as np
 import pytest
 
-from separatrix.cage import CageMotion, Judgement, Verdict, judge
-from separatrix.chain import cage_state
+from separatrix.cage import Judgement, Verdict, judge
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
+from separatrix.limits import RestitutionThreshold
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
 from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
 from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
-from separatrix.ranking.records import RankedMaterial
-from separatrix.runner import Runner
-from separatrix.stability import RestitutionThreshold
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
+from separatrix.runner import Interrupted, Runner
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -43,9 +41,30 @@ def judgement(verdict):
     return Judgement(**{**evidence, "verdict": verdict, "reason": "So it is."})
 
 
+def ranked(name, stiffness, eta, threshold, half):
+    """A candidate with this threshold and the half width of its interval."""
+    return Ranked(
+        name=name,
+        friction=0.1,
+        friction_error=None,
+        friction_deviation=None,
+        friction_scatter_assumed=False,
+        extrapolation=(),
+        ball_cage_stiffness=stiffness,
+        restitution_factor=eta,
+        restitution_threshold=threshold,
+        restitution_threshold_low=threshold - half,
+        restitution_threshold_high=threshold + half,
+        margin=threshold - eta,
+        within_reach=True,
+        judgement=judgement(Verdict.STABLE),
+        reason="",
+    )
+
+
 def test_ties_share_the_lowest_rank():
-    """Two overlap, the third does not, the fourth was not measured: 1, 1, 3, nothing."""
-    assert ranks([(0.8, 0.7, 0.9), (0.75, 0.65, 0.85), (0.3, 0.2, 0.4), None]) == [1, 1, 3, None]
+    """Two overlap, the third does not."""
+    assert ranks([(0.8, 0.7, 0.9), (0.75, 0.65, 0.85), (0.3, 0.2, 0.4)]) == [1, 1, 3]
 
 
 def test_a_chain_of_small_steps_does_not_tie_the_first_with_the_last():
@@ -61,13 +80,7 @@ def test_equal_thresholds_without_scatter_tie():
 def test_on_one_curve_frictions_tell_who_issame_rank():
     """Wide thresholds of one curve do not tie what friction tells apart; those of two curves do."""
     known = {name: MeanFriction(f, 0.09 * f) for name, f in (("A", 0.08), ("B", 0.09), ("C", 0.11))}
-    a, b, c = (
-        RankedMaterial(
-            name=name, reason="", ball_cage_stiffness=3e6, restitution_factor=0.3, margin=t - 0.3,
-            restitution_threshold=t, restitution_threshold_low=t - 0.1, restitution_threshold_high=t + 0.1,
-        )
-        for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6))
-    )  # fmt: skip
+    a, b, c = (ranked(name, 3e6, 0.3, t, 0.1) for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6)))
     assert same_rank(b, a, known)
     assert not same_rank(c, a, known)  # 2.5 standard deviations; the intervals meet
     assert same_rank(replace(c, ball_cage_stiffness=4e6), a, known)
@@ -76,13 +89,8 @@ def test_on_one_curve_frictions_tell_who_issame_rank():
 
 def test_where_eta_differs_the_margin_ranks():
     """Threshold 0.9 at eta 0.5 stands behind 0.8 at eta 0.1; equal thresholds of two curves do not tie."""
-    rows = [
-        RankedMaterial(
-            name=name, reason="", ball_cage_stiffness=k, restitution_factor=eta, margin=t - eta,
-            restitution_threshold=t, restitution_threshold_low=t - 0.02, restitution_threshold_high=t + 0.02,
-        )
-        for name, k, eta, t in (("A", 1e6, 0.5, 0.9), ("B", 3e6, 0.1, 0.8), ("C", 2e6, 0.3, 0.9))
-    ]  # fmt: skip
+    given = (("A", 1e6, 0.5, 0.9), ("B", 3e6, 0.1, 0.8), ("C", 2e6, 0.3, 0.9))
+    rows = [ranked(name, stiffness, eta, t, 0.02) for name, stiffness, eta, t in given]
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
     places = ranks(
         [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
@@ -156,7 +164,7 @@ def test_a_reason_without_a_threshold_says_so():
 
 
 def test_a_missing_measurement_is_shown_as_missing():
-    """Everything is None but the name and a reason; the others are ranked without it."""
+    """A row of another type, last; the others are ranked without it."""
     question = RankingQuestion(
         environments=("air", "vacuum"),
         environment="air",
@@ -167,32 +175,19 @@ def test_a_missing_measurement_is_shown_as_missing():
     )
     found = rank(quick_study(ranking=question))
     a, b = found.environments[0].materials
-    assert (a.name, a.rank, b.name, b.rank) == ("A", 1, "B", None)
-    assert b.friction is b.restitution_threshold is b.margin is b.probability_stable is b.verdict is None
-    assert b.reason == "not measured in air"
+    assert (a.name, a.rank) == ("A", 1)
+    assert b == NotMeasured(name="B", reason="not measured in air")
     assert [(row.name, row.friction) for row in found.overall] == [("B", 0.3), ("A", 0.5)]
 
 
-def test_a_row_carries_all_the_evidence_of_its_verdict():
-    """Every field of the judgement, as it is; of one that was not measured there none."""
-    blank = Candidate(name="B", friction={"air": None, "vacuum": Friction(mean=0.1)})
-    measured_in_both = Candidate(name="A", friction=dict.fromkeys(("air", "vacuum"), Friction(mean=0.1)))
-    both = RankingQuestion(
-        environments=("air", "vacuum"), environment="vacuum", candidates=(measured_in_both, blank)
-    )
-    study = quick_study(ranking=both)
-    a, b = rank(study).environments[0].materials
+def test_a_row_carries_the_judgement_behind_its_verdict():
+    """That of its friction, as it is."""
+    study = quick_study(ranking=asked(("A", Friction(mean=0.1))))
+    (a,) = rank(study).environments[0].materials
     assert a.margin == a.restitution_threshold - a.restitution_factor
-    cage = cage_state(study, friction=0.1).cage
+    cage = solve(study).cage_with(0.1)
     found = judge(cage, Runner().whole_ensemble(cage, QUICK))
-    names = {f.name for f in fields(Judgement)}
-    assert names <= {f.name for f in fields(RankedMaterial)}
-    for name in names - {"reason"}:
-        value = getattr(found, name)
-        value = value.value if isinstance(value, CageMotion) else value
-        value = value.name if isinstance(value, Enum) else value
-        assert np.array_equal(getattr(a, name), value), name
-        assert getattr(b, name) is None
+    assert a.judgement == found
 
 
 def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
@@ -205,7 +200,7 @@ def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
 
 def test_equal_frictions_tie_with_equal_numbers():
     """Two materials with the same friction cannot be told apart."""
-    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))), jobs=2)
+    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))))
     a, b = found.overall
     assert (a.rank, b.rank) == (1, 1)
     assert replace(a, name="B") == b
@@ -225,11 +220,11 @@ def test_scatter_of_the_friction_widens_the_threshold():
 def test_the_number_of_threads_changes_nothing():
     """One thread and two give the same record, to the last bit."""
     study = quick_study(ranking=asked(("A", Friction(mean=0.08)), ("B", Friction(mean=0.2))))
-    assert rank(study, jobs=1) == rank(study, jobs=2)
+    assert rank(study, runner=Runner(jobs=1)) == rank(study, runner=Runner(jobs=2))
 
 
 def test_an_interrupt_leaves_a_ranking_that_says_so():
-    """Verdicts that were finished stay, what was not is None with that reason, and complete is False."""
+    """A verdict that was finished stays, what was not has that reason, and complete is False."""
 
     def stop(done, total):
         if done == 1:
@@ -237,12 +232,16 @@ def test_an_interrupt_leaves_a_ranking_that_says_so():
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
     long = replace(QUICK, runs=512)  # the second verdict is under way when the first is told
-    found = rank(quick_study(ranking=two, stability=long), progress=stop)
+    with pytest.raises(Interrupted) as caught:
+        rank(quick_study(ranking=two, stability=long), runner=Runner(progress=stop))
+    found = caught.value.finished
     assert not found.complete
     a, b = sorted(found.overall, key=lambda row: row.name)
-    assert (a.verdict is None, a.restitution_threshold) == (False, None)
+    assert isinstance(a, NotFinished)
+    assert isinstance(b, NotFinished)
+    assert a.judgement is not None
     assert a.reason.endswith("Its threshold: interrupted before this was computed.")
-    assert (b.friction, b.verdict, b.reason) == (0.2, None, "interrupted before this was computed")
+    assert (b.friction, b.judgement, b.reason) == (0.2, None, "interrupted before this was computed")
 
 
 def test_each_candidate_has_the_stiffness_of_its_own_pocket():

@@ -18,30 +18,31 @@ import numpy as np
 import pytest
 
 from separatrix.cage import Ensemble, run_ensemble
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
+from separatrix.limits import stability_curve
 from separatrix.ranking import rank
-from separatrix.runner import PART, Runner, Stopped
-from separatrix.stability import stability_curve
+from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study_file import read_study
 
-CAGE = cage_state(read_study("momentum-wheel"), friction=0.2)
-QUICK = replace(CAGE.stability, runs=PART + 5, duration=0.01)
+FOUND = solve(read_study("momentum-wheel"))
+CAGE = FOUND.cage_with(0.2)
+QUICK = replace(FOUND.stability, runs=PART + 5, duration=0.01)
 
 
-def test_work_comes_back_in_order():
-    """Results stand in the order of the items, however many threads."""
+def test_work_comes_back_by_its_place():
+    """Each result is that of its place, however many threads."""
     told = []
     runner = Runner(jobs=3, progress=lambda done, total: told.append((done, total)))
-    found = runner.each(lambda x: x * x, range(20))
-    assert found == [x * x for x in range(20)]
+    found = runner.work_out(lambda x: x * x, range(20), into=dict)
+    assert found == {x: x * x for x in range(20)}
     assert told == [(i, 20) for i in range(1, 21)]
 
 
 def test_an_interrupt_keeps_what_is_done():
-    """Ctrl-C after three items: those are returned, the rest is None, and no thread is left behind."""
+    """Ctrl-C after three items: the exception carries those, and no thread is left behind."""
 
     def stop(done, total):
         if done == 3:
@@ -51,16 +52,18 @@ def test_an_interrupt_keeps_what_is_done():
         time.sleep(1e-3)
         return item + 1
 
-    found = Runner(progress=stop).each(work, range(500))
-    assert found[:3] == [1, 2, 3]
-    assert None in found
+    with pytest.raises(Interrupted) as caught:
+        Runner(progress=stop).work_out(work, range(500), into=dict)
+    found = caught.value.finished
+    assert [found[i] for i in range(3)] == [1, 2, 3]
+    assert len(found) < 500
     assert not [thread for thread in threading.enumerate() if "ThreadPool" in thread.name]
 
 
 def test_a_fault_in_the_work_is_not_swallowed():
     """An exception of one item is raised, not turned into a gap."""
     with pytest.raises(ZeroDivisionError):
-        Runner(jobs=2).each(lambda x: 1 // x, [1, 0])
+        Runner(jobs=2).work_out(lambda x: 1 // x, [1, 0], into=dict)
 
 
 def test_a_long_computation_is_stopped_by_an_interrupt():
@@ -73,13 +76,15 @@ def test_a_long_computation_is_stopped_by_an_interrupt():
             return "done"
         inside.set()
         stopped.append(runner.stop.wait(timeout=5.0))
-        raise Stopped
+        raise Interrupted
 
     def interrupt(done, total):
         raise KeyboardInterrupt
 
     runner = Runner(jobs=2, progress=interrupt)
-    assert runner.work_out(compute, [0, 1]) == {0: "done"}
+    with pytest.raises(Interrupted) as caught:
+        runner.work_out(compute, [0, 1], into=dict)
+    assert caught.value.finished == {0: "done"}
     assert stopped == [True]
 
 
@@ -92,7 +97,7 @@ def test_places_that_follow_are_computed_once():
         return place
 
     runner = Runner(progress=lambda *at: told.append(at))
-    found = runner.work_out(compute, [1, 2], more=lambda place, _: [3] if place < 3 else [])
+    found = runner.work_out(compute, [1, 2], into=dict, more=lambda place, _: [3] if place < 3 else [])
     assert sorted(computed) == sorted(found) == [1, 2, 3]
     assert told[-1] == (3, 3)
 
@@ -108,12 +113,16 @@ def test_an_interrupt_is_noticed_and_breaks_in_nowhere():
         return item
 
     runner = Runner()
-    found = runner.each(work, range(100))
-    assert found[:3] == [0, 1, 2]
-    assert None in found
+    with pytest.raises(Interrupted) as caught:
+        runner.work_out(work, range(100), into=dict)
+    found = caught.value.finished
+    assert [found[i] for i in range(3)] == [0, 1, 2]
+    assert len(found) < 100
     assert runner.stop.is_set()
     assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
-    assert runner.each(work, [7]) == [None]  # and nothing is begun afterwards
+    with pytest.raises(Interrupted) as caught:
+        runner.work_out(work, [7], into=dict)
+    assert caught.value.finished is None  # nothing is begun afterwards
 
 
 def test_a_second_interrupt_breaks_in():
@@ -127,7 +136,7 @@ def test_a_second_interrupt_breaks_in():
 
     try:
         with pytest.raises(KeyboardInterrupt):
-            Runner().each(work, range(50))
+            Runner().work_out(work, range(50), into=dict)
     finally:
         signal.signal(signal.SIGINT, usual)
 
@@ -135,9 +144,9 @@ def test_a_second_interrupt_breaks_in():
 def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
     """Once run and once read; every field, with its kind of number and shape."""
     ledger = Ledger(tmp_path / NAME)
-    at_once = run_ensemble(CAGE.cage, QUICK)
+    at_once = run_ensemble(CAGE, QUICK)
     runner = Runner(ledger=ledger)
-    first, second = (runner.whole_ensemble(CAGE.cage, QUICK) for _ in range(2))
+    first, second = (runner.whole_ensemble(CAGE, QUICK) for _ in range(2))
     assert ledger.taken == QUICK.runs * len(QUICK.kicks)
     for field in fields(Ensemble):
         values = [np.asarray(getattr(one, field.name)) for one in (at_once, first, second)]
@@ -151,7 +160,7 @@ def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
         {"settings": {"seed": 5}},
         {"settings": {"duration": 0.02}},
         {"settings": {"ball_scatter": 0.5}},
-        {"cage": {"mass": CAGE.cage.mass * (1.0 + 1e-15)}},
+        {"cage": {"mass": CAGE.mass * (1.0 + 1e-15)}},
         {"cage": {"ball_cage_friction": 0.3}},
         {"asked": {"kicks": (0.7,)}},
         {"asked": {"runs": 3}},
@@ -163,14 +172,14 @@ def test_runs_are_taken_only_for_the_same_question(tmp_path, change):
     """A change of anything that a run depends on: nothing is taken."""
     ledger = Ledger(tmp_path / NAME)
     asked = {"kicks": (0.5,), "runs": 2, "first_run": 0}
-    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     cage, settings = (
-        replace(CAGE.cage, **change.get("cage", {})),
+        replace(CAGE, **change.get("cage", {})),
         replace(QUICK, **change.get("settings", {})),
     )
     Runner(ledger=ledger).ensemble(cage, settings, **asked | change.get("asked", {}))
     assert ledger.taken == 0
-    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     assert ledger.taken == 2
     ledger.close()
 
@@ -180,17 +189,17 @@ def test_a_damaged_piece_is_run_again(tmp_path, damaged):
     """Nothing, no compressed bytes, ten million of them, a text: the runs are made anew, and kept."""
     asked = {"kicks": (0.5,), "runs": 2}
     ledger = Ledger(tmp_path / NAME)
-    first = Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    first = Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     ledger.close()
     connection = sqlite3.connect(tmp_path / NAME)
     with connection:
         connection.execute("UPDATE piece SET found = ?", (damaged,))
     connection.close()
     ledger = Ledger(tmp_path / NAME)
-    again = Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    again = Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     assert ledger.taken == 0
     assert again.end_energy.tobytes() == first.end_energy.tobytes()
-    Runner(ledger=ledger).ensemble(CAGE.cage, QUICK, **asked)
+    Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     assert ledger.taken == 2
     ledger.close()
 
@@ -203,9 +212,9 @@ def test_a_key_depends_on_the_last_bit():
 def test_more_runs_go_on_from_fewer(tmp_path):
     """A curve with as many runs again takes those of the first from the ledger."""
     ledger, settings = Ledger(tmp_path / NAME), replace(QUICK, runs=8, restitution_factors=(0.5,))
-    stability_curve(CAGE.cage, settings, ledger=ledger)
+    stability_curve(CAGE, settings, runner=Runner(ledger=ledger))
     assert ledger.taken == 0
-    stability_curve(CAGE.cage, replace(settings, restitution_factors=(0.5, 0.6)), ledger=ledger)
+    stability_curve(CAGE, replace(settings, restitution_factors=(0.5, 0.6)), runner=Runner(ledger=ledger))
     assert ledger.taken > 0
     ledger.close()
 
@@ -228,10 +237,12 @@ def test_an_interrupted_ranking_says_what_is_missing(tmp_path):
     def interrupt(done, total):
         raise KeyboardInterrupt
 
-    part = rank(study, progress=interrupt, ledger=ledger)
+    with pytest.raises(Interrupted) as caught:
+        rank(study, runner=Runner(progress=interrupt, ledger=ledger))
+    part = caught.value.finished
     assert part.complete is False
     assert None in {row.restitution_threshold for row in part.overall}
-    whole = rank(study, ledger=ledger)
+    whole = rank(study, runner=Runner(ledger=ledger))
     assert ledger.taken > 0
     assert repr(whole) == repr(rank(study))
     ledger.close()

@@ -9,11 +9,9 @@ import pytest
 
 from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.report.stability import curve
-from separatrix.runner import Runner
-from separatrix.stability import (
+from separatrix.limits import (
     Count,
     CriticalFriction,
     GrowthCounter,
@@ -26,10 +24,12 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import Tracer, bends
-from separatrix.stability.point import own_restitution_factor
-from separatrix.stability.response import LADDER, Crossing, cell_of
-from separatrix.stability.tracing import COARSE, FINEST, finer
+from separatrix.limits.curve import Tracer, bends
+from separatrix.limits.point import own_restitution_factor
+from separatrix.limits.response import LADDER, Crossing, cell_of
+from separatrix.limits.tracing import COARSE, FINEST, finer
+from separatrix.present.text.stability import curve
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -97,7 +97,7 @@ def known_counter(cage, settings, seed):
 
 def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
     """Where algebra says: the mean of 16, each good to 6 %, lies within 4 %; a fifth would be 10 % off."""
-    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    cage = solve(read_study("cryogenic-turbopump")).cage
     settings = StabilitySettings(kicks=(0.5,), runs=256)
     found = [
         critical_friction(cage, 0.5, settings, counter=known_counter(cage, settings, seed))
@@ -110,7 +110,7 @@ def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
 
 def at_three_kicks(*probabilities):
     """Critical friction where the probability of each kick is known: 0.2, 0.5 and 1 m/s."""
-    cage, kicks = cage_state(read_study("cryogenic-turbopump")).cage, (0.2, 0.5, 1.0)
+    cage, kicks = solve(read_study("cryogenic-turbopump")).cage, (0.2, 0.5, 1.0)
     settings = StabilitySettings(kicks=kicks, reference_kick=0.5, runs=256)
     counter, looks = GrowthCounter(cage, settings), [response(known) for known in probabilities]
     counter.count = lambda _, f, kick, *, first_run, runs: looks[kicks.index(kick)]._look(f, first_run, runs)
@@ -231,7 +231,7 @@ def test_runs_are_numbered_one_after_the_other():
 
 def test_unresolved_runs_are_told(monkeypatch):
     """They count as not whirling, and a warning says how many, but for those whose motion falls."""
-    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    cage = solve(read_study("cryogenic-turbopump")).cage
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 3)
     found.cause[0] = (Cause.NONE, Cause.IMPACTS, Cause.NO_CONTACT, Cause.FALLING)
@@ -244,7 +244,7 @@ def test_unresolved_runs_are_told(monkeypatch):
 @pytest.mark.parametrize("eta", [0.05, 0.5, 0.95, 1.0])
 def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
     """The damping that is set for a factor is read back as that factor; rounding only."""
-    cage = cage_state(read_study("cryogenic-turbopump")).cage
+    cage = solve(read_study("cryogenic-turbopump")).cage
     assert own_restitution_factor(cage_at(cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9)
 
 
@@ -393,29 +393,23 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
 
 def test_the_report_says_between_which_frictions_the_kick_decides():
     """The band at the bearing's own restitution factor in words; what is missing has its reason."""
-    here = {
-        "restitution_factor": 0.27, "critical_friction_low": None, "critical_friction_high": 0.258,
-        "kick_critical_friction": [0.19, None], "reason": "so it is",
-    }  # fmt: skip
-    point = {
-        "restitution_factor": 0.5, "critical_friction": None, "scatter_low": None, "scatter_high": None,
-        "critical_friction_low": 0.1, "critical_friction_high": 0.2,
-    }  # fmt: skip
-    limit = {"restitution_factor": 0.5, "critical_friction": 0.07}
-    document = {
-        "curve": [point],
-        "linear_limit": [limit],
-        "hard_limit": [limit],
-        "here": here,
-        "kicks": [0.1, 2],
-        "drifts": False,
-    }
-    text = "\n".join(curve(document))
+    here = CriticalFriction(
+        restitution_factor=0.27,
+        critical_friction_high=0.258,
+        kick_critical_friction=(0.19, None),
+        reason="so",
+    )
+    point = CriticalFriction(restitution_factor=0.5, critical_friction_low=0.1, critical_friction_high=0.2)
+    limit = SimpleNamespace(restitution_factor=0.5, critical_friction=0.07)
+    found = SimpleNamespace(
+        curve=[point], linear_limit=[limit], hard_limit=[limit], here=here, kicks=(0.1, 2.0), drifts=False
+    )
+    text = "\n".join(curve(found))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())
     assert "Every kick settles below  none" in text
     assert "Every kick whirls above   a friction of 0.258" in text
     assert "0.190 from 0.1 m/s, - from 2 m/s" in text
-    assert "so it is" in text
+    assert "Reason                    so" in text
 
 
 @pytest.mark.parametrize("kick", [2.0**-6, 64.0])
@@ -424,7 +418,7 @@ def test_the_hard_limit_does_not_depend_on_the_kick(kick, monkeypatch):
 
     So a reference kick that would take a minute to cross a pocket has a limit too.
     """
-    cage = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage
+    cage = solve(read_study("cryogenic-turbopump")).cage_with(0.1)
     usual = limits.hard_limit(cage, 0.3, StabilitySettings(reference_kick=1e-5, runs=8))
     monkeypatch.setattr(limits, "ANY_KICK", kick)
     assert usual.critical_friction is not None
@@ -441,7 +435,7 @@ def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
         return SimpleNamespace(count=lambda _: [whirling])
 
     monkeypatch.setattr(limits, "run_hard_ensemble", count)
-    cage = cage_state(read_study("cryogenic-turbopump"), friction=0.1).cage
+    cage = solve(read_study("cryogenic-turbopump")).cage_with(0.1)
     limits.hard_limit(cage, 0.5, StabilitySettings(seed=7, runs=64))
     assert {seed for seed, *_ in taken} == {7}
     numbers = [(friction, run) for _, friction, runs in taken for run in runs]

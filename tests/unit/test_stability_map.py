@@ -9,23 +9,22 @@ import pytest
 
 from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble, wilson_interval
 from separatrix.cage.verdict import drifts
-from separatrix.chain import cage_state
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
-from separatrix.runner import Runner
-from separatrix.stability import cage_at
-from separatrix.stability.map import (
+from separatrix.limits import cage_at
+from separatrix.limits.map import (
     AGREED,
     PointFinder,
     decided_ensemble,
     inference,
     stability_map,
 )
-from separatrix.stability.map_fill import CHECK_EVERY, Filled, fill
-from separatrix.stability.map_grid import near_a_change, rounds
-from separatrix.stability.map_parameters import parameters, varied
-from separatrix.stability.map_records import MapAxis, MapPoint, MapQuestion
-from separatrix.stability.map_rule import (
+from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill
+from separatrix.limits.map_grid import near_a_change, rounds
+from separatrix.limits.map_parameters import parameters, varied
+from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion
+from separatrix.limits.map_rule import (
     AGREEING,
     Tally,
     changes,
@@ -37,6 +36,7 @@ from separatrix.stability.map_rule import (
     side,
     wrong_side_probability,
 )
+from separatrix.runner import Interrupted, Runner
 from separatrix.study import Guidance, PocketShape
 from separatrix.study_file import read_study
 
@@ -61,7 +61,7 @@ def question(study, **changed):
 
 def test_a_point_is_the_ensemble_of_its_cage(study):
     """Runs, whirling runs and decision of every point are those of the same cage by itself."""
-    cage = cage_state(study, friction=0.1).cage
+    cage = solve(study).cage_with(0.1)
     found = stability_map(question(study))
     assert [(p.x, p.y) for p in found.points] == list(
         itertools.product(found.x.values, found.y.values)
@@ -82,14 +82,16 @@ def test_threads_and_earlier_runs_change_nothing(study, tmp_path):
     """One thread, three, and a call that knows the runs of an interrupted one."""
     asked, ledger = question(study, runs=3), Ledger(tmp_path / NAME)
     whole = stability_map(asked)
-    assert stability_map(asked, jobs=3) == whole
+    assert stability_map(asked, runner=Runner(jobs=3)) == whole
 
     def interrupt(done, total):
         if done == total // 2:
             raise KeyboardInterrupt
 
-    assert not stability_map(asked, ledger=ledger, progress=interrupt).complete
-    assert stability_map(asked, ledger=ledger) == whole
+    with pytest.raises(Interrupted) as caught:
+        stability_map(asked, runner=Runner(ledger=ledger, progress=interrupt))
+    assert not caught.value.finished.complete
+    assert stability_map(asked, runner=Runner(ledger=ledger)) == whole
     assert 0 < ledger.taken < sum(p.runs for p in whole.points)
     ledger.close()
 
@@ -98,7 +100,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
     """Without a land, in a turning ball set: where motion dies the point is undecided, and says drift."""
     free = replace(study.cage, guidance=Guidance.BALL, land_clearance=None)
     loose = replace(study, cage=free)
-    assert drifts(cage_state(loose, friction=0.0).cage)
+    assert drifts(solve(loose).cage_with(0.0))
     found = stability_map(question(loose))
     assert found.counts["STABLE"] == 0
     calm = [point for point in found.points if point.whirling == 0]
@@ -109,7 +111,7 @@ def test_a_cage_that_can_drift_is_never_stable(study):
 
 def test_first_runs_that_agree_end_a_point(study):
     """Six runs where the first six agree, as many as could change the answer otherwise; the first of all."""
-    cage = cage_state(study, friction=0.0).cage
+    cage = solve(study).cage_with(0.0)
     settings = replace(study.stability, duration=0.05)
     sizes = set()
     for friction in (0.0, 0.08, 0.12, 0.2):
@@ -225,9 +227,9 @@ PLANE = {
 
 def test_an_adaptive_map_says_what_it_ran_and_how_often_it_would_be_wrong(study):
     """Points that are run are those of the full map; the others say what is around; some are checked."""
-    full = stability_map(question(study, **PLANE), jobs=2)
+    full = stability_map(question(study, **PLANE), runner=Runner(jobs=2))
     assert full.inference is None
-    some = stability_map(question(study, **PLANE, adaptive=True), jobs=2)
+    some = stability_map(question(study, **PLANE, adaptive=True), runner=Runner(jobs=2))
     run = [p for p in some.points if p.runs]
     at = {(p.x, p.y): p for p in full.points}
     assert all(replace(p, margin=None) == replace(at[p.x, p.y], margin=None) for p in run)
@@ -242,8 +244,8 @@ def test_an_adaptive_map_says_what_it_ran_and_how_often_it_would_be_wrong(study)
 def test_what_is_known_does_not_change_an_adaptive_map(study, tmp_path):
     """The same points and checks, whether nothing or the full map was run before."""
     asked, ledger = question(study, **PLANE, adaptive=True), Ledger(tmp_path / NAME)
-    stability_map(question(study, **PLANE), jobs=2, ledger=ledger)
-    assert stability_map(asked, jobs=2) == stability_map(asked, ledger=ledger)
+    stability_map(question(study, **PLANE), runner=Runner(jobs=2, ledger=ledger))
+    assert stability_map(asked, runner=Runner(jobs=2)) == stability_map(asked, runner=Runner(ledger=ledger))
     assert ledger.taken > 0
     ledger.close()
 
@@ -287,13 +289,13 @@ def test_bands_and_margins_of_a_column():
 
 def test_each_link_of_the_chain_is_run_once_for_what_changes_it(study, monkeypatch):
     """Cage keys leave the traction alone; a film key changes it."""
-    from separatrix import chain
+    from separatrix.chain import contacts
 
     calls = []
-    real = chain.equilibrium
-    monkeypatch.setattr(chain, "equilibrium", lambda *given: calls.append(given) or real(*given))
-    chain._bearing.cache_clear()
-    chain._traction.cache_clear()
+    real = contacts.equilibrium
+    monkeypatch.setattr(contacts, "equilibrium", lambda *given: calls.append(given) or real(*given))
+    contacts.bearing_state.cache_clear()
+    contacts.race_traction.cache_clear()
     masses = MapAxis(parameter="cage.mass", unit="kg", values=(0.01, 0.02, 0.03))
     films = MapAxis(parameter="film.race_friction", unit="-", values=(0.05, 0.1))
     clearances = MapAxis(parameter="cage.pocket_clearance", unit="m", values=(2e-4, 4e-4))
@@ -368,7 +370,9 @@ def test_an_interrupt_leaves_points_that_say_so(study):
         if len(told) == 1:
             raise KeyboardInterrupt
 
-    found = stability_map(question(study, runs=1), progress=interrupt)
+    with pytest.raises(Interrupted) as caught:
+        stability_map(question(study, runs=1), runner=Runner(progress=interrupt))
+    found = caught.value.finished
     assert not found.complete
     assert 16 <= found.counts["not_run"] < 20  # the corners, the first round, may have been under way
     assert {p.reason for p in found.points if not p.runs} == {"not run: interrupted"}

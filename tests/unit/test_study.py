@@ -104,10 +104,15 @@ WRONG_RECORDS = [
     ),
     (lambda: bearing(ball_diameter=-1.0), "BallBearing.ball_diameter must be > 0; got -1 m"),
     (lambda: bearing(ball_diameter=0.0), "BallBearing.ball_diameter must be > 0; got 0 mm"),
+    (lambda: bearing(ball_diameter="1 kg"), "ball_diameter needs a unit of length (m, cm, mm, um, ...)"),
+    (lambda: bearing(ball_diameter="1"), 'ball_diameter needs a unit of length; got "1". Write "1 mm".'),
+    (lambda: bearing(ball_diameter="-1 mm"), "BallBearing.ball_diameter must be > 0; got -1 mm"),
+    (lambda: bearing(ball_diameter=None), "BallBearing.ball_diameter is missing"),
     (
-        lambda: bearing(ball_diameter="1 mm"),
-        'BallBearing.ball_diameter must be a finite number > 0; got "1 mm"',
+        lambda: bearing(contact_angle=15),
+        "contact_angle must be >= 0 and < 90 deg; got 859.43669 deg (15 rad)",
     ),
+    (lambda: StabilitySettings(kicks=("1 m/s", "2 m")), "StabilitySettings.kicks needs a unit of speed"),
     (lambda: bearing(ball_diameter=True), "BallBearing.ball_diameter must be a finite number > 0; got true"),
     (
         lambda: bearing(ball_count=12.0),
@@ -174,7 +179,7 @@ WRONG_RECORDS = [
     (lambda: Friction(mean=0.1, count=0), "Friction.count must be a whole number from 1"),
     (
         lambda: Candidate(name="A", friction={"air": None}),
-        'Candidate.friction of "A" holds no measured value',
+        'Candidate.friction of "A" has no measured value',
     ),
     (
         lambda: RankingQuestion(
@@ -215,6 +220,17 @@ def test_a_record_reports_everything_wrong_at_once():
     ]
     again = pickle.loads(pickle.dumps(caught.value))  # noqa: S301 - our own bytes
     assert [str(p) for p in again.problems] == [str(p) for p in caught.value.problems]
+
+
+def test_a_number_may_be_text_with_its_unit():
+    """Every record takes text where a field has a unit; what it holds is in SI."""
+    cage = CageDesign(mass="25 g", pocket_clearance="0.6 mm", pocket_angles=("0 deg", "180 deg"))
+    assert (cage.mass, cage.pocket_clearance) == (0.025, 0.0006)
+    assert cage.pocket_angles == (0.0, math.pi)
+    assert replace(cage, pocket_clearance="0.2 mm").pocket_clearance == 2e-4
+    assert Operation(inner_speed="30000 rpm", axial_load="3 daN").axial_load == 30.0
+    assert StabilitySettings(kicks=("10 cm/s", 0.5)).kicks == (0.1, 0.5)
+    assert replace(STEEL, elastic_modulus="200 GPa").elastic_modulus == 2e11
 
 
 def test_balls_fit_up_to_touching():
@@ -529,10 +545,10 @@ def test_the_page_on_study_files_names_every_key_and_every_unit():
     """The documentation of the contract is complete."""
     from pathlib import Path
 
-    from separatrix.study_file.sections import _READERS
+    from separatrix.study_file.sections import READERS
 
-    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
-    for section, readers in _READERS.items():
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
+    for section, readers in READERS.items():
         assert f"## [{section}]" in page
         for key in readers:
             assert f"`{key}`" in page, key
@@ -548,7 +564,7 @@ def test_the_toml_on_the_page_is_right(read):
     """Both examples can be read."""
     from pathlib import Path
 
-    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     variant, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
     assert read(variant).operation.axial_load == 1500.0
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"

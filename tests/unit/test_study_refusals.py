@@ -80,13 +80,13 @@ EDITS = {
         ("[kinematics]", "[kinematic]"),
         ["line 18", "[kinematic]", "Did you mean kinematics?"],
     ),
-    "key outside a section": (
+    "key is outside a section": (
         ('title = "A valid study"', "runs = 3"),
-        ["line 1", "runs", "outside a section"],
+        ["line 1", "runs", "is outside a section"],
     ),
     "section twice over": (
         ("[operation]", "[[operation]]"),
-        ["operation", "one section, headed [operation]"],
+        ["line 14: [operation]", "one section, headed [operation]"],
     ),
     "bare number": (
         ('"11.1125 mm"', "11.1"),
@@ -163,7 +163,7 @@ EDITS = {
     ),
     "friction as text": (
         ("race_friction = 0.1", 'race_friction = "0.1"'),
-        ["plain number", "without quotes"],
+        ["plain number", "Write 0.1 as a number, not as text."],
     ),
     "friction with a unit": (
         ("race_friction = 0.1", 'race_friction = "10 %"'),
@@ -214,7 +214,7 @@ EDITS = {
     "unknown film": (('"PTFE transfer film"', '"Teflon"'), ["[film] material", "PTFE transfer film", "MoS2"]),
     "material as a number": (
         ('ball_material = "440C"', "ball_material = 440"),
-        ["[bearing] ball_material must be the name of a bearing material in quotes", "440"],
+        ["[bearing] ball_material must be the name of a bearing material, or its properties", "440"],
     ),
     "material without modulus": (
         ('elastic_modulus = "205 GPa", ', ""),
@@ -332,7 +332,7 @@ EDITS = {
     ),
     "second candidate misspelt": (
         candidates(IN_PLACE + IN_PLACE.replace("name =", "nam =")),
-        ["line 44", "candidates[2].nam ", "Did you mean name?"],
+        ["line 45", "candidates[2].nam ", "Did you mean name?"],
     ),
     "ranking without anything": (candidates("[ranking]\n"), ["[ranking] lacks: friction (or candidates)"]),
     "duplicate key": (
@@ -350,7 +350,7 @@ EDITS = {
     ),
     "two-line title": (('"A valid study"', '"A valid\\nstudy"'), ["line 1: title", "printable"]),
     "title too long": (('"A valid study"', '"' + "a" * 201 + '"'), ["line 1: title", "200"]),
-    "title as a number": (('"A valid study"', "3"), ["line 1: title", "text in quotes"]),
+    "title as a number": (('"A valid study"', "3"), ["line 1: title", "must be text; got 3"]),
     "deep array": (
         ("bore =", "x = " + "[\n" * 9000 + "]" * 3000 + "\nbore ="),
         ["line 26", "nests brackets"],
@@ -369,7 +369,7 @@ EDITS = {
     "long hexadecimal ratio": (("race_friction = 0.1", "race_friction = 0x" + "f" * 3900), ["60 digits"]),
     "long hexadecimal count": (("ball_count = 13", "ball_count = 0x" + "f" * 3900), ["60 digits"]),
     "long number without a unit": (('"50 mm"', "9" * 3900), ["needs a unit of length"]),
-    "empty key": (("bore =", '"" = 1\nbore ='), ['[bearing] "" is no key']),
+    "empty key": (("bore =", '"" = 1\nbore ='), ['[bearing] "" is not a valid key']),
     "extends itself": (
         ('title = "A valid study"', 'extends = "study.toml"'),
         ["line 1: extends", "leads back"],

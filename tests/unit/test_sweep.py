@@ -11,7 +11,7 @@ import openpyxl
 import pytest
 
 from separatrix.cage import judge
-from separatrix.chain import cage_state, restitution_state
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.sweep import MOST_CASES, sweep
@@ -42,19 +42,20 @@ def test_a_case_is_the_study_with_those_values():
             bearing=replace(STUDY.bearing, contact_angle=case["bearing.contact_angle"]),
             cage=replace(STUDY.cage, mass=case["cage.mass"]),
         )
-        state = restitution_state(study)
+        state = solve(study)
         assert one.restitution_factor == state.restitution.restitution_factor
-        assert one.max_pressure_outer == state.traction.bearing.outer.ellipse.max_pressure
+        assert one.max_pressure_outer == state.bearing.outer.ellipse.max_pressure
         assert one.slope_inner == state.traction.inner.slope
         assert (one.verdict, one.reason) == (None, "")
-    assert found == sweep(STUDY, CASES, jobs=3)
+    assert found == sweep(STUDY, CASES, runner=Runner(jobs=3))
 
 
 def test_a_verdict_is_that_of_the_whole_ensemble():
     """With its evidence, as `judge` gives it."""
     (one,) = sweep(QUICK, [{"ball_cage_friction": 0.3}], verdicts=True).cases
-    state = cage_state(QUICK, friction=0.3)
-    judged = judge(state.cage, Runner().whole_ensemble(state.cage, state.stability))
+    found = solve(QUICK)
+    cage = found.cage_with(0.3)
+    judged = judge(cage, Runner().whole_ensemble(cage, found.stability))
     assert (one.verdict, one.reason) == (judged.verdict.name, judged.reason)
     for name in ("probability_stable", "largest_offset", "drift_rate", "largest_contact_force", "runs"):
         assert getattr(one, name) == getattr(judged, name)

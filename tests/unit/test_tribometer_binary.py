@@ -1,4 +1,4 @@
-"""Logs in workbooks and in LabVIEW files become tables with the numbers, names and units written."""
+"""Logs in workbooks and in LabVIEW files become the numbers, names and units written."""
 
 import builtins
 import sys
@@ -6,86 +6,70 @@ import sys
 import numpy as np
 import openpyxl
 import pytest
-from minimal_xlsx import Fault, Formula, Shown, parts, workbook, zipped
+from minimal_xlsx import Fault, Formula, Shown, workbook, zipped
 
 from separatrix.errors import InputError
-from separatrix.tribometer import sheet_numbers, tdms, xlsx
-from separatrix.tribometer.column_map import column_map
-from separatrix.tribometer.reading import read_log
+from separatrix.friction.logs import read_log, tdms
+from separatrix.friction.logs.column_map import column_map
 
 nptdms = pytest.importorskip("nptdms")
 
-ROWS = [["Time", "COF", "Wear"], ["s", "-", "um"]]
+HEAD = [["Time", "COF", "Wear"], ["s", "-", "um"]]
 NUMBERS = [[0.1 * i, 0.1 + 0.001 * (i % 7), float(i)] for i in range(40)]
 
 
-def log(tmp_path, sheets):
-    """Return the tables of a workbook with these sheets."""
-    path = tmp_path / "log.xlsx"
-    path.write_bytes(workbook(sheets))
-    return xlsx.read_tables(path)
-
-
 def logs(tmp_path, sheets, columns=None):
-    """Return the logs of a workbook with these sheets."""
+    """Return the logs of a workbook with these sheets, or with these bytes."""
     path = tmp_path / "log.xlsx"
-    path.write_bytes(workbook(sheets))
+    path.write_bytes(sheets if isinstance(sheets, bytes) else workbook(sheets))
     return read_log(path, column_map(columns or {}))
 
 
-def same(columns, numbers):
-    """Whether columns hold these rows to the last bit, NaN where there is None."""
-    expected = np.array([[np.nan if v is None else v for v in row] for row in numbers])
-    return np.array_equal(np.array(columns).T, expected, equal_nan=True)
+def changed(row, column, value):
+    """Return the sheets of a log with one cell of its rows changed."""
+    rows = [list(one) for one in NUMBERS]
+    rows[row][column] = value
+    return {"a": HEAD + rows}
 
 
-def test_a_table_comes_with_its_names_units_and_metadata(tmp_path):
+def test_a_sheet_comes_with_its_units_and_metadata(tmp_path):
     """Rows above the names are metadata: name, value, unit; numbers are those written, to the last bit."""
     above = [["Sample:", "Armalon 3"], ["Load", 10.0, "N"], []]
-    (table,) = log(tmp_path, {"run 1": above + ROWS + NUMBERS})
-    assert (table.name, table.headers, table.units) == ("run 1", ("Time", "COF", "Wear"), ("s", "-", "um"))
-    assert table.metadata == {"Sample": "Armalon 3", "Load": "10 N"}
-    assert same(table.columns, NUMBERS)
+    (found,) = logs(tmp_path, {"run 1": above + HEAD + NUMBERS})
+    assert found.source == "log.xlsx, run 1"
+    assert [(c.header, c.unit) for c in found.columns] == [("Time", "s"), ("COF", "-"), ("Wear", "um")]
+    assert found.metadata == {"Sample": "Armalon 3", "Load": "10.0 N"}
+    assert found.conditions.normal_force == 10.0
+    assert [found.time.tolist(), found.friction.tolist()] == [[row[i] for row in NUMBERS] for i in (0, 1)]
 
 
-def test_each_sheet_with_a_table_is_one(tmp_path):
-    """A sheet of remarks is passed over; the others come in the workbook's order."""
-    sheets = {"b": ROWS + NUMBERS, "remarks": [["made by", "A. N."], ["date", 3.0]], "a": ROWS + NUMBERS[:5]}
-    assert [(t.name, len(t.columns[0])) for t in log(tmp_path, sheets)] == [("b", 40), ("a", 5)]
+def test_each_sheet_with_a_table_is_a_log(tmp_path):
+    """A sheet of remarks and an empty one are passed over; the others come in the workbook's order."""
+    remarks = [["made by", "A. N."], ["date", 3.0]]
+    other = [[*row[:1], 2.0 * row[1]] for row in NUMBERS[:5]]
+    sheets = {"b": HEAD + NUMBERS, "remarks": remarks, "none": [], "a": [["Time [s]", "COF"], *other]}
+    assert [(log.source, log.rows) for log in logs(tmp_path, sheets)] == [
+        ("log.xlsx, b", 40),
+        ("log.xlsx, a", 5),
+    ]
 
 
-def test_units_may_stand_in_brackets_or_nowhere(tmp_path):
-    """A row of bracketed units is one of units; without it they are unknown, also beside names."""
-    bracketed, plain = [["t", "mu"], ["[s]", "[-]"]], [["t [s]", "mu"]]
-    numbers = [row[:2] for row in NUMBERS]
-    assert log(tmp_path, {"a": bracketed + numbers})[0].units == ("s", "-")
-    assert log(tmp_path, {"a": plain + numbers})[0].units == ("", "")
+@pytest.mark.parametrize(
+    "mark", [None, "x", "-", " NaN ", "n/a", Fault("#N/A"), Fault("#DIV/0!"), Formula('IF(A1,"",1)')]
+)
+def test_a_missing_value_is_left_out(tmp_path, mark):
+    """An empty cell, a mark or an error is not a value; the note counts its row."""
+    (found,) = logs(tmp_path, changed(5, 1, mark))
+    assert (found.rows, found.missing) == (39, 1)
 
 
-@pytest.mark.parametrize("mark", [None, "x", "-", "NaN", "n/a", Fault("#N/A"), Fault("#DIV/0!")])
-def test_a_missing_value_is_nan(tmp_path, mark):
-    """An empty cell, a mark or an error is no value; its row stays."""
-    numbers = [list(row) for row in NUMBERS]
-    numbers[5][1] = mark
-    (table,) = log(tmp_path, {"a": ROWS + numbers})
-    assert np.flatnonzero(np.isnan(table.columns[1])).tolist() == [5]
-    assert len(table.columns[0]) == len(NUMBERS)
-
-
-def test_times_of_day_become_seconds(tmp_path):
-    """A cell formatted as time holds days: 1/86400 of one is a second (to rounding of the product)."""
-    rows = [[Shown(0.5 + i / 86_400, 1), 0.1, float(i)] for i in range(5)]
-    (table,) = log(tmp_path, {"a": [["Time", "COF", "n"], *rows]})
-    assert table.units[0] == "s"
-    assert np.diff(table.columns[0]) == pytest.approx(np.ones(4), abs=1e-10)
-
-
-def test_dates_count_from_the_first(tmp_path):
-    """A date of 2026 is 46 000 days: its seconds would hide those of the test."""
-    rows = [[Shown(46_000.4 + i / 86_400, 1), 0.1] for i in range(5)]
-    (table,) = log(tmp_path, {"a": [["Time", "COF"], *rows]})
-    # a date near 46 000 days is kept to 7e-12 of one, which is 6e-7 s
-    assert table.columns[0] == pytest.approx(np.arange(5.0), abs=1e-6)
+def test_times_of_day_and_dates_become_seconds(tmp_path):
+    """A cell formatted as time holds days: 1/86400 of one is a second; dates count from the first."""
+    for start in (0.5, 46_000.4):
+        rows = [[Shown(start + i / 86_400, 1), 0.1 + 0.01 * i] for i in range(5)]
+        (found,) = logs(tmp_path, {"a": [["Time", "COF"], *rows]})
+        # times of day are read to the microsecond, and rounded at both ends
+        assert found.time == pytest.approx(np.arange(5.0), abs=2e-6)
 
 
 @pytest.mark.parametrize("header", [["Time [s]", "COF [%]"], ["Time [s]", "COF"]])
@@ -104,27 +88,28 @@ def test_words_stand_in_columns_that_are_not_read(tmp_path):
     assert found.time.tolist() == list(range(9))
 
 
-def test_merged_headers_have_their_text_in_the_upper_row(tmp_path):
-    """Time over two rows, and "Forces" over its two columns."""
-    header = [["Time [s]", "Forces", None], [None, "Ff [N]", "Fn [N]"]]
-    (found,) = logs(tmp_path, {"a": header + [[float(i), 1.0, 10.0] for i in range(5)]})
-    assert found.friction.tolist() == [0.1] * 5
+RUN = [[float(i), 1.0, 10.0] for i in range(5)]
+ROWS_ABOVE = {
+    "merged headers have their text in the upper row": (
+        [["Time [s]", "Forces", None], [None, "Ff [N]", "Fn [N]"]],
+        1.0,
+    ),
+    "a row of numbers above the names is metadata": (
+        [["Load"], [5.0], ["Time [s]", "Ff [N]", "Fn [N]"]],
+        1.0,
+    ),
+    "units in words": ([["Zeit", "Reibkraft", "Last"], ["Minuten", "N", "N"]], 60.0),
+    "units in brackets": ([["Zeit", "Reibkraft", "Last"], ["[min]", "[N]", "[N]"]], 60.0),
+}
 
 
-def test_rows_of_numbers_above_the_names_are_metadata(tmp_path):
-    """A single row with its names above it, before the names of the table."""
-    above = [["Load", "Speed"], [5.0, 2.0]]
-    (table,) = log(tmp_path, {"a": above + ROWS + NUMBERS})
-    assert table.headers == ("Time", "COF", "Wear")
-    assert same(table.columns, NUMBERS)
-
-
-def test_units_in_words_are_a_row_of_units(tmp_path):
+@pytest.mark.parametrize("name", ROWS_ABOVE)
+def test_rows_above_a_table(tmp_path, name):
     """As in text."""
-    header = [["Zeit", "Reibwert", "Temperatur"], ["Minuten", "ohne", "Grad C"]]
-    (found,) = logs(tmp_path, {"a": header + [[float(i), 0.1, 20.0] for i in range(5)]})
-    assert found.time.tolist() == [60.0 * i for i in range(5)]
-    assert found.conditions.temperature == 293.15
+    above, step = ROWS_ABOVE[name]
+    (found,) = logs(tmp_path, {"a": above + RUN})
+    assert found.friction.tolist() == [0.1] * 5
+    assert found.time.tolist() == [step * i for i in range(5)]
 
 
 BARE = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
@@ -132,23 +117,22 @@ BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
 
 
 @pytest.mark.parametrize(
-    ("sheets", "given"),
+    ("sheets", "given", "columns"),
     [
-        ({"a": [["Time [s]", "COF"], *BARE]}, {}),
-        ({"a": [["Time [s]", "COF"], ["seen by", "A. N."], *BARE]}, {"header_line": 1}),
-        ({"a": [["Time", "COF"], ["made", "today"], ["s", "-"], *BARE]}, {"header_line": 1, "units_line": 3}),
-        ({"a": [["Time [s]", "COF"], *BARE], "b": [[1.0, 2.0]] * 3}, {"tables": ["a"]}),
+        ({"a": [["Time [s]", "COF"], *BARE]}, {}, {}),
+        ({"a": [["Time [s]", "COF"], ["seen by", "A. N."], *BARE]}, {"header_line": 1}, {}),
+        (
+            {"a": [["Time", "COF"], ["made", "now"], ["s", "-"], *BARE]},
+            {"header_line": 1, "units_line": 3},
+            {},
+        ),
+        ({"a": [["Time [s]", "COF"], *BARE], "b": [[1.0, 2.0]] * 3}, {"tables": ["a"]}, {}),
+        ({"a": BARE}, {"separator": ";"}, BY_NUMBER),
     ],
 )
-def test_the_column_map_is_heard_for_workbooks_too(tmp_path, sheets, given):
-    """Marks of missing values, rows of names and units, the sheets to read."""
-    (found,) = logs(tmp_path, sheets, {"format": {"missing": ["OVL"], **given}})
-    assert found.time.tolist() == [0.0, 1.0, 3.0, 4.0]
-
-
-def test_columns_of_a_sheet_may_be_given_by_their_numbers(tmp_path):
-    """Without any names."""
-    (found,) = logs(tmp_path, {"a": BARE}, BY_NUMBER | {"format": {"missing": ["OVL"]}})
+def test_the_column_map_serves_workbooks_too(tmp_path, sheets, given, columns):
+    """Marks of missing values, rows of names and units, the sheets to read, columns by number."""
+    (found,) = logs(tmp_path, sheets, {"format": {"missing": ["OVL"], **given}, **columns})
     assert found.time.tolist() == [0.0, 1.0, 3.0, 4.0]
 
 
@@ -164,90 +148,52 @@ def test_headers_of_an_instrument_are_known_in_a_workbook(tmp_path):
 
 def test_a_formula_has_its_saved_value(tmp_path):
     """Nothing is computed again: the value saved with the formula is taken."""
-    rows = [[float(i), Formula(f"D{i}/10", 0.1), 1.0] for i in range(5)]
-    assert log(tmp_path, {"a": [["Time", "COF", "n"], *rows]})[0].columns[1].tolist() == [0.1] * 5
-
-
-@pytest.mark.parametrize("gap", [False, True])
-def test_many_rows_at_once_are_those_read_one_by_one(tmp_path, monkeypatch, gap):
-    """The pattern over plain rows and the parser give the same numbers to the last bit, with gaps too."""
-    random = np.random.default_rng(3)
-    numbers = (random.normal(size=(3000, 3)) * 10.0 ** random.integers(-30, 30, (3000, 3))).tolist()
-    if gap:
-        for i in range(0, 3000, 7):
-            numbers[i][i % 2 + 1] = None
-    monkeypatch.setattr(sheet_numbers, "BLOCK", 50_000)
-    path = tmp_path / "log.xlsx"
-    path.write_bytes(workbook({"a": ROWS + numbers}))
-    quick = xlsx.read_tables(path)[0].columns
-    assert same(quick, numbers)
-    monkeypatch.setattr(xlsx, "plain_numbers", lambda *_: None)
-    assert np.array_equal(np.array(xlsx.read_tables(path)[0].columns), np.array(quick), equal_nan=True)
-
-
-def test_plain_rows_are_indeed_read_at_once(tmp_path, monkeypatch):
-    """Plain numbers, whatever stands beside them, never meet the row by row reading, seven times as slow."""
-    monkeypatch.setattr(xlsx._Columns, "read", None)
-    assert same(log(tmp_path, {"a": ROWS + NUMBERS})[0].columns, NUMBERS)
-    noted = [[*row, "ok" if i % 3 else None, Formula("A1", 1.0)] for i, row in enumerate(NUMBERS)]
-    (found,) = logs(tmp_path, {"a": [["Time [s]", "COF", "Wear [um]", "Status", "Sum"], *noted]})
-    assert found.friction.tolist() == [row[1] for row in NUMBERS]
-
-
-def test_dates_percentages_and_formulas_are_read_at_once_too(tmp_path, monkeypatch):
-    """A column of one kind is cut out by the pattern, with the very numbers of reading row by row."""
-    rows = [
-        [Shown(0.5 + i / 7e4, 1), Shown(0.1 + 1e-3 * i, 2), Formula(f"B{i + 2}*3", 0.3 * i)]
-        for i in range(50)
-    ]
-    rows[7][1] = rows[8][2] = None
-    path = tmp_path / "log.xlsx"
-    path.write_bytes(workbook({"a": [["Time", "COF", "Wear"], *rows]}))
-    with monkeypatch.context() as slow:
-        slow.setattr(xlsx, "plain_numbers", lambda *_: None)
-        (one_by_one,) = xlsx.read_tables(path)
-    monkeypatch.setattr(xlsx._Columns, "read", None)
-    (at_once,) = xlsx.read_tables(path)
-    assert at_once.units == one_by_one.units == ("s", "%", "")
-    assert np.array_equal(np.array(at_once.columns), np.array(one_by_one.columns), equal_nan=True)
-    assert at_once.columns[1][:2].tolist() == [10.0, 100.0 * 0.101]
-
-
-@pytest.mark.parametrize("odd", [Formula("A1", 0.3), Shown(0.3, 2), "0.3"])
-def test_a_cell_behind_words_is_not_passed_over(tmp_path, odd):
-    """The pattern for words ends with their cell: what is no plain number in the next is read or refused."""
-    rows = [[float(i), "ok", odd if i == 5 else 0.1] for i in range(9)]
-    sheets = {"a": [["Time [s]", "Status", "COF"], *rows]}
-    if isinstance(odd, Formula):
-        assert logs(tmp_path, sheets)[0].friction[5] == 0.3
-    else:
-        with pytest.raises(InputError, match=r"cell C7 must be a number|column C holds both"):
-            logs(tmp_path, sheets)
+    rows = [[float(i), Formula(f"D{i}/10", 0.1)] for i in range(5)]
+    assert logs(tmp_path, {"a": [["Time [s]", "COF"], *rows]})[0].friction.tolist() == [0.1] * 5
 
 
 def test_what_openpyxl_writes_is_read(tmp_path):
     """Shared texts, styles and gaps as a usual writer makes them."""
     book = openpyxl.Workbook()
     sheet = book.active
-    for row in (["Zeit", "Reibzahl"], ["s", "-"], *([float(i), 0.2] for i in range(9))):
+    for row in (["Zeit", "Reibzahl"], ["s", "-"], *([float(i), 0.2] for i in range(9)), ["end of test"]):
         sheet.append(row)
     sheet["B7"] = None
     sheet["A1"].font = openpyxl.styles.Font(bold=True)
     book.save(tmp_path / "log.xlsx")
-    (table,) = xlsx.read_tables(tmp_path / "log.xlsx")
-    assert table.headers == ("Zeit", "Reibzahl")
-    assert same(table.columns, [[float(i), None if i == 4 else 0.2] for i in range(9)])
+    (found,) = read_log(tmp_path / "log.xlsx")
+    assert found.time.tolist() == [0.0, 1.0, 2.0, 3.0, 5.0, 6.0, 7.0, 8.0]
 
 
-def test_a_prefix_of_the_namespace_changes_nothing(tmp_path):
-    """Some programs write ``<x:row>``; the parser reads it though the pattern does not."""
-    found = parts({"a": ROWS + NUMBERS})
-    text = (
-        found["xl/worksheets/sheet1.xml"].replace("</", "</x:").replace("<", "<x:").replace("<x:/x:", "</x:")
-    )
-    found["xl/worksheets/sheet1.xml"] = text.replace("xmlns=", "xmlns:x=")
-    (tmp_path / "log.xlsx").write_bytes(zipped(found))
-    assert same(xlsx.read_tables(tmp_path / "log.xlsx")[0].columns, NUMBERS)
+AT_B7 = 'log.xlsx, sheet a: row 7, column "COF" must be a number; got '
+WRONG = {
+    "text among numbers": (changed(4, 1, "high"), AT_B7 + '"high". If that means a missing value'),
+    "a decimal comma as text": (changed(4, 1, "0,12"), AT_B7 + '"0,12"'),
+    "a truth value": (changed(4, 1, True), AT_B7 + '"True"'),
+    "a formula never computed": (changed(0, 1, Formula("A5/10")), "cell B3 holds a formula without a saved"),
+    "no names": (
+        {"a": NUMBERS},
+        "sheet a: row 1 begins a table of 3 columns without a line of 3 column names",
+    ),
+    "no table": ({"a": HEAD}, "has no sheet with rows of numbers under a row of names"),
+    "a second table without names": (
+        {"a": [*HEAD, *NUMBERS, ["end of test"], *NUMBERS[:2]]},
+        'row 43 breaks the table; got "end of test"',
+    ),
+    "dates in part": (changed(4, 0, Shown(0.5, 1)), 'column "Time" must be a number; got "12:00:00"'),
+    "not a workbook": (zipped({"a.txt": "x"}), "is not a readable workbook"),
+    "a zip bomb": (zipped({"xl/media/a.bin": bytes(9_000_000)}), "must expand by at most 100:1"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_workbook_is_refused_by_sheet_and_row(tmp_path, name):
+    """What is neither a number nor missing is never left out in silence."""
+    content, words = WRONG[name]
+    with pytest.raises(InputError) as caught:
+        logs(tmp_path, content)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 # LabVIEW

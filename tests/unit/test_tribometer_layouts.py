@@ -12,11 +12,10 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.tribometer.clock import is_clock, seconds
-from separatrix.tribometer.column_map import column_map
-from separatrix.tribometer.reading import read_log
-from separatrix.tribometer.reduction import reduce_log, reduction
-from separatrix.tribometer.siblings import with_outliers
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.clock import is_clock, seconds
+from separatrix.friction.logs.column_map import column_map
+from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 
 ROWS = 240
 RNG = np.random.default_rng(6)
@@ -162,8 +161,8 @@ FORCE_ONLY = "Laps\tFrictionForce\t?\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\
 
 
 def test_a_force_without_unit_is_not_offered_as_the_friction(tmp_path):
-    """The mangled letter is; who names the force all the same is refused, and told the two forces."""
-    with pytest.raises(InputError, match=r'got columns "\?"\. Say which .* friction = "\?"') as refusal:
+    """The mangled letter is; naming the force all the same is refused, with the two forces to name."""
+    with pytest.raises(InputError, match=r'got columns "\?"\. State which .* friction = "\?"') as refusal:
         read(tmp_path, FORCE_ONLY)
     assert "FrictionForce" not in str(refusal.value)
     (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": "?"}})
@@ -302,7 +301,7 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
 
 def test_a_number_of_many_digits_takes_no_time():
     """Digits and a letter: a pattern that tried every split of them took the square of their number."""
-    from separatrix.tribometer.dialect import is_number
+    from separatrix.friction.logs.dialect import is_number
 
     assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from raw_logs import as_written
 
 from separatrix.errors import InputError
-from separatrix.tribometer.column_map import ColumnMap, column_map
-from separatrix.tribometer.log import MEANINGS, Conditions, RawLog
-from separatrix.tribometer.names import ALIASES, NAMES, ranks, scale_of
-from separatrix.tribometer.reading import described, read_log
+from separatrix.friction.logs import described, read_log
+from separatrix.friction.logs.column_map import ColumnMap, column_map
+from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog
+from separatrix.friction.logs.names import ALIASES, NAMES, ranks, scale_of
 from separatrix.units import UNITS
 
 ROWS = 60

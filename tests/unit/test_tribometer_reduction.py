@@ -10,12 +10,11 @@ from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
-from separatrix.results import labelled
-from separatrix.results.friction_tests import page_data
-from separatrix.tribometer import steady
-from separatrix.tribometer.log import Conditions, RawLog
-from separatrix.tribometer.reduction import ReductionOptions, TestFriction, reduce_log, reduction
-from separatrix.tribometer.stick_slip import oscillation
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log, reduction, steady
+from separatrix.friction.reduction.steady import oscillation
+from separatrix.present import load, save
+from separatrix.present.tribometer import page_data
 
 QUIET = Recipe(rows=4000, noise=0.004)
 
@@ -117,7 +116,7 @@ def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one
     flag = told(
         reduce_log(failed(0.1, 3.125), ReductionOptions(run_in_end="60 s")), "Friction rises from 0.0"
     )
-    assert flag.endswith("Look at the plot; if the film failed, give the log only up to the rise.")
+    assert flag.endswith("Look at the plot; if the film failed, use the log only up to the rise.")
     assert "run_in_end" not in flag
 
 
@@ -161,7 +160,7 @@ def test_no_cycle_is_found_in_noise():
     """White noise has no line: that is told, and means are over rows."""
     test = reduce_log(log(knows_cycle=False), ReductionOptions(find_cycle=True))
     assert test.cycles == 0
-    assert told(test, "No line stands out")
+    assert told(test, "No line exceeds the noise")
 
 
 def test_too_slow_sampling_of_cycles_is_told():
@@ -300,7 +299,7 @@ def test_a_test_short_for_its_scatter_is_told():
 def test_friction_that_no_contact_has_is_told():
     """A mean of -0.1 is a wrong zero or sign."""
     test = reduce_log(log(friction=lambda t: -0.1 + 0.004 * _noise(t.size)))
-    assert "check zero, sign and units" in told(test, "Friction lies outside 0 to 2")
+    assert "check zero, sign and units" in told(test, "Friction is outside 0 to 2")
 
 
 def test_a_gap_is_told():
@@ -349,8 +348,8 @@ def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
     """The dataset goes through a file, and every panel has labels with units."""
     one = log(replace(QUIET, run_in=0.1), temperature=lambda t: 77.0 + 0.0 * t)
     data = page_data(reduction(one))
-    labelled.save(data, tmp_path / "test.nc")
-    figure = page(labelled.load(tmp_path / "test.nc"))
+    save(data, tmp_path / "test.nc")
+    figure = page(load(tmp_path / "test.nc"))
     assert len(figure.axes) == 5
     for axes in figure.axes:
         assert "[" in axes.get_xlabel()

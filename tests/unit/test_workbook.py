@@ -11,8 +11,15 @@ from minimal_xlsx import Formula, Shown, workbook
 
 from separatrix.cli import main, run
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.spreadsheet import open_workbook
-from separatrix.spreadsheet.writing import (
+from separatrix.study_file import read_study, shipped_studies
+from separatrix.study_file.cells import sheets_of
+from separatrix.study_file.document import SECTIONS, load
+from separatrix.study_file.sections import READERS
+from separatrix.study_file.template import TEMPLATE, study_workbook, template_keys, template_workbook
+from separatrix.units import parse
+from separatrix.workbook import results_workbook
+from separatrix.workbook.ranking import OWN_SHEETS
+from separatrix.workbook_looks import (
     add_sheet,
     new_workbook,
     put,
@@ -20,15 +27,6 @@ from separatrix.spreadsheet.writing import (
     text_for_cell,
     workbook_bytes,
 )
-from separatrix.study_file import read_study, shipped_studies
-from separatrix.study_file.document import SECTIONS, load
-from separatrix.study_file.sections import _READERS
-from separatrix.study_file.shipped import template_path
-from separatrix.study_file.template_rows import _REQUIRED, _WHOLE, meaning, template_keys
-from separatrix.study_file.template_workbook import study_workbook, template_workbook
-from separatrix.units import parse
-from separatrix.workbook import results_workbook
-from separatrix.workbook.ranking import OWN_SHEETS
 
 STUDY = """
 title = "= A title that begins like a formula"
@@ -94,7 +92,7 @@ def rewritten(path, folder):
 @pytest.mark.parametrize("name", ["template", *shipped_studies()])
 def test_a_study_written_as_a_workbook_reads_back_the_same(name, tmp_path):
     """Every number to the last bit, every material and every candidate."""
-    path = shipped_studies().get(name, template_path())
+    path = shipped_studies().get(name, TEMPLATE)
     assert rewritten(path, tmp_path) == read_study(path)
 
 
@@ -151,14 +149,15 @@ def test_the_template_says_what_the_text_file_says(tmp_path):
     book = openpyxl.load_workbook(tmp_path / "t.xlsx")
     assert book.sheetnames == ["instructions", "study", *SECTIONS, "candidates", "lists"]
     for one in template_keys():
-        assert not meaning(one).endswith((":", ",", " of"))
+        assert not one.meaning.endswith((":", ",", " of"))
         if one.section in SECTIONS:
             keys = [cell.value.split(".")[0] for cell in book[one.section]["A"][1:] if cell.value]
             assert one.key in keys
     known = {f"{one.section}.{one.key}" for one in template_keys()}
-    required = {f"{section}.{key}" for section, keys in _REQUIRED.items() for key in keys}
-    assert set(_WHOLE) | required <= known
-    assert known - {f"{s}.{k}" for s in _READERS for k in _READERS[s]} == {
+    assert {"bearing.contact_angle", "film.race_friction", "cage.mass"} < {
+        f"{one.section}.{one.key}" for one in template_keys() if one.is_required
+    }
+    assert known - {f"{s}.{k}" for s in READERS for k in READERS[s]} == {
         *(".title", ".extends", "ranking.candidates.name", "ranking.candidates.friction"),
         "ranking.candidates.material",
     }
@@ -409,8 +408,8 @@ def test_what_we_write_we_read(tmp_path):
     for column, value in enumerate((1.5, -3, "-", "=x", True, None, "_x003D_1"), 1):
         put(sheet, 1, column, value)
     (tmp_path / "a.xlsx").write_bytes(workbook_bytes(book))
-    ((_, found),) = open_workbook(tmp_path / "a.xlsx").rows("a")
-    assert [found[n].value if n in found else None for n in range(1, 8)] == [
+    (found,) = sheets_of(tmp_path / "a.xlsx", "a.xlsx", lambda _: True)
+    assert [found.cells[1, n].value if (1, n) in found.cells else None for n in range(1, 8)] == [
         1.5,
         -3,
         "-",

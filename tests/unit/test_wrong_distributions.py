@@ -75,7 +75,10 @@ WRONG = {
         ("must have only one of between",),
     ),
     "an empty table": (film("{}"), ("must have between, or mean with standard_deviation, or samples",)),
-    "an unknown key": (film('{ betwen = ["1 um", "2 um"] }'), ("betwen is no key", "Did you mean between?")),
+    "an unknown key": (
+        film('{ betwen = ["1 um", "2 um"] }'),
+        ("betwen is not a key", "Did you mean between?"),
+    ),
     "no samples": (film("[]"), ("must hold 2 to 10000 samples; got 0",)),
     "one sample": (film('["1 um"]'), ("must hold 2 to 10000 samples", "without brackets")),
     "equal samples": (film('["1 um", "1000 nm"]'), ("must differ: there is no spread",)),

@@ -3,8 +3,9 @@
 import pytest
 
 from separatrix.errors import InputError
-from separatrix.friction_file import read_friction
-from separatrix.friction_fit import FrictionTest, fit_friction
+from separatrix.friction.file import read_friction
+from separatrix.friction.fit import fit_friction
+from separatrix.friction.records import FrictionTest
 from separatrix.study_file import read_study
 
 GOOD = {
@@ -27,7 +28,7 @@ WRONG_FILES = {
     "test is a number": ("test = 3", ("line 1: test must be 1 to", "got 3")),
     "tests are numbers": ("test = [1]", ("must be a table", "got 1")),
     "tests without end": ("test = []", ("must be 1 to 10000", "0 tests")),
-    "unknown section": (text_of() + "[tests]\n", ("line 6: tests is no key", "Did you mean test?")),
+    "unknown section": (text_of() + "[tests]\n", ("line 6: tests is not a key", "Did you mean test?")),
     "title is a number": ("title = 3\n" + text_of(), ("title must be text",)),
     "not TOML": ("[[test]\n", ("line 1", "not valid TOML")),
     "decimal comma": (text_of(friction="0,08"), ("line 5", "Write a decimal point: 0.08")),
@@ -59,7 +60,7 @@ WRONG_FILES = {
     "comma in the medium": (text_of(medium='"air, dry"'), ("medium must not hold a comma", "got")),
     "material empty": (text_of(material='""'), ("material must be one line of 1 to 200",)),
     "material over lines": (text_of(material='"a\\nb"'), ("material must be one line",)),
-    "running-in bare": (text_of(run_in_end="35"), ("run_in_end must be a time", '"35 m"')),
+    "running-in bare": (text_of(run_in_end="35"), ("run_in_end must be a time", '"200 m"')),
     "running-in in newtons": (text_of(run_in_end='"35 N"'), ("run_in_end must be a time", "500 cycles")),
     "flags as text": (text_of(flags='"drift"'), ("flags must be a list",)),
     "flag a number": (text_of(flags="[1]"), ("flags, item 1,", "must be text")),

@@ -8,8 +8,8 @@ import pytest
 import raw_logs
 
 from separatrix.errors import InputError
-from separatrix.tribometer.column_map import column_map, read_column_map
-from separatrix.tribometer.reading import read_log
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import column_map, read_column_map
 
 TIME = np.arange(20) * 0.5
 FRICTION = 0.1 + 0.001 * np.arange(20)
@@ -102,11 +102,11 @@ WRONG = {
     ),
     "marks between thousands": (
         lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))),
-        "Export the file without marks between thousands, or say below [format]: decimal = ...",
+        "Export the file without marks between thousands, or write below [format]: decimal = ...",
     ),
     "decimals or thousands": (
         lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))),
-        'does not tell decimals from thousands; got "1,250". Add to the column map, below [format]: decimal = ","',
+        'does not show whether its marks are decimal signs or between thousands; got "1,250". Add to the column map, below [format]: decimal = ","',
     ),
     "a point among decimal commas far below": (
         csv(
@@ -131,20 +131,20 @@ WRONG = {
     ),
     "two frictions": (
         csv(columns=TWO),
-        'has 2 columns that could be the friction; got columns "COF", "mu". Say which below [columns] in a '
+        'has 2 columns that could be the friction; got columns "COF", "mu". State which below [columns] in a '
         'column map: friction = "COF".',
     ),
     "the same header twice": (
         lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))),
-        'could be the friction; got columns "COF", "COF". Say which below [columns] in a column map: friction = 2 or 3.',
+        'could be the friction; got columns "COF", "COF". State which below [columns] in a column map: friction = 2 or 3.',
     ),
     "no friction": (
         csv(columns={"time [s]": TIME, "a": FRICTION}),
-        'no column that is known to be the friction, nor two forces that give it; got columns "time [s]", "a"',
+        'no column that is known to be the friction, nor two forces from which it follows; got columns "time [s]", "a"',
     ),
     "a friction of unknown name": (
         csv(columns={"time [s]": TIME, "COF max": FRICTION, "COF min": FRICTION}),
-        'got columns "COF max", "COF min". Say which below [columns] in a column map: friction = "COF max".',
+        'got columns "COF max", "COF min". State which below [columns] in a column map: friction = "COF max".',
     ),
     "friction in volts": (
         csv(columns={"time [s]": TIME, "COF [V]": FRICTION}),
@@ -156,7 +156,7 @@ WRONG = {
     ),
     "friction in percent without saying so": (
         csv(columns={"time [s]": TIME, "COF": FRICTION * 100}),
-        "above 5 in more than a tenth of its rows; got a median of 10.95. If it is in percent",
+        "above 5 in more than a tenth of its rows: not a ratio of forces; got a median of 10.95. If it is in percent",
     ),
     "a tangential force alone": (
         csv(columns={"time [s]": TIME, "Ff [N]": FORCE}),
@@ -176,7 +176,7 @@ WRONG = {
     ),
     "a normal force of both signs": (
         csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}),
-        "has a normal force of both signs, so that compression cannot be told; got 10 rows above zero, 10 below",
+        "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below",
     ),
     "no abscissa": (
         csv(columns={"a": TIME, "COF": FRICTION}),
@@ -184,7 +184,7 @@ WRONG = {
     ),
     "time without unit": (
         csv(columns={"time": TIME, "COF": FRICTION}),
-        'column "time" has no unit, so that its meaning is not sure. Below [columns] in a column map, with the '
+        'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the '
         'true unit: time = { name = "time", unit = "s" }.',
     ),
     "time in an unknown unit": (
@@ -197,7 +197,7 @@ WRONG = {
     ),
     "frictions of two stations": (
         csv(columns={"time [s]": TIME, "COF_1": FRICTION, "COF_2": FRICTION}),
-        'got columns "COF_1", "COF_2". Say which below [columns] in a column map: friction = "COF_1".',
+        'got columns "COF_1", "COF_2". State which below [columns] in a column map: friction = "COF_1".',
     ),
     "T of time or temperature": (csv(columns={"T": TIME, "COF": FRICTION}), 'column "T" has no unit'),
     "every friction missing": (
@@ -230,7 +230,7 @@ WRONG = {
     ),
     "a force beside a mangled letter": (
         csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}),
-        'got columns "?". Say which below [columns] in a column map: friction = "?".',
+        'got columns "?". State which below [columns] in a column map: friction = "?".',
     ),
     "a second table without header": (
         csv() + b"second run\n" + csv().split(b"\n", 1)[1],
@@ -259,9 +259,9 @@ WRONG_MAPS = {
     "an unknown section": ({"column": {}}, 'has no section of that name; got "column". Did you mean "columns"?'),
     "an unknown meaning": ({"columns": {"friktion": "a"}}, 'got "friktion". Did you mean "friction"?'),
     "a section that is none": ({"columns": 3}, "[columns] must be a section of the file; got 3"),
-    "a column without a name": ({"columns": {"time": {"unit": "s"}}}, "[columns] time must name a column, or give its number. Write time ="),
+    "a column without a name": ({"columns": {"time": {"unit": "s"}}}, "[columns] time must be the name or the number of a column. Write time ="),
     "a column number of zero": ({"columns": {"time": 0}}, "must be the number of a column, counted from 1; got 0"),
-    "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has no column "Zeit", which the column map says is time'),
+    "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has no column "Zeit", which the column map names as time'),
     "a number beyond the columns": ({"columns": {"friction": 7}}, "has 2 columns, not 7"),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),
     "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time unit must be a unit such as s, ms"),

@@ -42,15 +42,15 @@ WRONG = {
     "an empty file": ("", "is empty"),
     "only a comment": ("# nothing\n", "is empty"),
     "no record": ('title = "Ours"\n', "holds no record"),
-    "a title that is a number": ("title = 5\n" + MATERIAL, "title must be text in quotes; got 5"),
+    "a title that is a number": ("title = 5\n" + MATERIAL, "title must be text; got 5"),
     "no TOML": ("[cage_material\n", "is not valid TOML"),
     "a section with a slip": (
         MATERIAL.replace("cage_material", "cage_materials"),
         "Did you mean cage_material?",
     ),
-    "an unknown section": (MATERIAL.replace("cage_material", "spring"), "is no kind of record"),
+    "an unknown section": (MATERIAL.replace("cage_material", "spring"), "is not a kind of record"),
     "a section of lists": ("[[film]]\nname = 1\n", "must hold records"),
-    "a key outside a section": ("density = 5\n" + MATERIAL, "is no kind of record"),
+    "a key outside a section": ("density = 5\n" + MATERIAL, "is not a kind of record"),
     "a record without header": ("[cage_material]\nOurs = 5\n", "must be a record: keys with values; got 5"),
     "a name that is empty": (MATERIAL.replace('"Ours"', '""'), "must be one line of 1 to 200 printable"),
     "a key with a slip": (MATERIAL.replace("poisson_ratio", "poisson_ration"), "Did you mean poisson_ratio?"),
@@ -91,7 +91,7 @@ WRONG = {
     "a modulus of a million GPa": (changed(MATERIAL, "5 GPa", "1e6 GPa"), "Check the unit"),
     "a modulus that is not finite": (changed(MATERIAL, "5 GPa", "nan GPa"), "must be a finite number"),
     "a ratio of one half": (changed(MATERIAL, "0.3", "0.5"), "must lie between 0.001 and 0.499"),
-    "a ratio in quotes": (changed(MATERIAL, "0.3", '"0.3"'), "without quotes"),
+    "a ratio in quotes": (changed(MATERIAL, "0.3", '"0.3"'), "Write 0.3 as a number"),
     "a temperature below zero": (
         changed(MATERIAL, '"5 GPa",', '"5 GPa", temperature = "-10 K",'),
         "temperature must lie between",
@@ -150,7 +150,7 @@ WRONG = {
         FLUID + 'aliases = ["gaseous nitrogen"]\n',
         "[fluid] slush has a name of gaseous nitrogen (fluids.toml, line",
     ),
-    "a viscosity of a solid": (MATERIAL + "viscosity = 5\n", "is no key of a cage material"),
+    "a viscosity of a solid": (MATERIAL + "viscosity = 5\n", "is not a key of a cage material"),
     "a remark over two lines": (MATERIAL + 'remark = "a\\nb"\n', "must be one line"),
     "a density of a gas for a solid": (
         MATERIAL + 'density = { value = "0.5 kg/m3", source = "our test", confidence = "guess" }\n',
@@ -160,7 +160,7 @@ WRONG = {
     "a fluid of another phase": (FLUID.replace("liquid", "slush"), 'must be "liquid" or "gas"'),
     "a fluid with a path": (FLUID + 'coolprop = "REFPROP::N2"\n', "must be the plain name of a pure fluid"),
     "aliases that are text": (FLUID + 'aliases = "LN2"\n', "must be a list of 1 to 20 names"),
-    "a modulus of a fluid": (FLUID + MODULUS + "\n", "is no key of a fluid"),
+    "a modulus of a fluid": (FLUID + MODULUS + "\n", "is not a key of a fluid"),
     "a table without friction": (TABLE.partition('[friction_table."rig".f')[0], "lacks: friction"),
     "a table without source": (changed(TABLE, 'source = "Report 5"\n', ""), "lacks: source"),
     "a friction of zero": (changed(TABLE, "0.2", "0.0"), "left out, never given as 0"),
@@ -174,7 +174,7 @@ WRONG = {
     "a count of zero": (changed(TABLE, "0.2", "{ mean = 0.2, count = 0 }"), "must be a whole number from 1"),
     "an unknown key of a friction": (
         changed(TABLE, "0.2", "{ mean = 0.2, sd = 1 }"),
-        "is no key of this table",
+        "is not a key of this table",
     ),
     "an environment that is not listed": (changed(TABLE, '["air, 440C"]', '["air"]'), "lacks an environment"),
     "environments twice": (
@@ -221,7 +221,7 @@ def test_the_files_that_are_changed_are_right(text, tmp_path):
 
 
 STUDIES = {
-    "a film that no library has": ('[film]\nmaterial = "Ourz"\n', "is no film of the library"),
+    "a film that no library has": ('[film]\nmaterial = "Ourz"\n', "is not a film of the library"),
     "a near miss of a user's record": ('[cage]\nmaterial = "Oors"\n', "Did you mean Ours?"),
     "a near miss of a user's table": ('[ranking]\nfriction = "rigg"\n', "Did you mean rig?"),
     "a material that the table lacks": (
@@ -230,14 +230,17 @@ STUDIES = {
     ),
     "a cage material for a ball": (
         '[bearing]\nball_material = "Ours"\n',
-        "is no bearing material of the library",
+        "is not a bearing material of the library",
     ),
     "a library that is a number": ("library = 5\n", "must be the path of a file or a folder"),
-    "a library that is missing": ('library = "no.toml"\n', 'library names no file or folder; got "no.toml"'),
+    "a library that is missing": (
+        'library = "no.toml"\n',
+        'library does not name a file or folder; got "no.toml"',
+    ),
     "an empty list": ("library = []\n", "must be one path or a list of 1 to 20"),
     "an empty folder": ('library = "empty"\n', "names a folder without a .toml file"),
-    "a library that is a study": ('library = "case.toml"\n', "is no kind of record"),
-    "a library with an endless name": (f'library = "{"x" * 300}"\n', "names no file or folder"),
+    "a library that is a study": ('library = "case.toml"\n', "is not a kind of record"),
+    "a library with an endless name": (f'library = "{"x" * 300}"\n', "does not name a file or folder"),
 }
 
 
@@ -300,11 +303,14 @@ CALLS = {
     "no verb": ([], "Missing command"),
     "an unknown verb": (["lst"], "No such command 'lst'"),
     "an unknown kind": (["list", "--kind", "flim"], "Did you mean film?"),
-    "a library that is missing": (["list", "--library", "no.toml"], "--library names no file or folder"),
+    "a library that is missing": (
+        ["list", "--library", "no.toml"],
+        "--library does not name a file or folder",
+    ),
     "no name": (["show"], "Missing argument 'NAME'"),
     "an unknown name": (["show", "440 C"], "Did you mean 440C?"),
-    "an empty name": (["show", ""], "is no record of the library"),
-    "a name of another kind": (["show", "440C", "--kind", "film"], "is no film of the library"),
+    "an empty name": (["show", ""], "is not a record of the library"),
+    "a name of another kind": (["show", "440C", "--kind", "film"], "is not a film of the library"),
     "a temperature without unit": (["show", "PTFE", "--temperature", "77"], 'Write "77 K"'),
     "a temperature of a length": (["show", "PTFE", "--temperature", "77 m"], "needs a unit of temperature"),
     "a temperature below zero": (["show", "PTFE", "--temperature", "-1 K"], "--temperature must lie between"),
@@ -313,7 +319,7 @@ CALLS = {
     "a state below melting": (["show", "LN2", "--temperature", "20 K"], "has no state"),
     "a file that is missing": (["check", "no.toml"], "no.toml cannot be read: no such file"),
     "a folder": (["check", "."], "is a folder, not a file"),
-    "a study for a library": (["check", "case.toml"], "is no kind of record"),
+    "a study for a library": (["check", "case.toml"], "is not a kind of record"),
     "no library to add to": (["add", "new.toml"], "--to is missing"),
     "a folder to add to": (["add", "new.toml", "--to", "."], "is a folder"),
     "a file that is no TOML": (["add", "new.toml", "--to", "ours.txt"], "must end in .toml"),
@@ -322,10 +328,16 @@ CALLS = {
     "a name that is there": (["add", "new.toml", "--to", "materials.toml"], "stands in materials.toml"),
     "a name that stands beside": (["add", "new.toml", "--to", "other/materials.toml"], "stands in more.toml"),
     "a name that stands above": (["add", "new.toml", "--to", "materials/x.toml"], "stands in materials.toml"),
-    "a library to add to that is wrong": (["add", "new.toml", "--to", "slip.toml"], "is no kind of record"),
-    "a file to add that is wrong": (["add", "case.toml", "--to", "materials.toml"], "is no kind of record"),
+    "a library to add to that is wrong": (
+        ["add", "new.toml", "--to", "slip.toml"],
+        "is not a kind of record",
+    ),
+    "a file to add that is wrong": (
+        ["add", "case.toml", "--to", "materials.toml"],
+        "is not a kind of record",
+    ),
     "a file to add that is missing": (["add", "no.toml", "--to", "materials.toml"], "cannot be read"),
-    "a study to add to": (["add", "new.toml", "--to", "case.toml"], "is no kind of record"),
+    "a study to add to": (["add", "new.toml", "--to", "case.toml"], "is not a kind of record"),
 }
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from separatrix.errors import InputError
-from separatrix.tribometer.log import Conditions, RawLog
-from separatrix.tribometer.reduction import ReductionOptions, reduce_log
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.reduction import ReductionOptions, reduce_log
 
 NAN = float("nan")
 

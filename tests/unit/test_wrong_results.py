@@ -11,10 +11,9 @@ import xarray as xr
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.figures import figures
-from separatrix.figures.heading import heading
-from separatrix.figures.literal import literal_texts
-from separatrix.results import container, load
+from separatrix.figures import draw
+from separatrix.figures.style import heading, literal_texts
+from separatrix.present import container, load
 
 STUDY = {"cage": {"mass": {"value": 0.025, "unit": "kg"}}}
 HEAD = {"verb": "simulate", "title": "A run", "seed": 1, "study": json.dumps(STUDY)}
@@ -172,7 +171,7 @@ def test_a_file_that_was_cut_is_refused(path):
 
 SPOILED_HEADS = {
     "seed": (None, "lacks its seed"),
-    "study": ("{", "holds a study that separatrix did not write"),
+    "study": ("{", "contains a study that separatrix did not write"),
     "title": (None, "lacks its title"),
 }
 
@@ -181,8 +180,12 @@ SPOILED_HEADS = {
 def test_a_head_that_is_no_head_is_refused(path, name, capsys):
     """Missing, not JSON, not a table, or nested without end."""
     key, value, message = {
-        "a list": ("study", "[]", "holds a study that separatrix did not write"),
-        "deep": ("study", '{"a":' * 3000 + "1" + "}" * 3000, "holds a study that separatrix did not write"),
+        "a list": ("study", "[]", "contains a study that separatrix did not write"),
+        "deep": (
+            "study",
+            '{"a":' * 3000 + "1" + "}" * 3000,
+            "contains a study that separatrix did not write",
+        ),
         "seed of text": ("seed", "x", "lacks its seed"),
     }.get(name) or (name, *SPOILED_HEADS[name])
     with h5py.File(path, "a") as file:
@@ -213,5 +216,5 @@ def test_a_dollar_in_a_name_is_written_as_it_is_in_every_figure():
     film = {"material": {"name": "$_$"}, "thickness": {"value": 5e-7}}
     data.attrs = {"title": "$^$", "study": json.dumps({"film": film})}
     assert heading(literal_texts(data)) == [r"\$^\$", r"\$_\$, 500 nm"]
-    for _, figure in figures("stability", data):
+    for _, figure in draw("stability", data):
         figure.canvas.draw()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.records import SOURCES, Evidence, Samples, dtype_of, samples_for
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
-from separatrix.units import Array, Joule, MetrePerSecond, Newton, Radian, Ratio, Second, Watt
+from separatrix.units import Array, Joule, MetrePerSecond, Newton, PerSecond, Radian, Ratio, Second, Watt
 
 MOST_SAMPLES = 1_000_000
 
@@ -49,27 +50,55 @@ class History:
         As in the ensemble.
     """
 
-    time: Array
-    position: Array
-    velocity: Array
-    rotation: Array
-    rotation_rate: Array
-    ball_lead: Array
-    contact_force: Array
-    land_force: Array
-    kinetic_energy: Array
-    spring_energy: Array
-    land_energy: Array
-    work: dict[str, Array]
-    pocket_angle: Array
-    half_play: Array
+    time: Annotated[Array, "s", ("time",)]
+    position: Annotated[
+        Array,
+        "m",
+        (
+            "time",
+            "axis",
+        ),
+    ]
+    velocity: Annotated[
+        Array,
+        "m/s",
+        (
+            "time",
+            "axis",
+        ),
+    ]
+    rotation: Annotated[Array, "rad", ("time",)]
+    rotation_rate: Annotated[Array, "rad/s", ("time",)]
+    ball_lead: Annotated[
+        Array,
+        "m",
+        (
+            "time",
+            "ball",
+        ),
+    ]
+    contact_force: Annotated[
+        Array,
+        "N",
+        (
+            "time",
+            "ball",
+        ),
+    ]
+    land_force: Annotated[Array, "N", ("time",)]
+    kinetic_energy: Annotated[Array, "J", ("time",)]
+    spring_energy: Annotated[Array, "J", ("time",)]
+    land_energy: Annotated[Array, "J", ("time",)]
+    work: Annotated[dict[str, Array], "J", ("time",)]
+    pocket_angle: Annotated[Array, "rad", ("ball",)]
+    half_play: Annotated[Array, "m", ("ball",)]
     outcome: RunOutcome
     cause: Cause
     judged_from: Second
     judged_until: Second
     end_energy: Joule
-    growth_rate: float
-    drift_rate: float
+    growth_rate: PerSecond
+    drift_rate: PerSecond
     pocket_power: Watt
     land_power: Watt
     rubbing_force: Newton

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import Enum, IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from separatrix import _cage_rules, _check, pocket_shape
+from separatrix import _check, cage_design, pocket_shape
 from separatrix.errors import InputError
 from separatrix.study import Guidance, PocketShape
 from separatrix.units import (
@@ -140,15 +140,15 @@ class PlanarCage:
     pocket_axial_clearance: Metre | None = None
     pocket_axial_offset: Metre = 0.0
     hertz_coefficient: NewtonPerMetre1_5 | None = None
-    pocket_angles: tuple[Radian, ...] = ()
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()
     pocket_spacing_scatter: Ratio = 0.0
     ball_diameter_scatter: Metre = 0.0
     pocket_position_scatter: Metre = 0.0
     land_count: int = 1
     land_out_of_round: Metre = 0.0
     land_lobes: int = 2
-    orbital_cosines: tuple[MetrePerSecond, ...] = ()
-    orbital_sines: tuple[MetrePerSecond, ...] = ()
+    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
     ramp_time: Second = 0.0
     ramp_start: Ratio = 0.1
 
@@ -161,16 +161,15 @@ class PlanarCage:
             _check.positive(self, "hertz_coefficient", 1e-3, 1e18),
             _check.not_negative(self, "ramp_time", 1e4),
             _check.between(self, "ramp_start", 0.0, 1.0, open_low=True),
-            *_cage_rules.pocket_fields(self),
-            *_cage_rules.land_fields(self),
+            *cage_design.pocket_and_land_fields(self),
             _refused_damping(self),
             *(_refused_speeds(self, name) for name in ("orbital_cosines", "orbital_sines")),
         )
         _check.settle(
             _refused_land(self),
             _refused_orbits(self),
-            _cage_rules.angles_for(self, self.ball_count),
-            *_cage_rules.together(self, hertz=self.hertz_coefficient is not None),
+            cage_design.angles_for(self, self.ball_count),
+            *cage_design.together(self, hertz=self.hertz_coefficient is not None),
         )
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from scipy.special import stdtrit
@@ -13,7 +13,19 @@ from separatrix.cage import reason
 from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion, cage_motion, largest_room, left_pockets
-from separatrix.units import Array, Hertz, Joule, Metre, MetrePerSecond, Newton, Ratio, Second, Watt
+from separatrix.units import (
+    Array,
+    Hertz,
+    Joule,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    PerSecond,
+    Ratio,
+    Rows,
+    Second,
+    Watt,
+)
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
@@ -91,8 +103,8 @@ class Judgement:
         cage without a land; 0 with one [1/s].
     largest_contact_force, largest_land_force : float
         Largest force between a ball and its pocket, and of the land, in any run [N].
-    pocket_impact_shares : ndarray
-        Share of each pocket in the impacts of balls, all runs, shape (ball,); zeros if there was none [-].
+    pocket_impact_shares : tuple of float
+        Share of each pocket in the impacts of balls, all runs, for each ball; zeros if there was none [-].
     land_impact_share : float
         Share of the land in all impacts [-].
     whirl_frequency, whirl_direction
@@ -122,20 +134,20 @@ class Judgement:
     probability_low: Ratio
     probability_high: Ratio
     worst_kick: MetrePerSecond
-    by_kick: tuple[KickCount, ...]
+    by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]
     reason: str
     cage_motion: CageMotion | None
-    growth_rate: float
-    growth_rate_low: float | None
-    growth_rate_high: float | None
+    growth_rate: PerSecond
+    growth_rate_low: PerSecond | None
+    growth_rate_high: PerSecond | None
     largest_offset: Metre
     mean_offset: Metre
     orbit_evenness: Ratio
-    drift_rate: float
-    drift_rate_law: float
+    drift_rate: PerSecond
+    drift_rate_law: PerSecond
     largest_contact_force: Newton
     largest_land_force: Newton
-    pocket_impact_shares: Array
+    pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]
     land_impact_share: Ratio
     whirl_frequency: Hertz
     whirl_direction: int
@@ -230,7 +242,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         largest_land_force=float(ensemble.largest_land_force.max()),
-        pocket_impact_shares=pockets,
+        pocket_impact_shares=tuple(pockets.tolist()),
         land_impact_share=land,
         whirl_frequency=median("whirl_frequency"),
         whirl_direction=int(np.sign(median("whirl_direction"))),

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,50 +11,28 @@ from typing import Annotated, Any
 import typer
 
 from separatrix.cli import materials
-from separatrix.cli.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, complain, interrupted
-from separatrix.cli.mapping import MapOptions, whole_map
+from separatrix.cli.options import (
+    WHOLE,
+    Cluster,
+    Full,
+    Jobs,
+    Json,
+    Out,
+    Quiet,
+    StudyArgument,
+    folder,
+    named,
+    threads,
+)
 from separatrix.cli.run import Options, make_study, run
-from separatrix.cli.sensitivity import SAMPLES, SensitivityOptions
-from separatrix.cli.simulating import SimulateOptions
-from separatrix.cli.sweeping import SweepOptions
+from separatrix.cli.simulating import check_animation, write_animation
 from separatrix.cli.verbs import VERBS, Verb
 from separatrix.errors import InputError, SeparatrixError
-from separatrix.units import shown
+from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
-
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
-OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
-Out = Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no notes: the answer alone.")]
-Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only what fits a screen.")]
-
-
-def whole(option: typer.CallbackParam, value: str | None) -> int | None:
-    """Return the whole number that an option gives; None if it is left out without a default.
-
-    Raises
-    ------
-    InputError
-        It is none.
-    """
-    try:
-        return None if value is None else int(value)
-    except ValueError:
-        cure = "Write it in digits, or leave it out."
-        raise InputError(option.opts[0], "must be a whole number", shown(value), cure) from None
-
-
-WHOLE: dict[str, Any] = {"metavar": "N", "parser": str, "callback": whole}
-"""Of every option that takes a whole number: typer leaves it as text, `whole` reads it."""
-
-Jobs = Annotated[int | None, typer.Option(**WHOLE, help="Threads [default: one for each processor].")]
-StudyArgument = Annotated[
-    str, typer.Argument(metavar="STUDY", help="A study file or workbook, or the name of a shipped study.")
-]
-MOST_JOBS = 1024
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
 KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
@@ -85,50 +62,30 @@ separatrix rank cryogenic-turbopump
 """
 
 
-def processors() -> int:
-    """Return the number of processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def threads(jobs: int | None) -> int:
-    """Return the number of threads asked for, or one for each processor.
-
-    Raises
-    ------
-    InputError
-        It is not a sensible number.
-    """
-    if jobs is not None and not 1 <= jobs <= MOST_JOBS:
-        cure = f"Leave it out for one thread on each of the {processors()} processors."
-        raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", got=str(jobs), cure=cure)
-    return jobs or processors()
-
-
-def folder(out: str | None) -> Path | None:
-    """Return the folder asked for; an empty name, as from an unset variable, is refused.
-
-    Raises
-    ------
-    InputError
-        The name is empty.
-    """
-    if out is not None and not out.strip():
-        raise InputError("--out", "needs the name of a folder", got='""', cure="The current one is .")
-    return None if out is None else Path(out)
-
-
 def _answer(
     verb: Verb,
     study: str,
+    question: Mapping[str, Any] | None = None,
     *,
     json: bool,
     out: str | None,
     quiet: bool,
     jobs: int | None,
     full: bool = False,
+    cluster: str | None = None,
 ) -> int:
     """Answer the question of a verb and return the exit status."""
-    options = Options(json=json, out=folder(out), quiet=quiet, jobs=threads(jobs), full=full)
+    if cluster is not None:
+        named(cluster, "--cluster", "a scheduler, or local:N")
+    options = Options(
+        json=json,
+        out=folder(out),
+        quiet=quiet,
+        jobs=threads(jobs),
+        full=full,
+        cluster=cluster,
+        question=question or {},
+    )
     try:
         with Interruptible():
             return run(verb, study, options)
@@ -152,20 +109,39 @@ def _command(verb: Verb) -> Callable[..., int]:
     return command
 
 
-def _command_with_more(verb: Verb) -> Callable[..., int]:
-    """Return the function behind the command of a verb whose answer has more than a screen takes."""
+def _check(
+    study: StudyArgument,
+    full: Full = False,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    return _answer(VERB["check"], study, json=json, out=out, quiet=quiet, jobs=jobs, full=full)
 
-    def command(
-        study: StudyArgument,
-        full: Full = False,
-        json: Json = False,
-        out: Out = None,
-        quiet: Quiet = False,
-        jobs: Jobs = None,
-    ) -> int:
-        return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, full=full)
 
-    return command
+def _stability(
+    study: StudyArgument,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+) -> int:
+    return _answer(VERB["stability"], study, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
+
+
+def _rank(
+    study: StudyArgument,
+    full: Full = False,
+    json: Json = False,
+    out: Out = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+) -> int:
+    verb = VERB["rank"]
+    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs, full=full, cluster=cluster)
 
 
 def _map(
@@ -180,10 +156,10 @@ def _map(
     out: Out = None,
     quiet: Quiet = False,
     jobs: Jobs = None,
+    cluster: Cluster = None,
 ) -> int:
-    asked = MapOptions(x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
-    verb = replace(VERB["map"], compute=partial(whole_map, options=asked))
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+    asked = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
+    return _answer(VERB["map"], study, asked, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
 
 
 def _simulate(
@@ -196,23 +172,32 @@ def _simulate(
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    asked = SimulateOptions(kick=kick, run=number, animate=animate)
-    asked.check(writes=not json or out is not None)
-    verb = replace(VERB["simulate"], compute=asked.compute, draw=asked.draw)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+    verb = VERB["simulate"]
+    if animate is not None:
+        check_animation(animate, writes=not json or out is not None)
+        verb = replace(verb, draw=partial(write_animation, kind=animate))
+    return _answer(verb, study, {"kick": kick, "run": number}, json=json, out=out, quiet=quiet, jobs=jobs)
 
 
 def _sensitivity(
     study: StudyArgument,
-    samples: Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")] = SAMPLES,
+    samples: Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")] = 512,
     json: Json = False,
     out: Out = None,
     quiet: Quiet = False,
     jobs: Jobs = None,
+    cluster: Cluster = None,
 ) -> int:
-    asked = SensitivityOptions(samples=samples)
-    verb = replace(VERB["sensitivity"], compute=asked.compute)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+    return _answer(
+        VERB["sensitivity"],
+        study,
+        {"samples": samples},
+        json=json,
+        out=out,
+        quiet=quiet,
+        jobs=jobs,
+        cluster=cluster,
+    )
 
 
 def _sweep(
@@ -230,11 +215,11 @@ def _sweep(
     out: Out = None,
     quiet: Quiet = False,
     jobs: Jobs = None,
+    cluster: Cluster = None,
 ) -> int:
     table = None if cases is None else Path(named(cases, "--cases", "a file"))
-    asked = SweepOptions(vary=tuple(vary or ()), cases=table, verdicts=verdicts)
-    verb = replace(VERB["sweep"], compute=asked.compute)
-    return _answer(verb, study, json=json, out=out, quiet=quiet, jobs=jobs)
+    asked = {"vary": tuple(vary or ()), "cases": table, "verdicts": verdicts}
+    return _answer(VERB["sweep"], study, asked, json=json, out=out, quiet=quiet, jobs=jobs, cluster=cluster)
 
 
 def _compare(
@@ -299,19 +284,6 @@ def _tribometer(
         return interrupted("no friction file was written.")
 
 
-def named(text: str, option: str, what: str) -> str:
-    """Return the name that an option gives; an empty one, as from an unset variable, is refused.
-
-    Raises
-    ------
-    InputError
-        The name is empty.
-    """
-    if not text.strip() or "\0" in text:
-        raise InputError(option, f"needs the name of {what}", got='""')
-    return text
-
-
 def _new(
     path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
     excel: Annotated[
@@ -324,6 +296,9 @@ def _new(
 
 
 OWN: dict[str, Callable[..., int]] = {
+    "check": _check,
+    "stability": _stability,
+    "rank": _rank,
     "map": _map,
     "simulate": _simulate,
     "sensitivity": _sensitivity,
@@ -340,7 +315,7 @@ def _application() -> typer.Typer:
     app.callback(invoke_without_command=True, help=HELP)(_start)
     app.command("new", help="Write a commented study file to fill in.")(_new)
     for verb in VERBS:
-        function = OWN.get(verb.name) or (_command_with_more if verb.has_more else _command)(verb)
+        function = OWN.get(verb.name) or _command(verb)
         app.command(verb.name, help=verb.help, epilog=EPILOGS.get(verb.name))(function)
     app.command(
         "tribometer",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 VERBS = ("simulate", "rank")
 NUMBERS = ("kick", "run", "end_energy", "largest_offset", "largest_contact_force", "outcome")
-"""What a saved simulation says of itself in one value; not every version has each."""
+"""Single values of a saved simulation; not every version has each."""
 
 DRAWN: dict[str, int] = {
     **dict.fromkeys(("outcome", "kick", "largest_offset"), 0),
@@ -34,6 +34,18 @@ MOST = 1e30
 RANKED = ("verdict", "margin", "probability_stable", "friction", "restitution_threshold")
 """What a comparison of rankings takes of each material."""
 
+WANTED: dict[str, dict[str, int]] = {
+    "simulate": DRAWN,
+    "rank": {
+        "material": 1,
+        "environment": 1,
+        **{f"overall_{name}": 1 for name in RANKED},
+        **{f"material_{name}": 2 for name in RANKED},
+    },
+}
+TEXTS = ("outcome", "material", "environment", "overall_verdict", "material_verdict")
+"""What an answer of each verb must have, with number of dimensions, and which of it are texts."""
+
 FRICTION = "cage.ball_cage_friction"
 """Key of the pocket friction, which a study may leave to its candidates."""
 
@@ -44,21 +56,13 @@ BESIDE = ("record", "table", "other_tests", "distribution")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Saved:
-    """One saved answer: where it was found, its data, and the resolved study in it."""
+    """One saved answer: where it was found, its data, its verb and title, and the resolved study in it."""
 
     path: Path
     data: xr.Dataset
+    verb: str
+    title: str
     study: Mapping[str, Any]
-
-    @property
-    def verb(self) -> str:
-        """The question that it answers."""
-        return str(self.data.attrs["verb"])
-
-    @property
-    def title(self) -> str:
-        """Title of its study."""
-        return str(self.data.attrs["title"])
 
 
 def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> int:
@@ -69,7 +73,7 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     first, second : Path
         Folder of an answer of `simulate` or `rank`, or its netCDF file.
     out : Path or None
-        Folder of the files; without it none is written where a document is asked for.
+        Folder of the files; without it none is written with `as_json`.
     as_json : bool
         Whether to print the document instead of the table.
 
@@ -78,7 +82,7 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     InputError
         One of them is not a saved answer, they answer different questions, or the folder cannot be written.
     """
-    from separatrix.report.compare import compare as in_words
+    from separatrix.present.text.compare import compare as in_words
 
     pair = read(first), read(second)
     if pair[0].verb != pair[1].verb:
@@ -101,119 +105,88 @@ def read(path: Path) -> Saved:
     InputError
         There is none, it answers another question, or it lacks something that such an answer has.
     """
-    from separatrix import results
+    from separatrix.present import load
 
     here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
     if not here or not here[0].exists():
         cure = "Make one with: separatrix simulate STUDY --out DIR, or separatrix rank STUDY --out DIR."
-        raise InputError(str(path), "holds no saved simulation or ranking", cure=cure)
-    data = results.load(here[0])
-    if data.attrs.get("verb") not in VERBS:
-        rule = f"must be an answer of {' or '.join(VERBS)}"
-        raise InputError(str(path), rule, got=str(data.attrs.get("verb", "none")))
-    _check_head(data, path)
-    study = _study(data, path)
-    _check_variables(data, path)
-    return Saved(path=path, data=data, study=study)
-
-
-def _check_head(data: xr.Dataset, path: Path) -> None:
-    """Refuse an answer without title or seed."""
-    if not str(data.attrs.get("title", "")).strip():
+        raise InputError(str(path), "does not contain a saved simulation or ranking", cure=cure)
+    data = load(here[0])
+    verb, title = str(data.attrs.get("verb", "none")), str(data.attrs.get("title", ""))
+    if verb not in VERBS:
+        raise InputError(str(path), f"must be an answer of {' or '.join(VERBS)}", got=verb)
+    if not title.strip():
         raise InputError(str(path), "lacks its title")
     try:
         int(data.attrs["seed"])
     except (KeyError, TypeError, ValueError, OverflowError):
         raise InputError(str(path), "lacks its seed") from None
-
-
-def _check_variables(data: xr.Dataset, path: Path) -> None:
-    """Refuse an answer that lacks what is compared, or has it in another shape."""
-    wanted = DRAWN if data.attrs["verb"] == "simulate" else _ranked()
-    for name, dimensions in wanted.items():
+    study = _study(data, path)
+    for name, dimensions in WANTED[verb].items():
         if name not in data or data[name].ndim != dimensions or data[name].size == 0:
-            raise InputError(str(path), f"lacks {name}, which an answer of {data.attrs['verb']} has")
-    texts = {name for name in wanted if name.endswith(("outcome", "verdict")) or name == "environment"}
-    for name in (name for name in wanted if name not in {*texts, "material"}):
+            raise InputError(str(path), f"lacks {name}, which an answer of {verb} has")
+        if name in TEXTS:
+            continue
         if data[name].dtype.kind not in "iuf":
             raise InputError(str(path), f"must have numbers in {name}", got=str(data[name].dtype))
-        if wanted is DRAWN and not float(abs(data[name]).max(skipna=False)) < MOST:
+        if verb == "simulate" and not float(abs(data[name]).max(skipna=False)) < MOST:
             raise InputError(str(path), f"must have finite numbers below {MOST:g} in {name}")
+    return Saved(path=path, data=data, verb=verb, title=title, study=study)
 
 
-def _ranked() -> dict[str, int]:
-    """Variables of a ranking, with their number of dimensions."""
-    heads = {"material": 1, "environment": 1}
-    return {
-        **heads,
-        **{f"overall_{name}": 1 for name in RANKED},
-        **{f"material_{name}": 2 for name in RANKED},
-    }
-
-
-def _study(data: xr.Dataset, path: Path) -> Mapping[str, Any]:
-    """Return the resolved study that an answer holds; what stands above figures can be read from it."""
-    from separatrix.figures.heading import heading
+def _study(data: xr.Dataset, path: Path) -> dict[str, Any]:
+    """Return the resolved study of an answer; the heading of figures can be read from it."""
+    from separatrix.figures.style import heading
 
     try:
-        study = json.loads(data.attrs.get("study", ""))
-        inputs = dict(_inputs(study))
+        study = dict(json.loads(data.attrs.get("study", "")))
         heading(data)
+        if dict(_inputs(study)):
+            return study
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
-        inputs = {}
-    if not inputs:
-        raise InputError(str(path), "holds a study that separatrix did not write")
-    return dict(study)
+        pass
+    raise InputError(str(path), "contains a study that separatrix did not write")
 
 
 def document(first: Saved, second: Saved) -> dict[str, Any]:
-    """Return what each answer says of itself, and the inputs that differ."""
+    """Return the numbers of each answer, and the inputs that differ."""
     from separatrix import __version__
 
     found: dict[str, Any] = {"separatrix_version": __version__, "verb": "compare", "of": first.verb}
+    pair = first, second
+    named = [{"path": str(one.path), "title": one.title, "seed": int(one.data.attrs["seed"])} for one in pair]
     if first.verb == "simulate":
-        found["runs"] = [_in_numbers(first), _in_numbers(second)]
+        found["runs"] = [known | _in_numbers(one.data) for known, one in zip(named, pair, strict=True)]
     else:
-        found["rankings"] = [_named(first), _named(second)]
-        found["environments"] = list(_side_by_side(first.data, second.data))
+        found |= {"rankings": named, "environments": list(_side_by_side(first.data, second.data))}
     return found | {"differences": list(differences(first, second))}
 
 
-def _named(saved: Saved) -> dict[str, Any]:
-    return {"path": str(saved.path), "title": saved.title, "seed": int(saved.data.attrs["seed"])}
-
-
-def _in_numbers(saved: Saved) -> dict[str, Any]:
+def _in_numbers(data: xr.Dataset) -> dict[str, Any]:
     """Return the single numbers of a simulation, and the largest force of its land."""
-    data = saved.data
     values = {name: data[name].item() for name in NUMBERS if name in data and data[name].size == 1}
     values["largest_land_force"] = float(abs(data["land_force"]).max())
-    return _named(saved) | {name: _or_none(value) for name, value in values.items()}
+    return {name: _or_none(value) for name, value in values.items()}
 
 
 def _or_none(value: Any) -> Any:
-    """Return a value that was there: no NaN stands for a number, no empty text for a verdict."""
+    """Return a value that was there: no NaN for a number, no empty text for a verdict."""
     is_absent = value == "" or (isinstance(value, float) and not math.isfinite(value))
     return None if is_absent else value
 
 
 def _side_by_side(first: xr.Dataset, second: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield the materials of two rankings, overall and in each environment that either has."""
-    tables = _tables(first), _tables(second)
+    tables = []
+    for data in (first, second):
+        parts = {str(name): data.isel(environment=i) for i, name in enumerate(data["environment"].values)}
+        here = {name: _rows(part, "material_") for name, part in parts.items()}
+        tables.append({OVERALL: _rows(data, "overall_")} | here)
     for environment in {**tables[0], **tables[1]}:
         one, other = (table.get(environment, {}) for table in tables)
-        rows = [
-            {"name": name, "first": one.get(name), "second": other.get(name)} for name in {**one, **other}
-        ]
+        names = {**one, **other}
+        rows = [{"name": name, "first": one.get(name), "second": other.get(name)} for name in names]
         yield {"name": environment, "materials": rows}
-
-
-def _tables(data: xr.Dataset) -> dict[str, dict[str, dict[str, Any]]]:
-    """Return environment -> material -> what the ranking says of it."""
-    tables = {OVERALL: _rows(data, "overall_")}
-    for i, environment in enumerate(data["environment"].values):
-        tables[str(environment)] = _rows(data.isel(environment=i), "material_")
-    return tables
 
 
 def _rows(data: xr.Dataset, prefix: str) -> dict[str, dict[str, Any]]:
@@ -274,20 +247,14 @@ def _frictions(candidates: list[Any]) -> Iterator[tuple[str, tuple[Any, str | No
 def _write(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) -> None:
     """Write document and text, and the figure of simulations, all or none."""
     from separatrix import figures
-    from separatrix.report.compare import compare as in_words
+    from separatrix.present.text.compare import compare as in_words
 
     with staged(folder) as stage:
         (stage / "compare.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         (stage / "compare.txt").write_text(harmless(in_words(found, folder)), encoding="utf-8")
         if pair[0].verb == "simulate":
-            figure = figures.compared(pair[0].data, pair[1].data, _names(pair))
-            for suffix in (".png", ".svg"):
-                figures.save(figure, stage / f"comparison{suffix}")
-
-
-def _names(pair: tuple[Saved, Saved]) -> tuple[str, str]:
-    """Names for the legend: the titles, or where they were found if those are the same."""
-    first, second = pair
-    if first.title != second.title:
-        return first.title, second.title
-    return str(first.path), str(second.path)
+            paths = str(pair[0].path), str(pair[1].path)
+            names = paths if pair[0].title == pair[1].title else ("", "")  # else by their titles
+            for name, figure in figures.draw("compare", pair[0].data, pair[1].data, names=names):
+                for suffix in (".png", ".svg"):
+                    figures.save(figure, stage / f"{name}{suffix}")

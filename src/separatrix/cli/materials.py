@@ -113,11 +113,11 @@ def _head(verb: str) -> dict[str, Any]:
 
 
 def _deliver(document: dict[str, Any], report: str, *, as_json: bool) -> int:
-    """Answer with the document, or with the text of it that `report.materials` makes under this name."""
+    """Answer with the document, or with the text of it that `text.materials` makes under this name."""
     if as_json:
         answer(plain_json.dumps(document, indent=1, allow_nan=False) + "\n")
         return ANSWERED
-    from separatrix.report import materials
+    from separatrix.present.text import materials
 
     answer(getattr(materials, report)(document))
     return ANSWERED
@@ -130,7 +130,7 @@ def _library(named: list[str] | None) -> Library:
     paths = beside(Path())
     for name in named or ():
         if not name or not Path(name).exists():
-            raise InputError("--library", "names no file or folder", f'"{name}"')
+            raise InputError("--library", "does not name a file or folder", f'"{name}"')
         paths += library_files(Path(name))
     return with_files(paths)
 
@@ -149,7 +149,7 @@ def _known_kind(kind: str) -> str:
     for known in _kinds():
         if spelled in (known, f"{known}s"):
             return known
-    raise InputError("--kind", "is no kind of record", shown(kind), nearest(kind, _kinds()))
+    raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, _kinds()))
 
 
 def _found(library: Library, name: str, kind: str | None) -> list[Record | FrictionTable]:
@@ -165,7 +165,7 @@ def _found(library: Library, name: str, kind: str | None) -> list[Record | Frict
     if not found:
         names = [known for each in kinds for known in library.names(each)]
         raise InputError(
-            "NAME", f"is no {kind or 'record'} of the library", shown(name), nearest(name, names)
+            "NAME", f"is not a {kind or 'record'} of the library", shown(name), nearest(name, names)
         )
     return found
 

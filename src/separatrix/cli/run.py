@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import json
-import re
-import threading
-import warnings
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from separatrix.cli.answers import Work
 from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
 from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.cli.verbs import Verb
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.errors import InputError
+from separatrix.notes import grouped, noted_warnings
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import xarray as xr
 
     from separatrix.ledger import Ledger
@@ -27,15 +26,30 @@ if TYPE_CHECKING:
 ANSWERED = 0
 
 
+class Found(NamedTuple):
+    """An answer to a study, and its document."""
+
+    answer: object
+    study: Study
+    document: dict[str, Any]
+
+    @property
+    def notes(self) -> list[str]:
+        """All warnings."""
+        return list(self.document["warnings"])
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What follows the study on the command line."""
+    """What follows the study on the command line; `question` are the options of the verb alone."""
 
     json: bool
     out: Path | None
     quiet: bool
     jobs: int
     full: bool = False
+    cluster: str | None = None
+    question: Mapping[str, Any] = field(default_factory=dict)
 
 
 def run(verb: Verb, name: str, options: Options) -> int:
@@ -61,17 +75,12 @@ def run(verb: Verb, name: str, options: Options) -> int:
         study = read_study(name)
         require(study, verb.name, *verb.needs)
         with _folder(verb, study, options) as folder:
-            document = _document(verb, study, options, notes, folder)
-            _deliver(verb, document, folder, options)
-    return _status(document, goes_on=verb.keeps_runs and folder is not None)
-
-
-def _status(document: Mapping[str, Any], *, goes_on: bool) -> int:
-    """Return the exit status; an answer cut short says so on standard error."""
-    if document.get("complete", True):
+            found, complete = _computed(verb, study, options, notes, folder)
+            _deliver(verb, found, folder, options)
+    if complete:
         return ANSWERED
-    more = " The same call goes on from there." if goes_on else ""
-    return interrupted(f"what was finished is in the answer, marked complete: false.{more}")
+    more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""
+    return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
 def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractContextManager[Path | None]:
@@ -83,20 +92,41 @@ def _folder(verb: Verb, study: Study, options: Options) -> contextlib.AbstractCo
     return writable_folder(Path(study.name))
 
 
-def _document(
+def _computed(
     verb: Verb, study: Study, options: Options, notes: list[str], folder: Path | None
-) -> dict[str, Any]:
-    """Compute the answer and return it as plain data with its provenance."""
-    from separatrix.results import document
+) -> tuple[Found, bool]:
+    """Compute the answer, or the part that was finished before an interrupt; return whether it is all."""
+    from separatrix.present import document
+    from separatrix.runner import Interrupted, Runner
 
+    complete = True
     with (
         progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress,
         _ledger(folder if verb.keeps_runs else None) as ledger,
+        _executor(options.cluster) as (executor, threads),
     ):
-        record = verb.compute(study, Work(jobs=options.jobs, progress=progress, ledger=ledger))
+        runner = Runner(jobs=threads or options.jobs, progress=progress, ledger=ledger, executor=executor)
+        try:
+            record = verb.compute(study, runner, options.question)
+        except Interrupted as stop:
+            if stop.finished is None:
+                raise
+            record, complete = stop.finished, False
     if ledger is not None and ledger.taken and not options.quiet:
         complain(f"{ledger.taken} runs were taken from {ledger.path}, where an earlier call had kept them.")
-    return document(verb.name, record, study, grouped(notes))
+    return Found(record, study, document(verb.name, record, study, grouped(notes))), complete
+
+
+@contextlib.contextmanager
+def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
+    """Yield what computes runs on a cluster, and how many at once; None and 0 without one."""
+    if address is None:
+        yield None, 0
+        return
+    from separatrix.cluster import cluster
+
+    with cluster(address) as found:
+        yield found
 
 
 @contextlib.contextmanager
@@ -114,24 +144,24 @@ def _ledger(folder: Path | None) -> Iterator[Ledger | None]:
         ledger.close()
 
 
-def _deliver(verb: Verb, document: dict[str, Any], folder: Path | None, options: Options) -> None:
+def _deliver(verb: Verb, found: Found, folder: Path | None, options: Options) -> None:
     """Write the answer, then the files, which take as long again, and say where they are."""
-    from separatrix.report import report, whereabouts
+    from separatrix.present import report, whereabouts
 
-    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
-    answer(text if options.json else report(verb.name, document, full=options.full, quiet=options.quiet))
+    text = json.dumps(found.document, indent=1, allow_nan=False) + "\n"
+    asked = (verb.name, found.answer, found.study, found.notes)
+    answer(text if options.json else report(*asked, full=options.full, quiet=options.quiet))
     if folder is None:
         return
-    texts = {".json": text, ".txt": report(verb.name, document, full=True)}
+    texts = {".json": text, ".txt": report(*asked, full=True)}
     with staged(folder) as stage:
-        _write_files(verb, document, stage, texts, quiet=options.quiet)
+        _write_files(verb, found, stage, texts, quiet=options.quiet)
     if not options.json and not options.quiet:
-        answer("\n" + whereabouts(verb.name, document, str(folder)))
+        overview = verb.name == "rank" and bool(found.document["complete"])
+        answer("\n" + whereabouts(verb.name, str(folder), overview=overview))
 
 
-def _write_files(
-    verb: Verb, document: dict[str, Any], folder: Path, texts: Mapping[str, str], *, quiet: bool
-) -> None:
+def _write_files(verb: Verb, found: Found, folder: Path, texts: Mapping[str, str], *, quiet: bool) -> None:
     """Write texts, workbook, dataset and pictures."""
     for suffix, text in texts.items():
         path = folder / f"{verb.name}{suffix}"
@@ -139,23 +169,24 @@ def _write_files(
     if verb.has_workbook:
         from separatrix.workbook import results_workbook
 
-        results_workbook(document, folder / f"{verb.name}.xlsx")
+        results_workbook(found.document, folder / f"{verb.name}.xlsx")
     if verb.writes_files:
-        data = _write_data(verb, document, folder)
+        data = _write_data(verb, found, folder)
         if verb.draw is not None:
             verb.draw(data, folder, quiet=quiet)
 
 
-def _write_data(verb: Verb, document: dict[str, Any], folder: Path) -> xr.Dataset:
+def _write_data(verb: Verb, found: Found, folder: Path) -> xr.Dataset:
     """Write the dataset and the figures made from it; matplotlib keeps its remarks on fonts to itself."""
     import logging
 
-    from separatrix import figures, results
+    from separatrix import figures
+    from separatrix.present import dataset, save
 
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    data = results.dataset(document)
-    results.save(data, folder / f"{verb.name}.nc")
-    for name, figure in figures.figures(verb.name, data):
+    data = dataset(verb.name, found.answer, found.study, found.notes)
+    save(data, folder / f"{verb.name}.nc")
+    for name, figure in figures.draw(verb.name, data):
         for suffix in (".png", ".svg"):
             figures.save(figure, folder / f"{name}{suffix}")
     return data
@@ -198,38 +229,9 @@ def _check_name(path: Path, *, excel: bool) -> None:
 def _new_study(*, excel: bool) -> bytes:
     """Return the file to fill in."""
     if excel:
-        from separatrix.study_file.template_workbook import template_workbook
+        from separatrix.study_file.template import template_workbook
 
         return template_workbook()
     from separatrix.study_file import template
 
     return template().encode()
-
-
-def grouped(notes: Iterable[str]) -> list[str]:
-    """Return the first of the sentences that differ in numbers only, and how many more there are."""
-    alike: dict[str, list[str]] = {}
-    for note in notes:
-        alike.setdefault(re.sub(r"[0-9][0-9.e+-]*", "0", note), []).append(note)
-    return [f"{n[0]} (And {len(n) - 1} more with other numbers.)" if n[1:] else n[0] for n in alike.values()]
-
-
-@contextlib.contextmanager
-def noted_warnings() -> Iterator[list[str]]:
-    """Collect what is said about validity, each sentence once; other warnings take their usual way."""
-    notes: list[str] = []
-    one_at_a_time = threading.Lock()  # threads of a pool warn too
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", ValidityWarning)
-        usual = warnings.showwarning
-
-        def note(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
-            if not issubclass(category, ValidityWarning):
-                usual(message, category, *place, **rest)
-                return
-            with one_at_a_time:
-                if str(message) not in notes:
-                    notes.append(str(message))
-
-        warnings.showwarning = note  # put back by catch_warnings
-        yield notes

@@ -1,13 +1,10 @@
-"""Options of the verb `simulate`: which run, from which kick, and an animation of it."""
+"""The animation that `simulate` draws beside its figures."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from separatrix.cli import answers
 from separatrix.cli.console import progress_bar
-from separatrix.cli.mapping import kick_speed
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
@@ -15,53 +12,30 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from separatrix.study import Study
-
 KINDS = ("gif", "mp4")
-LAST_RUN = 1_000_000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulateOptions:
-    """What follows `simulate STUDY`."""
+def check_animation(kind: str, *, writes: bool) -> None:
+    """Refuse an animation that cannot be made, before anything is read.
 
-    kick: str | None = None
-    run: int = 0
-    animate: str | None = None
+    Raises
+    ------
+    InputError
+        It is of no kind that there is, has no folder to go to, or its encoder is missing.
+    """
+    if kind not in KINDS:
+        raise InputError("--animate", f"must be {' or '.join(KINDS)}", got=f'"{kind}"')
+    if not writes:
+        raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
+    if kind == "mp4":
+        from separatrix.figures.animation import video_encoder
 
-    def check(self, *, writes: bool) -> None:
-        """Refuse what cannot be done, before anything is read.
+        video_encoder()
 
-        Raises
-        ------
-        InputError
-            An option is wrong, or an animation has no folder to go to.
-        """
-        if not 0 <= self.run <= LAST_RUN:
-            raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(self.run))
-        if self.kick is not None:
-            kick_speed(self.kick)
-        if self.animate is None:
-            return
-        if self.animate not in KINDS:
-            raise InputError("--animate", f"must be {' or '.join(KINDS)}", got=f'"{self.animate}"')
-        if not writes:
-            raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
-        if self.animate == "mp4":
-            from separatrix.figures.animation import video_encoder
 
-            video_encoder()
+def write_animation(data: xr.Dataset, folder: Path, kind: str, *, quiet: bool) -> None:
+    """Write the animation of a run."""
+    from separatrix.figures.animation import animate
 
-    def compute(self, study: Study, work: answers.Work) -> answers.SimulationAnswer:
-        """Follow the run."""
-        kick = None if self.kick is None else kick_speed(self.kick)
-        return answers.simulate(study, work, kick=kick, run=self.run)
-
-    def draw(self, data: xr.Dataset, folder: Path, *, quiet: bool) -> None:
-        """Write the animation, if one is asked for."""
-        if self.animate is None:
-            return
-        from separatrix.figures.animation import animate
-
-        with progress_bar("animation", quiet=quiet) as progress:
-            animate(data, folder / f"simulation.{self.animate}", kind=self.animate, progress=progress)
+    with progress_bar("animation", quiet=quiet) as progress:
+        animate(data, folder / f"simulation.{kind}", kind=kind, progress=progress)

@@ -1,5 +1,1 @@
-"""Many bearings: what a study's uncertain inputs do to verdict, restitution factor and choice of material."""
-
-from separatrix.explore.uncertain import uncertain_study
-
-__all__ = ["uncertain_study"]
+"""Many bearings: cases of a sweep, and what uncertain inputs do to verdicts and choice of material."""

@@ -12,13 +12,14 @@ from dataclasses import replace
 import numpy as np
 
 from separatrix.cage import PlanarCage, RunOutcome
+from separatrix.chain.lubrication import LubricationCurve
 from separatrix.distribution import LogNormal
+from separatrix.draws import Case
 from separatrix.explore.records import AllowedFilm, AllowedFriction
-from separatrix.lubrication import LubricationCurve
-from separatrix.ranking.drawn import Case, DrawnBearings
+from separatrix.limits.growth import Count, race_damping_at
+from separatrix.limits.response import SEARCHED_FRICTION, Crossing, Response, Side
+from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner
-from separatrix.stability.growth import Count, race_damping_at
-from separatrix.stability.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.units import MetrePerSecond, Ratio
 
 PROBABILITY: Ratio = 0.95
@@ -44,7 +45,7 @@ def allowed_friction(
 
     Raises
     ------
-    Stopped
+    Interrupted
         The work was interrupted.
     """
     own = next(case for case in bearings.friction if case.candidate == names[0])
@@ -83,11 +84,11 @@ def allowed_film(
 
     Raises
     ------
-    Stopped
+    Interrupted
         The work was interrupted.
     """
     central = bearings.cage(case)
-    own = bearings.central[case.candidate].restitution.restitution.restitution_factor
+    own = bearings.central[case.candidate].restitution.restitution_factor
 
     def at(eta: Ratio, _place: int, cage: PlanarCage) -> PlanarCage:
         return replace(cage, race_damping=cage.race_damping * _ratio(central, eta))

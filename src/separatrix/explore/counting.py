@@ -9,7 +9,8 @@ import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, KickCount, RunOutcome, Verdict, judge, wilson_interval
 from separatrix.cage.verdict import CLEAR, FEW
-from separatrix.ranking.drawn import Case, DrawnBearings
+from separatrix.draws import Case
+from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner, joined
 from separatrix.units import MetrePerSecond, Ratio
 
@@ -33,7 +34,7 @@ def counted(
 
     Raises
     ------
-    Stopped
+    Interrupted
         The work was interrupted.
     """
     parts: list[Ensemble] = []

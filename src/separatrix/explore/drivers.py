@@ -16,8 +16,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import expit, stdtrit, xlogy
 
+from separatrix.draws import Case
 from separatrix.explore.records import Drivers, Share
-from separatrix.ranking.drawn import Case
 from separatrix.units import Array, Ratio
 
 PRIOR = 3.0

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from separatrix.cage import KickCount
-from separatrix.units import Array, Hertz, Metre, MetrePerSecond, Newton, Ratio, Second, Watt
+from separatrix.units import Array, Hertz, Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second, Watt
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,12 +68,12 @@ class UncertainMaterial:
     probability_low: Ratio | None = None
     probability_high: Ratio | None = None
     worst_kick: MetrePerSecond | None = None
-    by_kick: tuple[KickCount, ...] | None = None
+    by_kick: Annotated[tuple[KickCount, ...] | None, Rows("kick", "by_kick_", label="kick")] = None
     runs: int | None = None
     cage_motion: str | None = None
     largest_offset: Metre | None = None
     mean_offset: Metre | None = None
-    drift_rate: float | None = None
+    drift_rate: PerSecond | None = None
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
     whirl_frequency: Hertz | None = None
@@ -88,7 +89,7 @@ class UncertainEnvironment:
     """The candidates in one environment, best first; those not measured come last."""
 
     name: str
-    materials: tuple[UncertainMaterial, ...]
+    materials: Annotated[tuple[UncertainMaterial, ...], Rows("material", "material_", label="name")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -242,9 +243,9 @@ class UncertainStudy:
     stopped_risk: Ratio
     default_scatter: Ratio
     environment: str
-    inputs: tuple[InputRow, ...]
-    environments: tuple[UncertainEnvironment, ...]
-    overall: tuple[UncertainMaterial, ...]
+    inputs: Annotated[tuple[InputRow, ...], Rows("input", "input_", label="name")]
+    environments: Annotated[tuple[UncertainEnvironment, ...], Rows("environment", label="name")]
+    overall: Annotated[tuple[UncertainMaterial, ...], Rows("material", "overall_", label="name")]
     convergence: tuple[ConvergenceRow, ...]
     clouds: tuple[Cloud, ...]
     drivers: tuple[Drivers, ...]
@@ -253,7 +254,7 @@ class UncertainStudy:
     next_tests: tuple[TestGain, ...]
     allowed_friction: tuple[AllowedFriction, ...]
     allowed_films: tuple[AllowedFilm, ...]
-    kicks: tuple[MetrePerSecond, ...]
+    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int
     notes: tuple[str, ...]
     complete: bool

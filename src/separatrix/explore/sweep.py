@@ -8,21 +8,12 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cage import Judgement, judge
-from separatrix.chain import (
-    BearingState,
-    RestitutionState,
-    bearing_state,
-    cage_state,
-    known_friction,
-    pocket_friction,
-    restitution_state,
-    traction_state,
-)
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.restitution import Restitution
+from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.ledger import Ledger
-from separatrix.ranking.friction import cage_seen
-from separatrix.runner import Progress, Runner
-from separatrix.stability.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
+from separatrix.limits.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
+from separatrix.runner import Runner
 from separatrix.study import Study
 from separatrix.units import (
     Metre,
@@ -30,6 +21,7 @@ from separatrix.units import (
     NewtonPerMetre,
     NewtonSecondPerMetre,
     Pascal,
+    PerSecond,
     Radian,
     RadianPerSecond,
     Ratio,
@@ -76,7 +68,7 @@ class SweptCase:
     probability_high: Ratio | None = None
     cage_motion: str | None = None
     largest_offset: Metre | None = None
-    drift_rate: float | None = None
+    drift_rate: PerSecond | None = None
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
     runs: int | None = None
@@ -122,9 +114,7 @@ def sweep(
     cases: Sequence[Case],
     *,
     verdicts: bool = False,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> Sweep:
     """Run the chain for each case of a study.
 
@@ -136,34 +126,34 @@ def sweep(
         Values by the names of a study file, in SI units; every case has the same names.
     verdicts : bool
         Whether to run the whole ensemble of each case, too.
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total) cases.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
     InputError
         No cases or too many, a name that a sweep cannot vary, or cases that differ in their names.
+    Interrupted
+        With the cases that were finished, if any was.
     """
     names = _names(cases)
     known = parameters()
-    runner = Runner(jobs=jobs, progress=progress, ledger=ledger)
+    runner = runner or Runner()
 
     def run(place: int) -> SweptCase:
         return _swept(study, place, cases[place], runner if verdicts else None)
 
-    with warnings.catch_warnings():  # thousands of cases would say the same
+    def table(found: Mapping[int, SweptCase]) -> Sweep:
+        return Sweep(
+            parameters=tuple(known[name] for name in names),
+            cases=tuple(found[place] for place in sorted(found)),
+            verdicts=verdicts,
+            complete=len(found) == len(cases),
+        )
+
+    with warnings.catch_warnings():  # thousands of cases would repeat the same
         warnings.simplefilter("ignore", ValidityWarning)
-        found = runner.work_out(run, range(len(cases)))
-    return Sweep(
-        parameters=tuple(known[name] for name in names),
-        cases=tuple(found[place] for place in sorted(found)),
-        verdicts=verdicts,
-        complete=len(found) == len(cases),
-    )
+        return runner.work_out(run, range(len(cases)), into=table)
 
 
 def _names(cases: Sequence[Case]) -> list[str]:
@@ -184,18 +174,16 @@ def _swept(study: Study, place: int, case: Case, runner: Runner | None) -> Swept
     """One case, as far as the chain goes."""
     found = SweptCase(case=place, values=tuple(case.values()))
     try:
-        study = varied(study, case)
-        bearing = bearing_state(study)
-        found = replace(found, **_of_bearing(bearing))
-        traction = traction_state(study)
+        solution = solve(varied(study, case))
+        found = replace(found, **_of_bearing(solution.bearing))
+        traction = solution.traction
         found = replace(found, slope_inner=traction.inner.slope, slope_outer=traction.outer.slope)
         if study.cage is None:
             return found
-        state = restitution_state(study)
-        found = replace(found, **_of_restitution(state))
-        seen = cage_seen(study)
-        found = replace(found, ball_cage_friction=known_friction(seen))
-        return found if runner is None else replace(found, **_verdict(seen, runner))
+        found = replace(found, **_of_restitution(solution.restitution))
+        friction = solution.friction
+        found = replace(found, ball_cage_friction=None if friction is None else friction.mean)
+        return found if runner is None else replace(found, **_verdict(solution, runner))
     except SeparatrixError as error:
         return replace(found, reason=str(error))
 
@@ -210,16 +198,15 @@ def _of_bearing(state: BearingState) -> dict[str, Any]:
     return found
 
 
-def _of_restitution(state: RestitutionState) -> dict[str, Any]:
-    found = state.restitution
+def _of_restitution(found: Restitution) -> dict[str, Any]:
     names = ("ball_cage_stiffness", "race_damping", "damping_ratio", "restitution_factor")
     return {name: getattr(found, name) for name in names}
 
 
-def _verdict(study: Study, runner: Runner) -> dict[str, Any]:
+def _verdict(solution: Solution, runner: Runner) -> dict[str, Any]:
     """Verdict of the whole ensemble, with its evidence."""
-    state = cage_state(study, friction=pocket_friction(study))
-    judged = judge(state.cage, runner.whole_ensemble(state.cage, state.stability))
+    cage = solution.cage
+    judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
     found = {name: getattr(judged, name) for name in EVIDENCE}
     motion = None if judged.cage_motion is None else judged.cage_motion.value
     return found | {"verdict": judged.verdict.name, "cage_motion": motion}

@@ -12,9 +12,10 @@ import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
 from separatrix.cage_choice import reference_candidate, required_environment
-from separatrix.chain import lubrication, restitution_state
+from separatrix.chain.pocket_friction import with_scatter
+from separatrix.chain.solution import solve
 from separatrix.distribution import described
-from separatrix.draws import UncertainInput
+from separatrix.draws import Case, UncertainInput
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.allowed import allowed_film, allowed_friction
 from separatrix.explore.counting import BLOCK, RISK, counted, settles
@@ -34,14 +35,13 @@ from separatrix.explore.records import (
     UncertainStudy,
 )
 from separatrix.explore.shares import sobol_shares
-from separatrix.ledger import Ledger
 from separatrix.ranking import ranking_question
-from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
-from separatrix.ranking.friction import MeanFriction, overall, with_scatter
+from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
+from separatrix.ranking.friction import MeanFriction, overall
 from separatrix.ranking.lowest import lowest_among
-from separatrix.ranking.plausible import beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
-from separatrix.runner import Progress, Runner
+from separatrix.runner import Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array
@@ -64,9 +64,7 @@ def uncertain_study(
     study: Study,
     bearings: int,
     *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    ledger: Ledger | None = None,
+    runner: Runner | None = None,
 ) -> UncertainStudy:
     """Draw bearings from the uncertain inputs of a study and judge the cages of every candidate.
 
@@ -76,33 +74,34 @@ def uncertain_study(
         With candidates; a friction without stated scatter has the study's default one, a guess.
     bearings : int
         How many, best a power of two; at least `FEWEST`.
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total) pieces of work.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
     InputError
         Too few bearings, no candidates, or no draw makes a bearing.
+    Interrupted
+        With the answer to what was finished, if anything was.
     """
     ranking_question(study)
     if bearings < FEWEST:
         cure = "Powers of two spread most evenly: 512."
         raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
-    drawn, runner = drawn_bearings(study, bearings), Runner(jobs=jobs, progress=progress, ledger=ledger)
+    drawn, runner = drawn_bearings(study, bearings), runner or Runner()
     inverse = _inverse(drawn, runner)
     pieces: dict[Case | str, Callable[[], object]] = {
         case: partial(counted, drawn, case, drawn.kicks, runner) for case in drawn.friction
     }
     pieces.update(inverse)
-    found = runner.work_out(lambda key: pieces[key](), pieces)
-    judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
-    answered = [found[key] for key in inverse if key in found]
-    answer = _answer(study, drawn, judged, answered, bearings)
-    return replace(answer, complete=len(found) == len(pieces))
+
+    def answer(found: Mapping[Case | str, object]) -> UncertainStudy:
+        judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
+        answered = [found[key] for key in inverse if key in found]
+        complete = len(found) == len(pieces)
+        return replace(_answer(study, drawn, judged, answered, bearings), complete=complete)
+
+    return runner.work_out(lambda key: pieces[key](), pieces, into=answer)
 
 
 def _answer(
@@ -114,6 +113,11 @@ def _answer(
     undecided = [case for case in decided if judged[case][0].verdict is Verdict.UNDECIDED]
     environment = required_environment(study, ranking)
     own = _rows(drawn, environment, judged)
+    moved = [
+        Moved(row.name, row.largest_contact_force, row.largest_offset, row.by_kick or ())
+        for row in own
+        if row.largest_contact_force is not None and row.largest_offset is not None
+    ]
     reference = reference_candidate(study, ranking)
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
     return UncertainStudy(
@@ -138,7 +142,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*_notes(drawn, asked), *beyond_motion(study, drawn.central[reference.name], own)),
+        notes=(*_notes(drawn, asked), *beyond_motion(drawn.central[reference.name], moved)),
         complete=True,
     )
 
@@ -148,7 +152,7 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
     ranking = ranking_question(drawn.study)
     alike: dict[float, list[str]] = {}
     for name in dict.fromkeys(case.candidate for case in drawn.friction):
-        alike.setdefault(drawn.central[name].cage.ball_cage_stiffness, []).append(name)
+        alike.setdefault(drawn.central[name].ball_cage_stiffness, []).append(name)
     pieces: dict[str, Callable[[], object]] = {
         f"friction {names[0]}": partial(
             allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, runner
@@ -157,7 +161,7 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
     }
     environment = required_environment(drawn.study, ranking)
     for names in alike.values():
-        films = lubrication(drawn.study, drawn.central[names[0]].restitution)
+        films = drawn.central[names[0]].lubrication
         for name in names:
             case = Case(name, environment)
             if case in drawn.friction:
@@ -173,7 +177,8 @@ def _rows(
     means: dict[str, MeanFriction | None] = {}
     for candidate in ranking.candidates:
         places = (environment,) if environment else ranking.environments
-        known = [one for place in places if (one := candidate.friction.get(place)) is not None]
+        cases = [Case(candidate.name, place) for place in places]
+        known = [drawn.stated[case] for case in cases if case in drawn.stated]
         means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
     lowest = lowest_among({name: one for name, one in means.items() if one is not None}).probabilities
     rows = [
@@ -223,7 +228,7 @@ def _best_first(row: UncertainMaterial) -> tuple[int, float, float]:
 
 def _factors(drawn: DrawnBearings, case: Case) -> Array:
     """Restitution factor of each bearing, shape (bearing,) [-]."""
-    return np.array([one[case.candidate].restitution.restitution.restitution_factor for one in drawn.states])
+    return np.array([one[case.candidate].restitution.restitution_factor for one in drawn.solved])
 
 
 def _input_row(one: UncertainInput) -> InputRow:
@@ -310,7 +315,7 @@ def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
     if not inputs:
         return ()
     put = setter(drawn.study, [one.key for one in inputs])
-    central = drawn.central[own.name].restitution.restitution
+    central = drawn.central[own.name].restitution
 
     def model(points: Array) -> Array:
         values = np.column_stack([one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)])
@@ -319,8 +324,8 @@ def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
             found = central
             with suppress(SeparatrixError):  # a draw that makes no bearing counts as the central one
                 changed = put(row)
-                every = {one.name: one.material for one in ranking_question(changed).candidates}
-                found = restitution_state(changed, material=every[own.name]).restitution
+                every = {one.name: one for one in ranking_question(changed).candidates}
+                found = solve(changed, every[own.name]).restitution
             rows.append((found.restitution_factor, found.race_damping))
         return np.array(rows)
 

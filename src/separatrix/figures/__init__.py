@@ -7,82 +7,80 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
+from separatrix.errors import InputError
 from separatrix.figures import (
     bearing,
-    forces,
+    map,
     ranking,
     restitution,
     sensitivity,
     simulation,
     stability,
-    sweep,
     traction,
 )
-from separatrix.figures import map as maps
-from separatrix.figures.heading import headed
-from separatrix.figures.literal import literal, literal_texts
-from separatrix.figures.style import journal, save, settled
+from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
-__all__ = ["compared", "figures", "save"]
+__all__ = ["draw", "plot", "save"]
 
-Draw = Callable[[xr.Dataset], Figure]
-
-FIGURES: Mapping[str, Mapping[str, Draw]] = {
-    "bearing": {"bearing-balls": bearing.balls, "bearing-contacts": bearing.contact},
-    "traction": {"traction-curves": traction.curves, "traction-shear": traction.shear},
-    "restitution": {"restitution-film": restitution.lubrication},
-    "stability": {"stability-curve": stability.stability},
-    "map": {"stability-map": maps.map},
-    "simulate": {"simulation": simulation.run, "simulation-forces": forces.forces},
-    "rank": {"rank-overview": ranking.overview, "stability-curve": stability.stability},
-    "sensitivity": {
-        "sensitivity-probabilities": sensitivity.probabilities,
-        "sensitivity-convergence": sensitivity.convergence,
-    },
-    "sweep": {"sweep": sweep.sweep},
+FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
+    "bearing": bearing.figures,
+    "traction": traction.figures,
+    "restitution": restitution.figures,
+    "stability": stability.figures,
+    "map": map.figures,
+    "simulate": simulation.figures,
+    "rank": ranking.figures,
+    "sensitivity": sensitivity.figures,
+    "sweep": map.sweep_figures,
 }
-"""Verb -> name of the file -> what draws it."""
+"""Verb -> what yields its pictures, each with the name of its file."""
 
 
-EACH = {"rank": ranking.environments, "sensitivity": sensitivity.each}
-"""Verb -> what yields its further pictures: one for each environment."""
-
-NEEDED = {"rank": "restitution_factor", "restitution": "film_thickness", "sweep": "case"}
-"""Verb -> dimension without which nothing is drawn: an interrupted ranking or sweep, bare races."""
-
-
-def compared(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Figure:
-    """Return the figure of two simulations together.
-
-    Parameters
-    ----------
-    first, second : Dataset
-        From two answers of `simulate`.
-    names : tuple of str
-        What the legend calls them.
-    """
-    from separatrix.figures.comparison import comparison
-
-    shown = literal(names[0]), literal(names[1])
-    with journal():
-        return settled(comparison(literal_texts(first), literal_texts(second), shown))
-
-
-def figures(verb: str, data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the name and the figure of every picture of an answer.
+def draw(
+    verb: str,
+    data: xr.Dataset,
+    other: xr.Dataset | None = None,
+    *,
+    names: tuple[str, str] = ("", ""),
+) -> Iterator[tuple[str, Figure]]:
+    """Yield name and figure of every picture of an answer.
 
     Parameters
     ----------
     verb : str
-        The question.
-    data : Dataset
-        From `results.dataset` or `results.load`.
+        The question; `compare` draws two simulations together.
+    data, other : Dataset
+        From `present.dataset` or `present.load`; only `compare` takes a second one.
+    names : tuple of str
+        What `compare` writes above the two columns; by default the titles of the studies.
+
+    Raises
+    ------
+    InputError
+        `compare` lacks its second simulation, or another verb has one.
     """
-    if verb in NEEDED and NEEDED[verb] not in data.sizes:
-        return
-    data = literal_texts(data)
+    if (verb == "compare") != (other is not None):
+        raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
     with journal():
-        for name, draw in FIGURES.get(verb, {}).items():
-            yield name, settled(headed(draw(data), data))
-        for name, figure in EACH[verb](data) if verb in EACH else ():
-            yield name, settled(headed(figure, data))
+        if other is not None:
+            pair = [(literal_texts(one), name) for one, name in zip((data, other), names, strict=True)]
+            titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
+            yield "comparison", settled(simulation.comparison(pair[0][0], pair[1][0], titles))
+        elif verb in FIGURES:
+            data = literal_texts(data)
+            for name, figure in FIGURES[verb](data):
+                yield name, settled(headed(figure, data))
+
+
+def plot(verb: str, data: xr.Dataset, name: str | None = None) -> Figure:
+    """Return the first picture of an answer, or the one whose file has this name.
+
+    Raises
+    ------
+    InputError
+        The answer has no such picture.
+    """
+    for found, figure in draw(verb, data):
+        if name is None or found == name:
+            return figure
+    raise InputError(verb, f"has no picture {name or 'of this answer'}")

@@ -1,4 +1,4 @@
-"""One run of the cage as a moving picture: cage, balls, contact forces, time and energy."""
+"""One run of the cage as a moving picture: cage, balls, contact forces, path, time and energy."""
 
 from __future__ import annotations
 
@@ -10,30 +10,55 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from PIL import Image
 
 from separatrix.errors import InputError
-from separatrix.figures import simulation
-from separatrix.figures.frames import DRAWN, pictures
-from separatrix.figures.literal import literal_texts
-from separatrix.figures.scene import scene
-from separatrix.figures.spectrum import fastest_whirl
-from separatrix.figures.style import journal
-from separatrix.units import Array
+from separatrix.figures.motion import (
+    AROUND,
+    fastest_whirl,
+    half_plays,
+    land_boundary,
+    orbit_reach,
+    pocket_angles,
+    pocket_boundary,
+    ring,
+    smooth_path,
+)
+from separatrix.figures.scene import ROUND, Scene, scene, turned
+from separatrix.figures.simulation import draw_energy, is_logarithmic, milliseconds, time_limits
+from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, heading, journal, literal_texts
+from separatrix.units import Array, format_number
 
 KINDS = ("gif", "mp4")
-MOST_FRAMES = 360
-A_SECOND = 24
-"""Frames a second."""
+MOST_FRAMES, A_SECOND = 360, 24
+"""Most frames of a film, and frames a second."""
 
 A_TURN = 6
 """Frames in a turn of the fastest strong whirl, at least: fewer would show it turning any way."""
 
-SHADES = 16
-"""Steps from each of these colours to white in a GIF."""
+SIZE, DOTS = (7.6, 4.8), 100
+"""Inches, and dots an inch: both sides even, as a video needs them."""
 
-Progress = Callable[[int, int], None]
+BAR, BALL, SHADE = "#9fc7e3", "#e4e4e4", "#d8d8d8"
+DRAWN = (BLACK, GREY, BLUE, BAR, BALL, SKY, VERMILION)
+SHADES = 16
+"""What is drawn with, for the colours of a GIF, and steps from each of these to white."""
+
+ARROW, INSIDE = 3.2, 0.66
+"""Longest arrow over the radius of a ball; half the side of the path's picture over the inner radius."""
+
+TAIL, MOST_TAIL, DRIFT = 8, 4000, 1.5
+"""Frames and most samples for which the path stays; steps over the usual one from which frames have a gap."""
+
+Part = tuple[list[Artist], Callable[[int], None]]
+"""What moves in the picture, and what puts it where it is in a frame."""
 
 
 def animate(
@@ -42,7 +67,7 @@ def animate(
     *,
     kind: str | None = None,
     fixed: bool = False,
-    progress: Progress | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> None:
     """Write a run as an animation; an interrupt leaves no file, and an older one as it was.
 
@@ -55,7 +80,7 @@ def animate(
     kind : str or None
         "gif", or "mp4", which needs the extra `animation`; by default the ending of the file.
     fixed : bool
-        Whether the picture stands still in space; else it turns with the ball set.
+        Whether the picture is fixed in space; else it turns with the ball set.
     progress : callable, optional
         Called with (done, total) frames.
 
@@ -69,12 +94,18 @@ def animate(
         raise InputError("The kind of an animation", f"must be {' or '.join(KINDS)}", got=f'"{kind}"')
     encoder = video_encoder() if kind == "mp4" else None
     data, moments = literal_texts(data), frame_moments(data)
+
+    def film() -> Iterator[Image.Image]:
+        for done, image in enumerate(pictures(data, scene(data, moments, fixed=fixed), moments), start=1):
+            yield image
+            if progress is not None:
+                progress(done, moments.size)
+
     with journal(), _beside(path) as part:
-        film = _told(pictures(data, scene(data, moments, fixed=fixed), moments), moments.size, progress)
         if encoder is None:
-            _write_gif(film, part)
+            _write_gif(film(), part)
         else:
-            _write_mp4(encoder, film, part)
+            _write_mp4(encoder, film(), part)
 
 
 def video_encoder() -> ModuleType:
@@ -105,50 +136,17 @@ def _beside(path: Path) -> Iterator[Path]:
         part.unlink(missing_ok=True)
 
 
-def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
-    """Return the samples that become frames, rising, with the first and the last.
-
-    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
-    of the whirl; if the whole run would take too many, its beginning and its end are shown.
-    """
-    time = simulation.milliseconds(data)
-    first, last = simulation.time_limits(data)
-    space = np.geomspace if simulation.is_logarithmic(data) else np.linspace
-    wanted = np.searchsorted(time, space(first, last, most)).clip(0, time.size - 1)
-    even = np.unique(np.concatenate([[0], wanted]))[-most:]
-    step = whirl_step(data)
-    if simulation.is_logarithmic(data) or int(np.diff(even).max(initial=1)) <= step:
-        return even
-    half = np.arange(most // 2) * step
-    return np.unique(np.concatenate([half, time.size - 1 - half]))
-
-
-def whirl_step(data: xr.Dataset) -> int:
-    """Return how many samples may lie between frames that show every turn of the whirl."""
-    whirl, last = fastest_whirl(data), float(data["time"].values[-1])
-    turns = whirl * last
-    return max(1, int(data.sizes["time"] / (A_TURN * turns))) if turns > 0.0 else data.sizes["time"]
-
-
-def _told(film: Iterator[Image.Image], total: int, progress: Progress | None) -> Iterator[Image.Image]:
-    """Yield the frames, telling of each."""
-    for done, image in enumerate(film, start=1):
-        yield image
-        if progress is not None:
-            progress(done, total)
-
-
 def _write_gif(film: Iterator[Image.Image], part: Path) -> None:
     """Write the frames as a GIF that repeats, all in the same colours."""
-    look: Any = {"palette": palette(), "dither": Image.Dither.NONE}
-    images = (image.quantize(**look) for image in film)
-    how: Any = {"save_all": True, "duration": 1000 // A_SECOND, "loop": 0}
+    colours = palette()
+    images = (image.quantize(palette=colours, dither=Image.Dither.NONE) for image in film)
+    how: Look = {"save_all": True, "duration": 1000 // A_SECOND, "loop": 0}
     with part.open("wb") as file:
         next(images).save(file, "GIF", append_images=images, **how)
 
 
 def palette() -> Image.Image:
-    """Return an image that holds the colours of a film: each one that is drawn, in steps up to white."""
+    """Return an image with the colours of a film: each one that is drawn, in steps up to white."""
     drawn = 255 * np.array([to_rgb(colour) for colour in DRAWN])
     share = np.linspace(0.0, 1.0, SHADES)[:, np.newaxis, np.newaxis]
     shades = np.round(share * drawn + (1 - share) * 255.0).astype(np.uint8).reshape(-1, 3)
@@ -171,3 +169,166 @@ def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> 
             pipe.close()
     except (OSError, RuntimeError) as error:
         raise InputError("The MP4", "could not be encoded", cure="Take a GIF.") from error
+
+
+def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
+    """Return the samples that become frames, rising, with the first and the last.
+
+    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
+    of the whirl; if the whole run would take too many, its beginning and its end are shown.
+    """
+    time, (first, last), logarithmic = milliseconds(data), time_limits(data), is_logarithmic(data)
+    wanted = np.searchsorted(time, (np.geomspace if logarithmic else np.linspace)(first, last, most))
+    even = np.unique(np.append(0, wanted.clip(0, time.size - 1)))[-most:]
+    turns = fastest_whirl(data) * float(data["time"].values[-1])
+    step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
+    if logarithmic or int(np.diff(even).max(initial=1)) <= step:
+        return even
+    half = np.arange(most // 2) * step
+    return np.unique(np.concatenate([half, time.size - 1 - half]))
+
+
+def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
+    """Return beginning and end of each part of the run that the frames show [ms]."""
+    time = milliseconds(data)[moments]
+    if is_logarithmic(data) or time.size < 3:
+        return [(float(time[0]), float(time[-1]))]
+    steps = np.diff(moments)
+    cuts = np.flatnonzero(steps > DRIFT * np.median(steps) + 1) + 1
+    return [(float(part[0]), float(part[-1])) for part in np.split(time, cuts)]
+
+
+def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Image]:
+    """Yield the picture of each moment; what does not move is drawn once."""
+    figure = Figure(figsize=SIZE, dpi=DOTS)
+    canvas: Any = FigureCanvasAgg(figure)
+    (width, height), (left, low, wide, high) = SIZE, (0.0, 0.0, 0.6, 0.9)
+    half = INSIDE * (at.radius - at.half_width) * 0.5 * min(wide * width, high * height) / at.reach
+    x, y = (left + 0.5 * wide) * width, (low + 0.5 * high) * height
+    middle = (x - half) / width, (y - half) / height, 2 * half / width, 2 * half / height
+    clock = figure.text(0.615, 0.895, "", fontsize=10, va="top")
+    times = milliseconds(data)[moments]
+    parts: tuple[Part, ...] = (
+        _cage(figure.add_axes((left, low, wide, high)), at),
+        _path(figure.add_axes(middle), data, at, moments),
+        _energy(figure.add_axes((0.69, 0.11, 0.29, 0.32)), data, moments),
+        ([clock], lambda frame: clock.set_text(f"{times[frame]:.3f} ms")),
+    )
+    for artist in (artist for moving, _ in parts for artist in moving):
+        artist.set_animated(True)
+    figure.text(0.01, 0.985, "\n".join(heading(data)), fontsize=6.5, va="top", linespacing=1.4)
+    _explain(figure, data, at, moments)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for frame in range(moments.size):
+        canvas.restore_region(still)
+        for moving, move in parts:
+            move(frame)
+            for artist in moving:
+                figure.draw_artist(artist)
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> None:
+    """Write what the picture shows, and on which scales."""
+    pocket, land = (format_number(float(np.abs(one).max()), 3) for one in (at.force, at.land_force))
+    arrow: Look = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
+    named = [(Line2D([], [], color=VERMILION, **arrow), f"force of a pocket on the cage, up to {pocket} N")]
+    if np.isfinite(at.land):
+        named.append((Line2D([], [], color=BLACK, **arrow), f"force of the land, up to {land} N"))
+        named.append((Line2D([], [], color=GREY, lw=1.6), "land"))
+    look: Look = {"bbox_to_anchor": (0.6, 0.83), "fontsize": 6.5, "handlelength": 1.6, "labelspacing": 0.25}
+    figure.legend(*zip(*named, strict=True), loc="upper left", **look)
+    words = "\n".join(notes(data, at, moments))
+    figure.text(0.615, 0.66, words, fontsize=6.5, color=BLACK, va="top", linespacing=1.4)
+
+
+def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
+    """Return the scales and the times of the frames as lines."""
+    steps = np.diff(milliseconds(data)[moments])
+    pace = f"{1e3 * np.median(steps):.3g} \N{MICRO SIGN}s a frame" if steps.size else "one frame"
+    spans = " and ".join(f"{first:.3g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
+    times = "to scale" if at.enlarged == 1.0 else f"enlarged {format_number(at.enlarged, 2)} times"
+    return [
+        f"Displacements and clearances {times};",
+        "overlaps are contact deformation.",
+        "Arrow length: square root of force.",
+        "Fixed frame." if at.frame.any() else "Frame of the ball set.",
+        "Logarithmic time." if is_logarithmic(data) else f"Shown: {spans}, {pace}.",
+    ]
+
+
+def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
+    """Draw the energy against time, with a dot at the frame's."""
+    draw_energy(axes, data)
+    parts = shown_parts(data, moments)
+    for first, last in parts if len(parts) > 1 else ():
+        axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
+    time = np.maximum(milliseconds(data)[moments], axes.get_xlim()[0])
+    energy = np.asarray(axes.lines[0].get_ydata(), dtype=float)[moments]
+    (dot,) = axes.plot([], [], "o", color=BLACK, ms=4, clip_on=False)
+    return [dot], lambda frame: dot.set_data([time[frame]], [energy[frame]])
+
+
+def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
+    """Draw the path of the centre within its boundaries, in the middle of the ring."""
+    reach, land = orbit_reach(data), land_boundary(data)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
+    axes.set_axis_off()
+    size = format_number(1.0 / reach * INSIDE * (at.radius - at.half_width), 2)
+    look: Look = {"ha": "center", "va": "top", "fontsize": 6.0, "linespacing": 1.3}
+    axes.text(0.5, 0.0, f"path of the centre,\nenlarged {size} times", transform=axes.transAxes, **look)
+    if land is not None:
+        axes.plot(*ring(land, AROUND).T, color=GREY, lw=1.2)
+    (outline,) = axes.plot([], [], color=BLACK, lw=0.6)
+    (tail,) = axes.plot([], [], color=BLUE, lw=0.8)
+    (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.5)
+    pockets = pocket_boundary(pocket_angles(data), half_plays(data))
+    pockets = np.where(np.isfinite(pockets), pockets, np.nan)
+    samples = [np.asarray(data[name].values) for name in ("time", "position", "velocity")]
+
+    def move(frame: int) -> None:
+        angle, last = at.frame[frame], int(moments[frame])
+        first = max(int(moments[max(0, frame - TAIL)]), last - MOST_TAIL, 0)
+        path = smooth_path(*(sample[first : last + 1] for sample in samples))
+        tail.set_data(*turned(path, angle).T)
+        dot.set_data(*turned(path[-1:], angle).T)
+        outline.set_data(*turned(ring(pockets, AROUND), angle).T)
+
+    return [outline, tail, dot], move
+
+
+def _cage(axes: Axes, at: Scene) -> Part:
+    """Draw what moves in the plan of the bearing: cage, balls and forces."""
+    axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
+    axes.set_axis_off()
+    count = at.angles.size
+    if np.isfinite(at.land):
+        axes.plot(*ring(at.land, ROUND).T, color=GREY, lw=1.6)
+    axes.plot(*ring(at.radius, ROUND).T, color=GREY, lw=0.4, ls=":")
+    rails = LineCollection([], colors=BLUE, linewidths=0.9)
+    bars = PolyCollection([], facecolors=BAR, edgecolors=BLUE, linewidths=0.7)
+    size, look = np.full(count, 2 * at.ball), {"units": "xy", "facecolors": BALL, "edgecolors": BLACK}
+    places: Look = {"offsets": np.zeros((count, 2)), "offset_transform": axes.transData, **look}
+    balls = EllipseCollection(size, size, np.zeros(count), linewidths=0.8, **places)
+    for collection in (rails, bars, balls):
+        axes.add_collection(collection)
+    (first,) = axes.plot([0], [0], "o", color=BLACK, ms=2.5)
+    scale: Look = {"angles": "xy", "scale_units": "xy", "scale": 1 / (ARROW * at.ball), "width": 0.008}
+    pockets, land = (
+        axes.quiver(*np.zeros((4, n)), color=colour, zorder=4, minlength=0.1, **scale)
+        for n, colour in ((count, VERMILION), (1, BLACK))
+    )
+
+    def move(frame: int) -> None:
+        centres = at.ball_places(frame)
+        bars.set_verts(at.bars(frame))
+        rails.set_segments(at.rails(frame))
+        balls.set_offsets(centres)
+        first.set_data(centres[:1, 0], centres[:1, 1])
+        for arrows, (foot, along) in ((pockets, at.pocket_arrows(frame)), (land, at.land_arrow(frame))):
+            along = np.ma.masked_invalid(along.reshape(-1, 2))
+            arrows.set_offsets(foot.reshape(-1, 2))
+            arrows.set_UVC(along[:, 0], along[:, 1])
+
+    return [bars, rails, balls, first, pockets, land], move

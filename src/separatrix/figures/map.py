@@ -1,8 +1,9 @@
-"""The stability map: probability of whirl over two parameters of a study."""
+"""The stability map over two parameters of a study, and the cases of a sweep against each parameter."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,14 +13,27 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
+from numpy.typing import NDArray
 
-from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, linear_limit
-from separatrix.figures.style import BLACK, GREY, PAGE, VERMILION, canvas, legend_below
+from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, draw_linear_limit
+from separatrix.figures.style import (
+    BLACK,
+    GREY,
+    PAGE,
+    VERDICT_COLOURS,
+    VERDICT_MARKERS,
+    VERMILION,
+    Look,
+    canvas,
+    colour_bar,
+    legend_below,
+)
 from separatrix.units import Array, format_quantity, parse
 
-REFUSED, NOT_RUN = "#9a9a9a", "not run"
+Mask = NDArray[np.bool_]
+
 SPACE = 1.5
-"""Steps of an axis that are in proportion beyond this are taken as logarithmic."""
+"""Ratio of the last step of an axis to its first beyond which values in proportion are logarithmic."""
 
 HALF = 0.5 - 1e-6
 """Level of the contour: no share equals it, which would make the contour cross itself."""
@@ -29,42 +43,110 @@ COLOURS = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, 256)), "whir
 warning, where it is not."""
 
 NAMES = {"restitution_factor": ETA_LABEL, "ball_cage_friction": FRICTION_LABEL}
-"""Parameters that go by a symbol."""
+"""Parameters with a symbol."""
+
+MOST_PANELS = 6
+SIZES = {"STABLE": 5.0, "UNSTABLE": 4.0, "UNDECIDED": 3.0}
+"""Marks of each verdict in a sweep: where several fall on one place, each is seen."""
 
 
-UNDECIDED = "undecided: the runs, or their drift, allow no verdict"
-"""Hatched in the picture: a verdict asks for more than the share that the colour shows."""
+class Cells(NamedTuple):
+    """What is known at each point of a map, shape (y, x).
+
+    The share of the runs that whirl, NaN if unknown; which points the program refused; which were not run,
+    for an interrupt or as the points around agree, whose share they then have; where there is no verdict.
+    """
+
+    share: Array
+    refused: Mask
+    not_run: Mask
+    agreed: Mask
+    undecided: Mask
 
 
-def map(data: xr.Dataset) -> Figure:
+def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the picture of `map`."""
+    yield "stability-map", stability_map(data)
+
+
+def sweep_figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the picture of `sweep`; one without a finished case has none."""
+    if "case" in data.sizes:
+        yield "sweep", sweep(data)
+
+
+def cells(data: xr.Dataset) -> Cells:
+    """Return what is known at each point of a map."""
+    table = {
+        name: data[name].transpose("y", "x").values for name in ("probability_whirl", "reason", "decision")
+    }
+    share, reason = table["probability_whirl"].astype(float), table["reason"].astype(str)
+    not_run, agreed = np.char.startswith(reason, "not run"), np.char.find(reason, "agree") >= 0
+    refused = np.isnan(share) & ~not_run
+    rows, columns = np.nonzero(np.isfinite(share))
+    for row, column in np.argwhere(agreed) if rows.size else ():
+        near = np.argmin(np.maximum(np.abs(rows - row), np.abs(columns - column)))
+        share[row, column] = share[rows[near], columns[near]]
+    return Cells(share, refused, not_run, agreed, table["decision"].astype(str) == "UNDECIDED")
+
+
+def stability_map(data: xr.Dataset) -> Figure:
     """Share of the runs that whirl, with its contour at one half, what is undecided and what was refused."""
     figure, axes = canvas(PAGE, 4.7)
-    edges = [cell_edges(axis_values(data, name)) for name in "xy"]
-    mesh = _cells(axes, data, edges)
-    undecided = table(data, "decision").astype(str) == "UNDECIDED"
-    _hatched(axes, edges, undecided, facecolors="none", edgecolors="white", hatch="////")
-    if undecided.any():
-        axes.fill_between([], [], fc=COLOURS(0.5), ec="white", hatch="////", lw=0.0, label=UNDECIDED)
-    for name in "xy":
-        _axis(axes, data, name)
-    axes.set(xlim=ends(axis_values(data, "x"), edges[0]), ylim=ends(axis_values(data, "y"), edges[1]))
-    _half(axes, data)
-    _limit(axes, data)
-    _here(axes, data)
+    known, values = cells(data), [axis_values(data, name) for name in "xy"]
+    edges, share = [cell_edges(one) for one in values], np.ma.masked_invalid(known.share)
+    look: Look = {"rasterized": True, "shading": "flat"}
+    mesh = axes.pcolormesh(*edges, share, cmap=COLOURS, vmin=0.0, vmax=1.0, **look)
+    _hatch(axes, edges, known.refused, fc="#9a9a9a", ec="white", hatch="xxxx", label="refused")
+    if (known.not_run & ~known.agreed).any():
+        axes.fill_between([], [], facecolor="white", edgecolor=GREY, lw=0.5, label="not run")
+    if known.agreed.any():
+        y, x = np.nonzero(~known.not_run)
+        dots: Look = {"color": BLACK, "ms": 2.2, "mec": "white", "mew": 0.4, "clip_on": False, "ls": ""}
+        label = "was run; elsewhere the points around agree"
+        axes.plot(values[0][x], values[1][y], "o", label=label, **dots)
+    _hatch(axes, edges, known.undecided, fc="none", ec="white", hatch="////")
+    if known.undecided.any():
+        look = {"fc": COLOURS(0.5), "ec": "white", "hatch": "////", "lw": 0.0}
+        axes.fill_between([], [], label="undecided: the runs, or their drift, allow no verdict", **look)
+    for name, one, edge in zip("xy", values, edges, strict=True):
+        _axis(axes, data, name, one, edge)
+    if min(share.shape) > 1 and share.count() and share.min() < 0.5 < share.max():
+        for colour, width in (("white", 3.2), (VERMILION, 1.6)):
+            axes.contour(*values, share, levels=[HALF], colors=[colour], linewidths=[width])
+        axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs whirl")
+    names = parameter(data, "x"), parameter(data, "y")
+    if set(names) == set(NAMES) and "cage_ball_count" in data:
+        swapped = names[0] == "ball_cage_friction"
+        draw_linear_limit(axes, int(data["cage_ball_count"]), swapped=swapped, halo=True)
+    _mark_study(axes, data)
+    kick = f"{float(data['kick']):g} m/s" if "kick" in data else "of the study"
+    kick = "as on the axis" if "kick" in names else kick
     runs = f", at most {int(data['stopping_most_runs'])} runs a point" if "stopping_most_runs" in data else ""
-    axes.set_title(f"Share of the runs that whirl, kick {kick_text(data)}{runs}")
-    bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
-    bar.set_label("share of the runs that whirl [-]")
-    bar.outline.set_visible(False)
+    axes.set_title(f"Share of the runs that whirl, kick {kick}{runs}")
+    colour_bar(mesh, [axes], "share of the runs that whirl [-]", pad=0.02, aspect=30)
     legend_below(figure, [axes])
     return figure
 
 
-def kick_text(data: xr.Dataset) -> str:
-    """Return the kick of the runs, or that it is an axis."""
-    if "kick" in (parameter(data, "x"), parameter(data, "y")):
-        return "as on the axis"
-    return f"{float(data['kick']):g} m/s" if "kick" in data else "of the study"
+def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
+    """Hatch cells."""
+    x, y = edges
+    corners = [
+        [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]
+        for j, i in np.argwhere(where)
+    ]
+    if corners:
+        axes.add_collection(PolyCollection(corners, linewidths=0.0, **look), autolim=False)
+
+
+def _mark_study(axes: Axes, data: xr.Dataset) -> None:
+    """Mark the study's own point, if it has one in the map."""
+    found = [float(data.get(f"{name}_here", np.nan)) / shown_unit(data, name)[0] for name in "xy"]
+    limits = axes.get_xlim(), axes.get_ylim()
+    if all(low <= value <= high for value, (low, high) in zip(found, limits, strict=True)):
+        look: Look = {"mfc": "white", "mec": BLACK, "mew": 1.0, "ls": ""}
+        axes.plot(*found, "*", ms=11, label="the study itself", **look)
 
 
 def parameter(data: xr.Dataset, name: str) -> str:
@@ -84,8 +166,18 @@ def shown_unit(data: xr.Dataset, name: str) -> tuple[float, str]:
 
 
 def axis_values(data: xr.Dataset, name: str) -> Array:
-    """Return the values along x or y, in the unit that is shown."""
+    """Return the values along x or y, or of a parameter of a sweep, in the unit that is shown."""
     return np.asarray(data[name].values, dtype=float) / shown_unit(data, name)[0]
+
+
+def axis_label(data: xr.Dataset, name: str, key: str) -> str:
+    """Return a key of a study as a label with its unit; without a section that the key names already."""
+    section, _, last = key.rpartition(".")
+    words = last.replace("_", " ")
+    if section not in ("", "operation") and section not in words and last != "race_friction":
+        words = f"{section.replace('_', ' ')} {words}"
+    symbol = shown_unit(data, name)[1].replace("um", "\N{MICRO SIGN}m")
+    return NAMES.get(last, f"{words} [{symbol}]")
 
 
 def is_proportional(values: Array) -> bool:
@@ -107,120 +199,41 @@ def cell_edges(values: Array) -> Array:
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
-def ends(values: Array, edges: Array) -> tuple[float, float]:
-    """Return both ends of an axis: its first and last value, so that nothing is drawn beyond what was run."""
-    chosen = values if values.size > 1 else edges
-    return float(chosen[0]), float(chosen[-1])
-
-
-def _axis(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Name an axis with its unit; logarithmic where its values are in proportion."""
-    symbol = shown_unit(data, name)[1].replace("um", "\N{MICRO SIGN}m")
-    of = parameter(data, name)
-    axes.set(**{f"{name}label": NAMES.get(of, f"{parameter_words(of)} [{symbol}]")})
-    if is_proportional(axis_values(data, name)):
+def _axis(axes: Axes, data: xr.Dataset, name: str, values: Array, edges: Array) -> None:
+    """Name an axis and end it at its first and last value, so that nothing is drawn beyond what was run."""
+    ends = values if values.size > 1 else edges
+    label = axis_label(data, name, parameter(data, name))
+    axes.set(**{f"{name}lim": (float(ends[0]), float(ends[-1])), f"{name}label": label})
+    if is_proportional(values):
         axes.set(**{f"{name}scale": "log"})
-        which: Any = getattr(axes, f"{name}axis")
-        which.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        which.set_major_formatter("{x:g}")
-        which.set_minor_formatter("")
+        axis = axes.xaxis if name == "x" else axes.yaxis
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
 
 
-def parameter_words(name: str) -> str:
-    """Return a key of a study as a label; the section is left out where the key names it already."""
-    section, _, key = name.rpartition(".")
-    words = key.replace("_", " ")
-    return words if not section or section in words or key == "race_friction" else f"{section} {words}"
-
-
-def table(data: xr.Dataset, name: str) -> Any:
-    """Return a variable of the map as an array of shape (y, x)."""
-    return data[name].transpose("y", "x").values
-
-
-def not_run(data: xr.Dataset) -> Any:
-    """Return where the map was not asked: an interrupt, or the points around agree."""
-    return np.char.startswith(table(data, "reason").astype(str), NOT_RUN)
-
-
-def refused(data: xr.Dataset) -> Any:
-    """Return where there is no answer although it was asked for."""
-    return np.isnan(table(data, "probability_whirl").astype(float)) & ~not_run(data)
-
-
-def agreed(data: xr.Dataset) -> Any:
-    """Return where nothing was run because the points around agree."""
-    return np.char.find(table(data, "reason").astype(str), "agree") >= 0
-
-
-def filled(data: xr.Dataset) -> Array:
-    """Return the share of whirling runs; where the points around agree, that of the nearest point."""
-    share = table(data, "probability_whirl").astype(float)
-    rows, columns = np.nonzero(np.isfinite(share))
-    for row, column in np.argwhere(agreed(data)) if rows.size else ():
-        near = np.argmin(np.maximum(np.abs(rows - row), np.abs(columns - column)))
-        share[row, column] = share[rows[near], columns[near]]
-    return np.asarray(share)
-
-
-def _cells(axes: Axes, data: xr.Dataset, edges: list[Array]) -> Any:
-    """Draw the share of whirling runs, and grey for what was refused."""
-    look: Any = {"rasterized": True, "shading": "flat"}
-    share = np.ma.masked_invalid(filled(data))
-    mesh = axes.pcolormesh(*edges, share, cmap=COLOURS, vmin=0.0, vmax=1.0, **look)
-    _hatched(
-        axes, edges, refused(data), facecolors=REFUSED, edgecolors="white", hatch="xxxx", label="refused"
-    )
-    if (not_run(data) & ~agreed(data)).any():
-        axes.fill_between([], [], facecolor="white", edgecolor=GREY, lw=0.5, label="not run")
-    if agreed(data).any():
-        place = np.argwhere(~not_run(data))
-        values = [axis_values(data, name)[place[:, i]] for name, i in (("x", 1), ("y", 0))]
-        dots: Any = {"color": BLACK, "ms": 2.2, "mec": "white", "mew": 0.4, "clip_on": False, "ls": ""}
-        axes.plot(*values, "o", **dots, label="was run; elsewhere the points around agree")
-    return mesh
-
-
-def _hatched(axes: Axes, edges: list[Array], where: Any, **look: Any) -> None:
-    """Hatch cells."""
-    x, y = edges
-    cells = [
-        [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]
-        for j, i in np.argwhere(where)
-    ]
-    if cells:
-        axes.add_collection(PolyCollection(cells, linewidths=0.0, **look), autolim=False)
-
-
-def _half(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the contour on which half the runs whirl, if it runs through the map."""
-    share = np.ma.masked_invalid(filled(data))
-    if min(share.shape) < 2 or not share.count() or not share.min() < 0.5 < share.max():
-        return
-    values = [axis_values(data, name) for name in "xy"]
-    for colour, width in (("white", 3.2), (VERMILION, 1.6)):
-        axes.contour(*values, share, levels=[HALF], colors=[colour], linewidths=[width])
-    axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs whirl")
-
-
-def _limit(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the linear limit, if the axes are restitution factor and friction."""
-    names = parameter(data, "x"), parameter(data, "y")
-    if set(names) != set(NAMES) or "cage_ball_count" not in data:
-        return
-    eta = np.linspace(1e-3, 1.0, 400)
-    curve = eta, linear_limit(eta, int(data["cage_ball_count"]))
-    points = curve if names[0] == "restitution_factor" else curve[::-1]
-    axes.plot(*points, color="white", lw=2.4)
-    label = "linear limit: no clearance, balls at rest"
-    axes.plot(*points, color=BLACK, lw=1.1, ls=(0, (5, 2)), label=label)
-
-
-def _here(axes: Axes, data: xr.Dataset) -> None:
-    """Mark the study's own point, if it has one in the map."""
-    found = [float(data[f"{n}_here"]) if f"{n}_here" in data else np.nan for n in "xy"]
-    x, y = (value / shown_unit(data, name)[0] for value, name in zip(found, "xy", strict=True))
-    limits = axes.get_xlim(), axes.get_ylim()
-    if all(low <= value <= high for value, (low, high) in zip((x, y), limits, strict=True)):
-        look: Any = {"mfc": "white", "mec": BLACK, "mew": 1.0, "ls": ""}
-        axes.plot(x, y, "*", ms=11, label="the study itself", **look)
+def sweep(data: xr.Dataset) -> Figure:
+    """Restitution factor against each of the first parameters, marked by verdict where there is one."""
+    names = [str(name) for name in data["parameter"].values[:MOST_PANELS]]
+    columns = min(3, len(names))
+    rows = -(-len(names) // columns)
+    figure, panels = canvas(PAGE, 2.4 * rows + 0.4, nrows=rows, ncols=columns, sharey=True, squeeze=False)
+    eta, verdict = data["restitution_factor"].values, data["verdict"].values.astype(str)
+    for axes, name in zip(panels.flat, names, strict=False):
+        x = axis_values(data, name)
+        axes.plot(x[verdict == ""], eta[verdict == ""], "o", ms=2.5, mew=0.0, color=BLACK)
+        for known, size in SIZES.items():
+            those, mark = verdict == known, VERDICT_MARKERS[known]
+            look: Look = {"ms": size, "mew": 0.8, "mfc": "none", "color": VERDICT_COLOURS[known]}
+            if those.any():
+                axes.plot(x[those], eta[those], mark, ls="", label=known, **look)
+        axes.set_xlabel(axis_label(data, name, name))
+    for axes in panels.flat[len(names) :]:
+        axes.set_visible(False)
+    for row in panels:
+        row[0].set_ylabel(ETA_LABEL)
+    top = float(np.nanmax(eta, initial=0.05))
+    panels.flat[0].set_ylim(-0.03 * top, 1.08 * top)
+    if np.any(verdict != ""):
+        figure.legend(*panels.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure

@@ -5,32 +5,46 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator
 from itertools import cycle
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withTickedStroke
-from matplotlib.ticker import LogLocator
 
-from separatrix.figures import style
-from separatrix.figures.ranking import file_name, own_environment, untested
-from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL
-from separatrix.figures.style import BLACK, CYCLE, GREY, MARK, MARKERS, PAGE, canvas, legend_below
+from separatrix.figures.ranking import file_name, own_environment
+from separatrix.figures.stability import ETA_LABEL, EXTRAPOLATED, FRICTION_LABEL, explain_extrapolated
+from separatrix.figures.style import (
+    BLACK,
+    CYCLE,
+    GREY,
+    MARKERS,
+    PAGE,
+    VERDICT_COLOURS,
+    VERDICT_MARKERS,
+    Look,
+    canvas,
+    label_lines,
+    legend_below,
+)
 from separatrix.units import Array
 
 OVERALL = "over all environments"
 LEAST, MOST = 0.02, 7  # smallest share of an input that is drawn; most inputs, and most cases
-CLOUD = ("restitution_factor", "friction", "settles")
-SETTLES: Any = {"ls": "", "marker": ".", "ms": 3.5, "mew": 0.0}
-WHIRLS: Any = {"ls": "", "marker": "x", "ms": 2.8, "mew": 0.6}
-BESIDE: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.5, "color": GREY}
+NARROW = 0.01
+"""Spread of the restitution factor below which bearings are drawn in the order of their numbers instead."""
+
+SETTLES: Look = {"ls": "", "marker": ".", "ms": 3.5, "mew": 0.0}
+OTHERS: Look = {"ls": "", "marker": "x", "ms": 2.8, "mew": 0.6}
+BESIDE: Look = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.5, "color": GREY}
 
 
-def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the figures of the environments, of what decides, and of the film if there is one."""
-    yield from environments(data)
+def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the pictures of `sensitivity`: of each environment, and of what decides and of films if known."""
+    yield "sensitivity-probabilities", probabilities(data)
+    yield "sensitivity-convergence", convergence(data)
+    for i, name in enumerate(data["environment"].values.astype(str)):
+        yield f"sensitivity-{i + 1}-{file_name(name)}", bearings(data.isel(environment=i))
     if "driver_share" in data and np.isfinite(_floats(data, "driver_share")).any():
         yield "sensitivity-drivers", drivers(data)
     if "film_limit" in data:
@@ -39,7 +53,7 @@ def each(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 def _floats(data: xr.Dataset, name: str, *dims: str) -> Array:
     """Return numbers with NaN where they are absent; the dimensions in this order if given."""
-    return data[name].transpose(*dims).values.astype(float)
+    return np.asarray(data[name].transpose(*dims).values, dtype=float)
 
 
 def _chance(data: xr.Dataset, of: str, *dims: str) -> tuple[Array, Array]:
@@ -48,47 +62,51 @@ def _chance(data: xr.Dataset, of: str, *dims: str) -> tuple[Array, Array]:
     return value, np.maximum([value - low, high - value], 0.0)
 
 
-def _headed(axes: Axes, title: str, text: str = "") -> None:
+def _title(axes: Axes, title: str, text: str = "") -> None:
     """Write a title, and below it a text in grey, all above the axes."""
     rows = [row for line in text.splitlines() for row in textwrap.wrap(line, 85)]
     axes.set_title(title[:1].upper() + title[1:], pad=6 + 9 * len(rows))
     axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), **BESIDE)
 
 
-def environments(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield a figure for each environment: friction and restitution factor of every drawn bearing."""
-    for i, name in enumerate(data["environment"].values.astype(str)):
-        figure, axes = canvas(PAGE, 4.3)
-        _bearings(axes, data.isel(environment=i))
-        legend_below(figure, columns=3)
-        yield f"sensitivity-{i + 1}-{file_name(name)}", figure
+def bearings(data: xr.Dataset) -> Figure:
+    """Friction of every drawn bearing in one environment against its restitution factor.
 
-
-def _bearings(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the bearings of the candidates in one environment, and write the names at the right."""
-    every, central = _floats(data, "cloud_restitution_factor"), _floats(data, "material_friction")
-    shares, names = _floats(data, "material_probability_stable"), data["material"].values.astype(str)
-    labels, right = [], min(float(np.nanmax(every, initial=0.0)) + 0.02, 1.0)
+    Where that hardly varies, which would put all bearings on one line, against the number of the bearing.
+    """
+    figure, axes = canvas(PAGE, 4.3)
+    eta = _floats(data, "cloud_restitution_factor", "material", "sample")
+    central = _floats(data, "material_friction")
+    names, shares = data["material"].values.astype(str), _floats(data, "material_probability_stable")
+    x, xlabel = np.broadcast_to(np.arange(1.0, eta.shape[1] + 1), eta.shape), "number of the bearing [-]"
+    spread, limits = np.fmax.reduce(eta, axis=1) - np.fmin.reduce(eta, axis=1), (0.0, eta.shape[1] + 1.0)
+    varies = bool((spread > NARROW).any())
+    if varies:
+        x, xlabel = eta, ETA_LABEL
+        limits = max(float(np.nanmin(eta)) - 0.02, 0.0), min(float(np.nanmax(eta)) + 0.02, 1.0)
+    top = 1.08 * max(0.01, *np.nan_to_num([*_floats(data, "cloud_friction").ravel(), *central]))
+    axes.set(xlim=limits, ylim=(0, top), xlabel=xlabel, ylabel=FRICTION_LABEL)
+    labels = []
     for i in np.flatnonzero(np.isfinite(central)):
-        at, colour = data.isel(material=i), CYCLE[i % len(CYCLE)]
-        eta, friction, settles = (_floats(at, f"cloud_{name}") for name in CLOUD)
-        for kind, look in ((1, SETTLES), (0, WHIRLS)):
-            axes.plot(eta[settles == kind], friction[settles == kind], color=colour, alpha=0.7, **look)
+        of, colour = data.isel(material=i), CYCLE[i % len(CYCLE)]
+        friction, settles = _floats(of, "cloud_friction"), _floats(of, "cloud_settles")
+        for kind, look in ((1, SETTLES), (0, OTHERS)):
+            axes.plot(x[i][settles == kind], friction[settles == kind], color=colour, alpha=0.7, **look)
         middle = float(np.median([*friction[np.isfinite(friction)]] or central[i]))
         axes.axhline(middle, color=colour, lw=0.3, alpha=0.6, zorder=1)
-        mark = MARK if str(at["material_extrapolation"].values) else ""
+        mark = EXTRAPOLATED if str(of["material_extrapolation"].values) else ""
+        own = "" if varies or not np.isfinite(spread[i]) else rf"  $\eta$ {np.nanmedian(eta[i]):.2f}"
         share = f"{shares[i]:.2f}".replace("nan", "-")
-        labels.append((right, middle, f"{names[i]}  {middle:.3f}{mark}  P(stable) {share}", colour))
+        labels.append((limits[1], middle, f"{names[i]}  {middle:.3f}{mark}{own}  P(stable) {share}", colour))
+    label_lines(axes, labels, gap=0.04)
     axes.plot([], [], color=GREY, label="a bearing whose cage settles", **SETTLES)
-    axes.plot([], [], color=GREY, label="a bearing whose cage does not settle", **WHIRLS)
-    untested(axes, data["material_extrapolation"])
-    left = max(float(np.nanmin(every, initial=right - 0.02)) - 0.02, 0.0)
-    top = 1.08 * max(0.01, *np.nan_to_num([*_floats(data, "cloud_friction").ravel(), *central]))
-    axes.set(xlim=(left, right), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
-    style.label_lines(axes, labels, gap=0.04)
+    axes.plot([], [], color=GREY, label="a bearing whose cage does not settle", **OTHERS)
+    explain_extrapolated(axes, data["material_extrapolation"])
     axes.annotate("candidate  median friction", (1, 1), xytext=(12, 5), **BESIDE)
     absent = ", ".join(names[~np.isfinite(central)])
-    _headed(axes, f"{data['environment'].values}: drawn bearings", absent and f"not measured: {absent}")
+    _title(axes, f"{data['environment'].values}: drawn bearings", absent and f"not measured: {absent}")
+    legend_below(figure, columns=3)
+    return figure
 
 
 def probabilities(data: xr.Dataset) -> Figure:
@@ -99,17 +117,18 @@ def probabilities(data: xr.Dataset) -> Figure:
     for row, (axes, place) in enumerate(zip(panels.flat, places, strict=False)):
         over = place == OVERALL
         _probabilities(axes, data if over else data.isel(environment=row), "overall" if over else "material")
-        _headed(axes, place)
+        _title(axes, place)
         if row >= len(places) - 2:
             axes.set_xlabel("probability that a bearing's cage settles [-]", loc="right")
             axes.tick_params(labelbottom=True)
     panels.flat[-1].set_visible(len(places) % 2 == 0)
     first = panels[0, 0]
-    for verdict, marker in style.VERDICT_MARKERS.items():
-        first.plot([], [], marker, color=style.VERDICT_COLOURS[verdict], ms=4.5, label=verdict)
+    for verdict, marker in VERDICT_MARKERS.items():
+        first.plot([], [], marker, color=VERDICT_COLOURS[verdict], ms=4.5, label=verdict)
     first.plot([], [], color=GREY, lw=1.2, label="95 % interval")
     first.plot([], [], color=GREY, lw=0.6, ls=":", label="probabilities of 0.5 and 0.9")
-    untested(first, xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any"))
+    both = xr.concat([data["material_extrapolation"], data["overall_extrapolation"]], "any")
+    explain_extrapolated(first, both)
     legend_below(figure, columns=3)
     return figure
 
@@ -119,9 +138,9 @@ def _probabilities(axes: Axes, data: xr.Dataset, prefix: str) -> None:
     (value, reach), names = _chance(data, prefix), []
     for place, i in enumerate(np.argsort(np.nan_to_num(value, nan=-1.0), kind="stable")):
         verdict = str(data[f"{prefix}_verdict"].values[i])
-        colour, sign = style.VERDICT_COLOURS.get(verdict, GREY), style.VERDICT_MARKERS.get(verdict, ".")
+        colour, sign = VERDICT_COLOURS.get(verdict, GREY), VERDICT_MARKERS.get(verdict, ".")
         axes.errorbar(value[i], place, xerr=reach[:, [i]], fmt=sign, ms=4.5, color=colour, capsize=1.5)
-        mark = MARK if str(data[f"{prefix}_extrapolation"].values[i]) else ""
+        mark = EXTRAPOLATED if str(data[f"{prefix}_extrapolation"].values[i]) else ""
         names.append(f"{data['material'].values[i]}{mark}{'' if value[i] >= 0 else ': not measured'}")
     axes.vlines([0.5, 0.9], -1, len(names), color=GREY, lw=0.6, ls=":", zorder=0)
     axes.set_yticks(range(len(names)), names, fontsize=6.5)
@@ -145,6 +164,8 @@ def convergence(data: xr.Dataset) -> Figure:
     apart = [one for k, one in enumerate(ticks) if k == 0 or one > 1.15 * ticks[k - 1]]
     axes.set(xscale="log", ylim=(-0.02, 1.02), xlabel="number of bearings [-]", ylabel="P(stable) [-]")
     axes.set_xticks(apart, [f"{one:g}" for one in apart])
+    if ticks:
+        axes.set_xlim(0.6 * ticks[0], 1.6 * ticks[-1])
     axes.minorticks_off()
     axes.set_title("P(stable) of the least decided candidate of each environment, with its 95 % interval")
     legend_below(figure)
@@ -161,7 +182,7 @@ def drivers(data: xr.Dataset) -> Figure:
     height = max(1.7 + len(shares) * (0.1 + 0.055 * len(cases)), 3.4)
     figure, (left, right) = canvas(PAGE, height, ncols=2, width_ratios=(1.35, 1.0))
     for k, part in enumerate(parts):
-        look: Any = {"color": CYCLE[k], "marker": MARKERS[k], "ms": 3.5}
+        look: Look = {"color": CYCLE[k], "marker": MARKERS[k], "ms": 3.5}
         value, low, high = np.array([rows[:, k] for rows in shares.values()]).T
         y = np.arange(len(shares)) + 0.7 * ((k + 0.5) / len(cases) - 0.5)
         reach = np.maximum([value - low, high - value], 0.0)
@@ -184,12 +205,12 @@ def drivers(data: xr.Dataset) -> Figure:
 
 def _shares(parts: list[xr.Dataset]) -> dict[str, Array]:
     """Return the inputs to draw, each with share, low and high end of every case; chance comes last."""
-    table = [[_floats(part, f"driver_share{end}") for part in parts] for end in ("", "_low", "_high")]
+    table = np.array([[_floats(of, f"driver_share{end}") for of in parts] for end in ("", "_low", "_high")])
     found: dict[str, list[Array]] = {}
     for column, key in enumerate(parts[0]["driver"].values.astype(str)):
-        name = f"its own {key.partition('.material.')[2] or 'pocket friction'}"
+        name = f"the candidate's own {key.partition('.material.')[2] or 'pocket friction'}"
         rows = found.setdefault(name if key.startswith("ranking.") else key, [])
-        rows.append(np.array(table)[:, :, column])  # of candidates' own inputs each case has but one
+        rows.append(table[:, :, column])  # of candidates' own inputs each case has but one
     joined = {name: np.fmax.reduce(rows) for name, rows in found.items()}
     largest = {name: np.nan_to_num(rows[0]).max() for name, rows in joined.items()}
     *others, chance = joined
@@ -202,32 +223,32 @@ def film(data: xr.Dataset) -> Figure:
     figure, axes = canvas(PAGE, 4.3)
     thickness, friction = 1e6 * _floats(data, "film_thickness")[1:], _floats(data, "race_friction")
     axes.set(xscale="log", yscale="log", xlim=thickness[[0, -1]], ylim=friction[[0, -1]])
-    axes.set(xlabel="film thickness [um]", ylabel="friction of ball on race [-]")
+    axes.set(xlabel="film thickness [\N{MICRO SIGN}m]", ylabel="friction of ball on race [-]")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
         axis.set_major_formatter("{x:g}")
+    axes.set_yticks(friction)
     axes.minorticks_off()
     factor = _floats(data, "film_restitution_factor", "material", "race_friction", "film_thickness")
     below = _floats(data, "film_limit")[:, None, None] - factor[:, :, 1:]  # 0 on the line, allowed above
-    names = data["material"].values.astype(str)
+    names, labels = data["material"].values.astype(str), []
     for i in np.flatnonzero([one.min() < 0.0 <= one.max() for one in below]):
         colour = CYCLE[i % len(CYCLE)]
         lines = axes.contour(thickness, friction, below[i], levels=[0.0], colors=[colour], linewidths=1.2)
         lines.set(path_effects=[withTickedStroke(angle=90, spacing=9, length=0.5)])
-        axes.plot([], [], color=colour, label=names[i])
+        points = np.concatenate([path.vertices for path in lines.get_paths()])
+        end, y = points[np.argmax(points[:, 0])].tolist()
+        labels.append((round(y, 9), -end, names[i], colour))
+    at_edge = [(float(thickness[-1]), y, name, colour) for y, _, name, colour in sorted(labels)]
+    label_lines(axes, at_edge, gap=0.045)  # of lines that end at the top, the first from the left is highest
     label = f"ticks: the side of the films with P(stable) of {float(data['film_probability']):.2f} or more"
     axes.plot([], [], color=GREY, lw=1.2, label=label, path_effects=[withTickedStroke(angle=90, length=0.5)])
     here = 1e6 * float(data["film_thickness_here"]), float(data["race_friction_here"])
     axes.plot(*here, "o", ms=4.5, color=BLACK, clip_on=False, label="film of the study")
-    text, own = "", own_environment(data)
-    least, most = below.min(axis=(1, 2)), below.max(axis=(1, 2))
-    for same_side, words in (
-        (least >= 0.0, "every film here is allowed"),
-        (most < 0.0, "no film here is allowed"),
-    ):
-        same = names[same_side]
-        text += f"{words}: {', '.join(same)}\n" if same.size else ""
+    own, text = own_environment(data), ""
+    every, no_film = below.min(axis=(1, 2)) >= 0.0, below.max(axis=(1, 2)) < 0.0
+    for these, words in ((every, "every film here is allowed"), (no_film, "no film here is allowed")):
+        text += f"{words}: {', '.join(names[these])}\n" if these.any() else ""
     where = "" if own is None else f" in {data['environment'].values[own]}"
-    _headed(axes, f"Films that keep the cage stable{where}", text)
+    _title(axes, f"Films that keep the cage stable{where}", text)
     legend_below(figure)
     return figure

@@ -1,47 +1,40 @@
-"""How every figure looks: sizes, colours that colour-blind readers tell apart, labels at the lines."""
+"""How every figure looks: sizes, colours that colour-blind readers can distinguish, labels and heading."""
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterable, Iterator, Sequence
+import json
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+import xarray as xr
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.transforms import offset_copy
 
 from separatrix.errors import InputError
+from separatrix.units import format_quantity
+
+Look = dict[str, Any]
+"""Keyword arguments of matplotlib."""
 
 COLUMN, PAGE = 3.5, 7.0
 """Widths of one and of two columns of a journal [inch]."""
 
-BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW, BLACK = (
-    "#0072B2",
-    "#E69F00",
-    "#009E73",
-    "#D55E00",
-    "#CC79A7",
-    "#56B4E9",
-    "#F0E442",
-    "#000000",
-)
-"""Okabe and Ito's palette."""
+BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
+PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#6b6b6b"
+"""Okabe and Ito's palette, and a grey."""
 
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-GREY = "#6b6b6b"
-MARK = "*"
-"""After a friction that was asked for where nothing was tested."""
-
 MARKERS = ("o", "s", "^", "v", "P", "*", "p")
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
-
-LEADER: Any = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1.0, "shrinkB": 0.0, "relpos": (0.0, 0.5)}
-"""From a label to the end of its line."""
 
 STYLE: Any = {
     "font.family": "sans-serif",
@@ -70,12 +63,35 @@ STYLE: Any = {
     "path.simplify": True,
 }
 
+NOTHING: dict[str, Look] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": None},
+    ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+}
+"""Endings of pictures, and what is left out of each so that the same data give the same bytes."""
 
-@contextlib.contextmanager
-def journal() -> Iterator[None]:
+
+WIDTH = 122
+"""Letters on a line over the width of a page."""
+
+LINE = 0.135
+"""Height of a line [inch]."""
+
+RANDOM = ("stability", "map", "rank", "sensitivity", "sweep")
+"""Verbs whose answer depends on the seed, besides that of a single run."""
+
+OUTCOMES = {
+    "SETTLES": "the cage settles",
+    "WHIRLS": "the cage whirls",
+    "DRIFTS": "the cage drifts off",
+    "UNRESOLVED": "unresolved",
+}
+"""How a run ended, in words."""
+
+
+def journal() -> AbstractContextManager[None]:
     """Draw with this style inside the block."""
-    with mpl.rc_context(STYLE):
-        yield
+    return mpl.rc_context(STYLE)
 
 
 def canvas(width: float = COLUMN, height: float = 2.6, **grid: Any) -> tuple[Figure, Any]:
@@ -94,21 +110,13 @@ def settled(figure: Figure) -> Figure:
     return figure
 
 
-NOTHING: dict[str, dict[str, Any]] = {
-    ".png": {"Software": None},
-    ".svg": {"Date": None, "Creator": None},
-    ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
-}
-"""Endings of pictures, and what is left out of each so that the same data give the same bytes."""
-
-
 def save(figure: Figure, path: Path) -> None:
     """Write the figure in the format of the ending; the same data give the same bytes.
 
     Raises
     ------
     InputError
-        The ending is none of `NOTHING`.
+        The ending is not one of `NOTHING`.
     """
     if path.suffix not in NOTHING:
         raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
@@ -118,12 +126,23 @@ def save(figure: Figure, path: Path) -> None:
 
 def legend_below(figure: Figure, panels: Iterable[Axes] | None = None, *, columns: int = 2) -> None:
     """Name everything in these panels (or in all) once, below the picture."""
-    handles: dict[str, Any] = {}
+    handles: Look = {}
     for axes in figure.axes if panels is None else panels:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
-    look: Any = {"fontsize": 6.5, "handlelength": 2.4, "columnspacing": 1.5}
+    look: Look = {"fontsize": 6.5, "handlelength": 2.4, "columnspacing": 1.5}
     figure.legend(list(handles.values()), list(handles), loc="outside lower left", ncols=columns, **look)
+
+
+def legend_above(axes: Axes, columns: int, length: float = 1.6) -> None:
+    """Name the lines of a panel in one row at the right of its title."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=columns, handlelength=length)
+
+
+def colour_bar(mesh: ScalarMappable, panels: list[Axes], label: str, **look: Any) -> None:
+    """Explain the colours of a mesh beside its panels."""
+    bar: Any = panels[0].figure.colorbar(mesh, ax=panels, label=label, **look)
+    bar.outline.set_visible(False)
 
 
 def label_lines(
@@ -138,7 +157,7 @@ def label_lines(
     Parameters
     ----------
     axes : Axes
-        Its limits must be final.
+        Its limits and scales must be final.
     labels : sequence of (x, y, text, colour)
         Ends of the lines, in data.
     gap : float
@@ -146,22 +165,24 @@ def label_lines(
     colour : str or None
         Of the text; the line's own if None. A label that had to move is tied to its line.
     """
-    low, high = axes.get_ylim()
-    wanted = [(y - low) / (high - low) for _, y, _, _ in labels]
+    share = axes.transData - axes.transAxes
+    wanted = [float(share.transform((x, y))[1]) for x, y, _, _ in labels]
     places = spread(wanted, gap)
     moved = any(abs(place - want) > gap / 4 for place, want in zip(places, wanted, strict=True) if want < 1)
-    beside = offset_copy(axes.transData, axes.get_figure(root=True), x=12 if moved else 4, units="points")
+    upright = axes.get_xaxis_transform()  # x in data, y as a share of the height
+    beside = offset_copy(upright, axes.get_figure(root=True), x=12 if moved else 4, units="points")
     for place, want, (x, y, text, own) in zip(places, wanted, labels, strict=True):
+        leader: Look = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1.0, "shrinkB": 0.0, "relpos": (0.0, 0.5)}
         axes.annotate(
             text,
             (x, y),
-            xytext=(x, low + place * (high - low)),
+            xytext=(x, place),
             textcoords=beside,
             color=colour or own,
             va="center",
             fontsize=7.0,
             annotation_clip=False,
-            arrowprops={**LEADER, "color": own} if moved and want < 1 else None,
+            arrowprops={**leader, "color": own} if moved and want < 1 else None,
         )
 
 
@@ -170,12 +191,131 @@ def spread(wanted: Sequence[float], gap: float) -> list[float]:
     order = np.argsort(wanted, kind="stable")
     places = np.array(wanted, dtype=float)[order]
     for _ in range(200):
-        for low, high in zip(range(len(places) - 1), range(1, len(places)), strict=True):
-            lack = gap - (places[high] - places[low])
+        for low in range(places.size - 1):
+            lack = gap - (places[low + 1] - places[low])
             if lack > 1e-9:
-                places[low] -= lack / 2
-                places[high] += lack / 2
+                places[low : low + 2] += [-lack / 2, lack / 2]
         np.clip(places, 0.02, 0.98, out=places)
-    result = np.empty(len(places))
-    result[order] = places
-    return [float(value) for value in result]
+    return [float(place) for place in places[np.argsort(order)]]
+
+
+def literal(text: str) -> str:
+    """Return a text that a figure writes as it is: matplotlib takes a formula between two dollar signs."""
+    return text.replace("$", r"\$")
+
+
+def literal_texts(data: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose texts, title and study a figure writes as they are."""
+    found = data.copy()
+    for name, one in data.variables.items():
+        if one.dtype.kind in "OU" and "$" in str(one.values):
+            written = one.values.astype(object)
+            for place, text in np.ndenumerate(written):
+                written[place] = literal(text) if isinstance(text, str) else text
+            found[name] = xr.Variable(one.dims, written, one.attrs)
+    found.attrs = {name: literal(v) if isinstance(v, str) else v for name, v in data.attrs.items()}
+    if "study" in data.attrs:  # it is JSON, where a backslash is written twice
+        found.attrs["study"] = data.attrs["study"].replace("$", r"\\$")
+    return found
+
+
+def study_of(data: xr.Dataset) -> dict[str, Any]:
+    """Return the resolved study that a dataset holds; empty without one."""
+    return dict(json.loads(data.attrs.get("study", "{}")))
+
+
+def headed(figure: Figure, data: xr.Dataset) -> Figure:
+    """Write above a figure what it was made from; nothing if the dataset does not record it."""
+    lines = heading(data)
+    if lines:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(width, height + LINE * len(lines))
+        figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
+    return figure
+
+
+def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
+    """Return the title of the study, its operating point, and which run this is; each a line or two.
+
+    Parameters
+    ----------
+    data : Dataset
+        Of any verb, from `literal_texts`; what its attributes do not record is left out.
+    width : int
+        Most letters of a line.
+    """
+    study = study_of(data)
+    seed = f"seed {int(data.attrs['seed'])}" if "seed" in data.attrs else ""
+    around, run = list(_operating_point(study, varied(data))), ""
+    if "outcome" in data:
+        run = _run(data, study, seed)
+    elif data.attrs.get("verb") in RANDOM and seed:
+        around.append(seed)
+    parts = str(data.attrs.get("title", "")), "; ".join(around), run
+    return [line for part in parts for line in cut(part, width)]
+
+
+def quantity(value: float, unit: str) -> str:
+    """Return a number with the unit that an engineer would write it in."""
+    return format_quantity(value, unit).replace(" um", " \N{MICRO SIGN}m")
+
+
+def cut(text: str, width: int) -> list[str]:
+    """Return a text on at most two lines."""
+    return textwrap.wrap(text, width, max_lines=2, placeholder=" ...")
+
+
+def varied(data: xr.Dataset) -> set[str]:
+    """Return the last words of the keys that a map or a sweep varies: the study's own values are not used."""
+    axes = [str(data[key].values) for key in ("x_parameter", "y_parameter") if key in data]
+    cases = data["parameter"].values if "parameter" in data else ()
+    return {str(name).rpartition(".")[2] for name in (*axes, *cases)}
+
+
+def _operating_point(study: Mapping[str, Any], without: set[str]) -> Iterator[str]:
+    """Yield medium, speed and load, and film, as far as the study gives them and nothing varies them."""
+
+    def known(section: str, key: str) -> Any:
+        return None if key in without else study.get(section, {}).get(key, {}).get("value")
+
+    fluid, temperature = known("operation", "fluid"), known("operation", "temperature")
+    medium = [str(fluid)] if fluid else []
+    medium += [quantity(temperature, "K")] if temperature else []
+    if medium:
+        yield ", ".join(medium)
+    for key, words in (("inner_speed", "inner ring"), ("outer_speed", "outer ring")):
+        if known("operation", key):
+            yield f"{words} {quantity(known('operation', key), 'rad/s')}"
+    for key, words in (("axial_load", "axial"), ("radial_load", "radial")):
+        if known("operation", key):
+            yield f"{quantity(known('operation', key), 'N')} {words}"
+    film = study.get("film", {})
+    if not film.get("is_bare", not film):
+        thickness = known("film", "thickness")
+        of = "" if thickness is None else f", {quantity(thickness, 'm')}"
+        yield f"{_material(film)}{of}"
+    elif film:
+        yield "bare races"
+
+
+def _material(section: Mapping[str, Any]) -> str:
+    """Return the name of the material of a section; empty without one."""
+    record = section.get("material") or {}
+    return str(record.get("name") or record.get("value") or "")
+
+
+def _run(data: xr.Dataset, study: Mapping[str, Any], seed: str) -> str:
+    """Return friction and whose it is, kick, number and seed of a run, and how it ended."""
+    parts = []
+    if "cage_ball_cage_friction" in data:
+        cage = study.get("cage", {})
+        entry = cage.get("ball_cage_friction", {})
+        candidate = entry.get("candidate")
+        whose = f"{candidate} in {entry['environment']}" if candidate else _material(cage)
+        value = float(data["cage_ball_cage_friction"])
+        parts.append(f"pocket friction {value:.3g}{f' ({whose})' if whose else ''}")
+    parts.append(f"kick {float(data['kick']):g} m/s")
+    parts += [f"run {int(data['run'])}"] if "run" in data else []
+    parts += [seed] if seed else []
+    word, length = str(data["outcome"].values), 1e3 * float(data["time"].values[-1])
+    return f"{', '.join(parts)}: {OUTCOMES.get(word, word)} (run of {length:.4g} ms)"

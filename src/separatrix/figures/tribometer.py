@@ -12,11 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.heading import LINE
-from separatrix.figures.literal import literal
-from separatrix.figures.style import BLUE, GREEN, GREY, ORANGE, PAGE, SKY, VERMILION, journal, settled
-from separatrix.tribometer.flags import at
-from separatrix.tribometer.reduction import GIVEN
+from separatrix.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    LINE,
+    ORANGE,
+    PAGE,
+    SKY,
+    VERMILION,
+    journal,
+    literal,
+    settled,
+)
+from separatrix.friction.records import in_words
+from separatrix.friction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 
 ROWS = 2.1
@@ -29,7 +39,7 @@ MOST_LINES = 3
 """Lines that one flag may take."""
 
 WHITE: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
-"""Look of a legend that lies over lines."""
+"""Look of a legend over lines."""
 
 NAMES = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}
 
@@ -55,7 +65,7 @@ def page(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : Dataset
-        From `separatrix.results.friction_tests.page_data`, or loaded from where that was saved.
+        From `separatrix.present.tribometer.page_data`, or loaded from where that was saved.
     """
     with journal():
         return settled(_page(data))
@@ -121,7 +131,7 @@ def numbers(data: xr.Dataset) -> str:
     """Return the friction of the test with its interval, and what it was made from."""
     mean, half, error = (float(data[name]) for name in ("friction", "half_width", "standard_error"))
     cycles, axis = data.attrs["cycles"], str(data.attrs["axis"])
-    start, end = (at(float(data[name]), axis) for name in ("run_in_end", "steady_end"))
+    start, end = (in_words(float(data[name]), axis) for name in ("run_in_end", "steady_end"))
     start += " (given)" if data.attrs["run_in_method"] == GIVEN else ""
     return (
         f"Friction {format_number(mean)} \N{PLUS-MINUS SIGN} {format_number(half, 2)} (95 %) from {start} "
@@ -194,7 +204,7 @@ def _distribution(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _correlation(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the correlation of spans against their distance, with the length that the spectrum gives."""
+    """Draw the correlation of spans against their distance, with the length from the spectrum."""
     size, label = scale(data)
     lag = np.asarray(data["lag"].values) / size
     bound = 2.0 / np.sqrt(data.sizes["span"])

@@ -1,20 +1,29 @@
 """Which cage material: verdict, margin, rank and reason for each candidate."""
 
-from separatrix.ranking.friction import frictions_seen
 from separatrix.ranking.lowest import LowestFriction, probability_lowest
 from separatrix.ranking.order import ranks
 from separatrix.ranking.rank import rank, ranking_question
 from separatrix.ranking.reason import PAPER_STATEMENT
-from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
+from separatrix.ranking.records import (
+    NotFinished,
+    NotMeasured,
+    OwnCurve,
+    Ranked,
+    RankedEnvironment,
+    Ranking,
+    Row,
+)
 
 __all__ = [
     "PAPER_STATEMENT",
     "LowestFriction",
+    "NotFinished",
+    "NotMeasured",
     "OwnCurve",
+    "Ranked",
     "RankedEnvironment",
-    "RankedMaterial",
     "Ranking",
-    "frictions_seen",
+    "Row",
     "probability_lowest",
     "rank",
     "ranking_question",

@@ -9,35 +9,25 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
-from separatrix.chain import CageState, cage_state
-from separatrix.draws import UncertainInput, sample
+from separatrix.chain.solution import Solution, solve
+from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.friction_fit import TestedFriction
-from separatrix.ranking.friction import as_pockets_see, conditions_of
+from separatrix.friction.fit import TestedFriction
 from separatrix.runner import Runner, joined
 from separatrix.study import Friction, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio
 
-
-class Case(NamedTuple):
-    """A candidate in an environment; "" for the mean friction over all."""
-
-    candidate: str
-    environment: str
-
-
 # Gives another cage for the one of a bearing, by its place.
 Change = Callable[[int, PlanarCage], PlanarCage]
 
-# Cage of each candidate, by its name.
-States = Mapping[str, CageState]
+# Solution of each candidate, by its name.
+Solutions = Mapping[str, Solution]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,17 +37,19 @@ class DrawnBearings:
     Attributes
     ----------
     study : Study
-        With the frictions of its tests as the central pockets see them.
+        As it is stated.
+    stated : mapping
+        Friction of each measured case that is drawn: from tests as the central pocket sees it.
     inputs : tuple of UncertainInput
         What is drawn.
     scores : ndarray
         Draws as standard normal numbers of the same probability, shape (run, input) [-].
     central : mapping
-        Cage of each candidate with every input at its central value.
+        Chain of each candidate with every input at its central value.
     runs : tuple of int
         Numbers of the runs whose draw makes a bearing.
-    states : tuple
-        Cages of each of them.
+    solved : tuple
+        Chains of each of them.
     friction : mapping
         Pocket friction of each case, shape (run,) [-].
     failures : tuple of str
@@ -65,11 +57,12 @@ class DrawnBearings:
     """
 
     study: Study
+    stated: Mapping[Case, Friction]
     inputs: tuple[UncertainInput, ...]
     scores: Array
-    central: States
+    central: Solutions
     runs: tuple[int, ...]
-    states: tuple[States, ...]
+    solved: tuple[Solutions, ...]
     friction: Mapping[Case, Array]
     failures: tuple[str, ...]
 
@@ -84,7 +77,7 @@ class DrawnBearings:
 
     def cage(self, case: Case) -> PlanarCage:
         """Cage of a case with every input at its central value, without friction."""
-        return self.central[case.candidate].cage
+        return self.central[case.candidate].cage_with(0.0)
 
     def ensemble(
         self,
@@ -111,16 +104,16 @@ class DrawnBearings:
 
         Raises
         ------
-        Stopped
+        Interrupted
             The work was interrupted before the last run.
         """
         parts = []
         for place in places:
-            state = self.states[place][case.candidate]
-            cage = replace(state.cage, ball_cage_friction=float(self.friction[case][place]))
+            own = self.solved[place][case.candidate]
+            cage = own.cage_with(float(self.friction[case][place]))
             cage = cage if change is None else change(place, cage)
             parts.append(
-                runner.ensemble(cage, state.stability, kicks=kicks, runs=1, first_run=self.runs[place])
+                runner.ensemble(cage, own.stability, kicks=kicks, runs=1, first_run=self.runs[place])
             )
         return joined(parts)
 
@@ -143,86 +136,96 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
     InputError
         Nothing is uncertain, or no draw makes a bearing.
     """
-    asked = as_pockets_see(study)
-    draws, numbers = sample(asked, runs), study_numbers(asked)
-    put, failures = draws.setter(), []
-    made: list[tuple[int, Study, States]] = []
+    made: list[tuple[int, Study, Solutions]] = []
+    failures = []
     with warnings.catch_warnings():  # each draw would repeat those of the central values
         warnings.simplefilter("ignore", ValidityWarning)
-        central = _states(asked)
+        central = _solutions(study)
+        stated = frictions_to_draw(study, central)
+        draws, numbers = sample(study, runs, frictions=stated), study_numbers(study)
+        put = draws.setter()
         alike = all(numbers[key].is_friction for key in draws.names if key in numbers)
         for run, row in enumerate(draws.values.tolist()):
             try:
                 drawn = put(row)
-                made.append((run, drawn, central if alike else _states(drawn)))
+                own = central if alike else _solutions(drawn)
+                for one in own.values():
+                    one.cage_with(0.0)  # refused here, not in a thread
+                made.append((run, drawn, own))
             except SeparatrixError as error:
                 failures.append(str(error))
-    if not made:
-        raise InputError(study.name, "makes no bearing in any draw of its uncertain inputs", failures[0])
+        if not made:
+            rule = "makes no bearing in any draw of its uncertain inputs"
+            raise InputError(study.name, rule, failures[0])
+        friction = _frictions(stated, central, made)
     return DrawnBearings(
-        study=asked,
+        study=study,
+        stated=stated,
         inputs=draws.inputs,
         scores=ndtri(draws.probabilities[[run for run, _, _ in made]]),
         central=central,
         runs=tuple(run for run, _, _ in made),
-        states=tuple(states for _, _, states in made),
-        friction=_frictions(asked, central, made),
+        solved=tuple(own for _, _, own in made),
+        friction=friction,
         failures=tuple(failures),
     )
 
 
-def _states(study: Study) -> States:
-    """Cage of each candidate, without friction."""
-    ranking = study.ranking
-    return {
-        one.name: cage_state(study, material=one.material, friction=0.0)
-        for one in (ranking.candidates if ranking else ())
-    }
+def frictions_to_draw(study: Study, central: Solutions | None = None) -> dict[Case, Friction]:
+    """Measured friction of each case; one from tests as the pocket sees it, with its scatter there.
 
-
-def _frictions(study: Study, central: States, made: Sequence[tuple[int, Study, States]]) -> dict[Case, Array]:
-    """Pocket friction of each case and made bearing; the mean over the environments as case ""."""
-    found: dict[Case, Array] = {}
-    for place, candidate in enumerate(study.ranking.candidates if study.ranking else ()):
-        for environment, friction in candidate.friction.items():
-            if friction is not None:
-                drawn = [_mean(one, place, environment) for _, one, _ in made]
-                moved = _moved(study, friction, candidate.name, central, made)
-                found[Case(candidate.name, environment)] = np.array(drawn) * moved
-        own = [values for case, values in found.items() if case.candidate == candidate.name]
-        if own:
-            found[Case(candidate.name, "")] = np.mean(own, axis=0)
+    A friction that is stated without tests keeps its own scatter: how much it differs in the pocket is not
+    known. `extrapolation` names for both what was not tested.
+    """
+    found = stated_frictions(study)
+    for case, friction in found.items():
+        if friction.law is None:
+            continue
+        solution = (central or _solutions(study))[case.candidate]
+        seen = solution.frictions[case.environment] or friction
+        of_tests = isinstance(friction.law, TestedFriction)
+        found[case] = seen if of_tests else replace(friction, extrapolation=seen.extrapolation)
     return found
 
 
-def _mean(study: Study, place: int, environment: str) -> Ratio:
-    """Mean friction of a candidate in a drawn study."""
-    friction = study.ranking.candidates[place].friction[environment] if study.ranking else None
+def _solutions(study: Study) -> Solutions:
+    """Chain of each candidate."""
+    ranking = study.ranking
+    return {one.name: solve(study, one) for one in (ranking.candidates if ranking else ())}
+
+
+def _frictions(
+    stated: Mapping[Case, Friction], central: Solutions, made: Sequence[tuple[int, Study, Solutions]]
+) -> dict[Case, Array]:
+    """Pocket friction of each case and made bearing; the mean over the environments as case ""."""
+    found: dict[Case, Array] = {}
+    for case, friction in stated.items():
+        drawn = [_mean(one, case) for _, one, _ in made]
+        found[case] = np.array(drawn) * _moved(friction, case.candidate, central, made)
+    for name in central:
+        own = [values for case, values in found.items() if case.candidate == name]
+        if own:
+            found[Case(name, "")] = np.mean(own, axis=0)
+    return found
+
+
+def _mean(study: Study, case: Case) -> Ratio:
+    """Mean friction of a case in a drawn study."""
+    candidates = study.ranking.candidates if study.ranking else ()
+    friction = next(one.friction[case.environment] for one in candidates if one.name == case.candidate)
     if friction is None:
-        raise LookupError(environment)
+        raise LookupError(case)
     return friction.mean
 
 
 def _moved(
-    study: Study, friction: Friction, name: str, central: States, made: Sequence[tuple[int, Study, States]]
+    friction: Friction, name: str, central: Solutions, made: Sequence[tuple[int, Study, Solutions]]
 ) -> Array:
     """Friction from tests in the pocket of each bearing, over that in the central one; else ones."""
     if not isinstance(friction.law, TestedFriction):
         return np.ones(len(made))
-    fit = friction.law.fitted(study.operation.temperature)
-    pockets = [conditions_of(study, central[name])]
-    pockets += [conditions_of(drawn, states[name]) for _, drawn, states in made]
+    fit = friction.law.fitted(central[name].study.operation.temperature)
+    pockets = [central[name].pocket, *(own[name].pocket for _, _, own in made)]
     speed, pressure = (np.array([getattr(p, key) for p in pockets]) for key in ("slip_speed", "pressure"))
     log = fit.log_mean(slip_speed=speed, pressure=pressure)
     return np.asarray(np.exp(log[1:] - log[0]))
-
-
-def over_inputs(found: Judgement) -> dict[str, Any]:
-    """Return what a row of a ranking takes from the judgement over the uncertain inputs."""
-    return {
-        "uncertain_verdict": found.verdict.name,
-        "uncertain_probability_stable": found.probability_stable,
-        "uncertain_probability_low": found.probability_low,
-        "uncertain_probability_high": found.probability_high,
-        "uncertain_runs": found.runs,
-    }

@@ -10,16 +10,14 @@ from separatrix.units import Ratio
 
 if TYPE_CHECKING:
     from separatrix.ranking.friction import MeanFriction
-    from separatrix.ranking.records import RankedMaterial
+    from separatrix.ranking.records import Ranked
 
 Interval = tuple[Ratio, Ratio, Ratio]
 """A margin with the low and the high end of its scatter."""
 
 
-def ranks(
-    margins: Sequence[Interval | None], tied: Callable[[int, int], bool] | None = None
-) -> list[int | None]:
-    """Rank of each margin, the largest first; None stays None.
+def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None = None) -> list[int]:
+    """Rank of each margin, the largest first.
 
     The best one leads the first group. Whoever cannot be told from the leader is tied with it; the best of
     the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3). Groups are told by
@@ -28,14 +26,14 @@ def ranks(
     Parameters
     ----------
     margins : sequence
-        (value, low, high) of each candidate, or None [-].
+        (value, low, high) of each candidate [-].
     tied : callable, optional
         Whether the first of two cannot be told from the second, its leader; by default if their intervals
         meet.
     """
     alike = tied or (lambda i, leader: meet(margins[i], margins[leader]))
-    order = sorted((i for i, t in enumerate(margins) if t is not None), key=lambda i: _best_first(margins, i))
-    found: list[int | None] = [None] * len(margins)
+    order = sorted(range(len(margins)), key=lambda i: (-margins[i][0], -margins[i][2]))
+    found = [0] * len(margins)
     leader, rank = None, 0
     for place, i in enumerate(order, start=1):
         if leader is None or not alike(i, leader):
@@ -44,21 +42,16 @@ def ranks(
     return found
 
 
-def _best_first(margins: Sequence[Interval | None], i: int) -> tuple[float, float]:
-    found = margins[i]
-    return (0.0, 0.0) if found is None else (-found[0], -found[2])
-
-
-def meet(other: Interval | None, leader: Interval | None) -> bool:
+def meet(other: Interval, leader: Interval) -> bool:
     """Whether the interval of the smaller margin reaches that of its leader."""
-    return other is not None and leader is not None and other[2] >= leader[1]
+    return other[2] >= leader[1]
 
 
-def same_rank(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, MeanFriction]) -> bool:
+def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
     """Whether a row and the leader of its group do not differ beyond their scatter.
 
-    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions tell;
-    with another pocket stiffness there are another curve and eta, and the intervals of the margins tell.
+    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions decide;
+    with another pocket stiffness there are another curve and eta, and the intervals of the margins decide.
     """
     if row.margin == leader.margin:
         return True
@@ -67,9 +60,7 @@ def same_rank(row: RankedMaterial, leader: RankedMaterial, known: Mapping[str, M
     return meet(margin_interval(row), margin_interval(leader))
 
 
-def margin_interval(row: RankedMaterial) -> Interval | None:
+def margin_interval(row: Ranked) -> Interval:
     """Margin with the ends of its interval, those of the threshold less the restitution factor."""
-    low, high, eta = row.restitution_threshold_low, row.restitution_threshold_high, row.restitution_factor
-    if row.margin is None or low is None or high is None or eta is None:
-        return None
-    return row.margin, low - eta, high - eta
+    eta = row.restitution_factor
+    return row.margin, row.restitution_threshold_low - eta, row.restitution_threshold_high - eta

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Protocol
+from typing import NamedTuple
 
 from separatrix.cage import KickCount
-from separatrix.chain import CageState
-from separatrix.pocket_contact import contact_radius
-from separatrix.restitution import hertz_coefficient
+from separatrix.chain.pocket_contact import contact_radius
+from separatrix.chain.restitution import hertz_coefficient
+from separatrix.chain.solution import Solution
 from separatrix.study import BallBearing, Material, Study
 from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
 
@@ -22,38 +22,26 @@ YIELDS: Ratio = 1.6
 yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
 
 
-class Moved(Protocol):
-    """A row of an answer: whose cage, and what its runs showed; None where there is none."""
+class Moved(NamedTuple):
+    """Whose cage moved, the largest pocket force and offset in any run, and where the runs ended."""
 
-    @property
-    def name(self) -> str:
-        """The candidate."""
-
-    @property
-    def largest_contact_force(self) -> Newton | None:
-        """Between a ball and its pocket, in any run [N]."""
-
-    @property
-    def largest_offset(self) -> Metre | None:
-        """Of the cage centre, in any run [m]."""
-
-    @property
-    def by_kick(self) -> tuple[KickCount, ...] | None:
-        """Where the runs from every kick end."""
+    name: str
+    largest_contact_force: Newton
+    largest_offset: Metre
+    by_kick: tuple[KickCount, ...] = ()
 
 
-def transmitted_force(study: Study, state: CageState) -> Newton:
+def transmitted_force(solution: Solution) -> Newton:
     """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
-    contacts = state.restitution.traction.bearing
-    return study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
+    contacts = solution.bearing
+    return solution.study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
 
 
-def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iterator[str]:
+def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
-    judged = [row for row in rows if row.largest_contact_force is not None]
-    if not judged:
+    if not rows:
         return
-    most, limit = max(row.largest_contact_force or 0.0 for row in judged), transmitted_force(study, state)
+    most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
     if most > limit:
         yield (
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
@@ -61,21 +49,22 @@ def beyond_motion(study: Study, state: CageState, rows: Sequence[Moved]) -> Iter
             "the ball slips, and the linear race damping is outside its range. It then returns too much "
             "speed to the cage; what that does to a verdict is not known."
         )
-    yield from _beyond_strength(study, judged)
-    gap = state.cage.land_gap
-    far = [row for row in judged if (row.largest_offset or 0.0) > BEYOND_LAND * gap]
+    yield from _beyond_strength(solution.study, rows)
+    cage = solution.cage_with(0.0)
+    gap = cage.land_gap
+    far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
     if far:
-        worst = max(row.largest_offset or 0.0 for row in far)
-        names = "All" if len(far) == len(judged) > 1 else ", ".join(row.name for row in far)
+        worst = max(row.largest_offset for row in far)
+        names = "All" if len(far) == len(rows) > 1 else ", ".join(row.name for row in far)
         yield (
             f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
             f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "
             "stiffness decides such numbers, a real cage may break first: they are bounds."
         )
-    kept = {row.name: text for row in judged if (text := _kept_by_land(row))}
+    kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
     if kept:
         yield (
-            f"Friction on the land, {state.cage.land_friction:g}, keeps the cage whirling in some runs: "
+            f"Friction on the land, {cage.land_friction:g}, keeps the cage whirling in some runs: "
             f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
             "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
         )
@@ -93,7 +82,7 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
     own = study.cage.material if study.cage else None
     said = []
     for row in rows:
-        wall, force = walls.get(row.name, own), row.largest_contact_force or 0.0
+        wall, force = walls.get(row.name, own), row.largest_contact_force
         if wall is None or wall.compressive_strength is None or force == 0.0:
             continue
         pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength
@@ -110,6 +99,6 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
 
 def _kept_by_land(row: Moved) -> str:
     """In how many runs from which kick, for one candidate; empty if in none."""
-    counts = [count for count in row.by_kick or () if count.kept_by_land]
+    counts = [count for count in row.by_kick if count.kept_by_land]
     runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)
     return f"{row.name} {', '.join(runs)}" if counts else ""

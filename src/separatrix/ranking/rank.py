@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -10,19 +10,11 @@ import numpy as np
 
 from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
-from separatrix.chain import CageState, cage_state
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.chain.solution import Solution, solve
+from separatrix.draws import Case
 from separatrix.errors import InputError
-from separatrix.ledger import Ledger
-from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings, over_inputs
-from separatrix.ranking.friction import MeanFriction, candidate_seen, conditions_of, measured, overall
-from separatrix.ranking.lowest import lowest_among
-from separatrix.ranking.order import margin_interval, ranks, same_rank
-from separatrix.ranking.plausible import beyond_motion
-from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
-from separatrix.ranking.records import OwnCurve, RankedEnvironment, RankedMaterial, Ranking
-from separatrix.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.runner import Progress, Runner
-from separatrix.stability import (
+from separatrix.limits import (
     CriticalFriction,
     GrowthCounter,
     RestitutionThreshold,
@@ -32,8 +24,24 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import HERE, Node, height
-from separatrix.stability.threshold import rising
+from separatrix.limits.curve import HERE, Node, height
+from separatrix.limits.threshold import rising
+from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
+from separatrix.ranking.friction import MeanFriction, measured, overall
+from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.order import margin_interval, ranks, same_rank
+from separatrix.ranking.plausible import Moved, beyond_motion
+from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
+from separatrix.ranking.records import (
+    NotFinished,
+    NotMeasured,
+    OwnCurve,
+    Ranked,
+    RankedEnvironment,
+    Ranking,
+    Row,
+)
+from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
 
@@ -43,18 +51,13 @@ Key = tuple[NewtonPerMetre, Ratio]
 Piece = tuple[NewtonPerMetre, Ratio | Node] | Case
 """Piece of work: a verdict, or with the pocket stiffness a node of its curve; a case's drawn bearings."""
 
-EVIDENCE = {f.name for f in fields(Judgement)} - {
-    *("verdict", "cage_motion", "reason", "pocket_impact_shares")
-}
-"""What a row takes from its judgement as it is."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Question:
-    """Cages by pocket stiffness, and the frictions of the candidates with them."""
+    """Solutions by pocket stiffness, and the frictions of the candidates with them."""
 
     settings: StabilitySettings
-    cages: Mapping[NewtonPerMetre, CageState]
+    cages: Mapping[NewtonPerMetre, Solution]
     tracers: Mapping[NewtonPerMetre, Tracer]
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
@@ -74,31 +77,27 @@ class _Findings:
     complete: bool
 
 
-def rank(
-    study: Study, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
-) -> Ranking:
+def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     """Rank the candidate cage materials of a study.
 
     Parameters
     ----------
     study : Study
         With [cage] and [ranking].
-    jobs : int
-        Threads; the numbers do not depend on it.
-    progress : callable, optional
-        Called with (done, total) pieces of work.
-    ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
 
     Returns
     -------
     Ranking
-        For each environment and overall; what an interrupt left out is None, with that reason.
+        For each environment and overall.
 
     Raises
     ------
     InputError
         The study has no candidates, or its environment or a candidate's pocket stiffness is not known.
+    Interrupted
+        With a ranking in which what was not finished is None, with that reason.
 
     Notes
     -----
@@ -108,55 +107,55 @@ def rank(
     """
     asked = ranking_question(study)
     environment = required_environment(study, asked)
-    question = _question(study, asked, Runner(jobs=jobs, progress=progress, ledger=ledger))
-    candidates = [
-        candidate_seen(study, c, question.cages[question.stiffness[c.name]]) for c in asked.candidates
-    ]
+    question = _question(study, asked, runner or Runner())
+    seen = {c.name: solve(study, c).frictions for c in asked.candidates}
     frictions = {
-        place: {c.name: measured(f) if (f := c.friction.get(place)) else None for c in candidates}
+        place: {name: measured(f) if (f := own.get(place)) else None for name, own in seen.items()}
         for place in asked.environments
     }
-    means = {c.name: overall(c.friction.get(e) for e in asked.environments) for c in candidates}
+    means = {name: overall(own.get(e) for e in asked.environments) for name, own in seen.items()}
     tables = (*frictions.values(), means)
     keys = sorted(
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
     question = replace(question, tracers=_tracers(question, study.stability, keys))
-    found = _compute(question, keys)
-    ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
-    return Ranking(
-        environment=environment,
-        candidate=reference_candidate(study, asked).name,
-        restitution_factor=_eta(question, question.reference),
-        restitution_factor_free_spin=(
-            question.cages[question.reference].restitution.restitution.restitution_factor_free_spin
-        ),
-        ball_cage_stiffness=question.reference,
-        pocket=conditions_of(study, question.cages[question.reference]),
-        friction_scatter=asked.friction_scatter,
-        solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
-        paper_statement=PAPER_STATEMENT,
-        environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
-        overall=_ranked(question, found, means, ""),
-        stability=_curve(question, found),
-        **_own_curves(question, found),
-        kicks=question.settings.kicks,
-        runs=question.settings.runs,
-        duration=question.settings.duration,
-        notes=_notes(study, asked, question, ranked[environment]),
-        complete=found.complete,
-    )
+
+    def ranking(found: _Findings) -> Ranking:
+        ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
+        reference = question.cages[question.reference]
+        return Ranking(
+            environment=environment,
+            candidate=reference_candidate(study, asked).name,
+            restitution_factor=_eta(question, question.reference),
+            restitution_factor_free_spin=reference.restitution.restitution_factor_free_spin,
+            ball_cage_stiffness=question.reference,
+            pocket=reference.pocket,
+            friction_scatter=asked.friction_scatter,
+            solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
+            paper_statement=PAPER_STATEMENT,
+            environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
+            overall=_ranked(question, found, means, ""),
+            stability=_curve(question, found),
+            **_own_curves(question, found),
+            kicks=question.settings.kicks,
+            runs=question.settings.runs,
+            duration=question.settings.duration,
+            notes=_notes(study, asked, question, ranked[environment]),
+            complete=found.complete,
+        )
+
+    return _compute(question, keys, ranking)
 
 
-def _notes(
-    study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[RankedMaterial]
-) -> tuple[str, ...]:
+def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
     other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
     failures = question.drawn.failures if question.drawn else ()
     left_out = f"{len(failures)} of {study.stability.runs} draws of the uncertain inputs make no bearing: "
     said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
-    return (*said, *beyond_motion(study, question.cages[question.reference], rows))
+    judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
+    moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
+    return (*said, *beyond_motion(question.cages[question.reference], moved))
 
 
 def ranking_question(study: Study) -> RankingQuestion:
@@ -174,14 +173,14 @@ def ranking_question(study: Study) -> RankingQuestion:
 
 
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
-    states = {c.name: cage_state(study, material=c.material, friction=0.0) for c in asked.candidates}
-    cages = {state.cage.ball_cage_stiffness: state for state in states.values()}
-    reference = states[reference_candidate(study, asked).name].cage.ball_cage_stiffness
+    solved = {c.name: solve(study, c) for c in asked.candidates}
+    cages = {one.ball_cage_stiffness: one for one in solved.values()}
+    reference = solved[reference_candidate(study, asked).name].ball_cage_stiffness
     return _Question(
         settings=cages[reference].stability,
         cages=cages,
         tracers={},
-        stiffness={name: state.cage.ball_cage_stiffness for name, state in states.items()},
+        stiffness={name: one.ball_cage_stiffness for name, one in solved.items()},
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
         runner=runner,
@@ -195,43 +194,48 @@ def _tracers(
     factors = threshold_factors(settings)
     return {
         k: Tracer(
-            GrowthCounter(state.cage, settings, question.runner),
+            GrowthCounter(one.cage_with(0.0), settings, question.runner),
             factors,
             band=False,
             frictions=None if k == question.reference else [f for stiffness, f in keys if stiffness == k],
         )
-        for k, state in question.cages.items()
+        for k, one in question.cages.items()
     }
 
 
 def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
-    return question.cages[stiffness].restitution.restitution.restitution_factor
+    return question.cages[stiffness].restitution.restitution_factor
 
 
-def _compute(question: _Question, keys: Sequence[Key]) -> _Findings:
-    """Critical frictions and verdicts, all in one row of work for the threads."""
+def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findings], Ranking]) -> Ranking:
+    """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
     verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
     cases: list[Case] = list(question.drawn.friction) if question.drawn else []
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
-    results = question.runner.work_out(
+
+    def ranked(results: Mapping[Piece, CriticalFriction | Judgement]) -> Ranking:
+        points = {k: _points_of(results, k) for k in question.cages}
+        here = points[question.reference].pop((HERE, None), None)
+        judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
+        drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
+        traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
+        every = (len(judged), len(drawn)) == (len(keys), len(cases))
+        return ranking(
+            _Findings(
+                points={k: rising(found.values()) for k, found in points.items()},
+                here=here,
+                judgements=judged,
+                drawn=drawn,
+                traced=traced,
+                complete=here is not None and all(traced.values()) and every,
+            )
+        )
+
+    return question.runner.work_out(
         lambda piece: _computed(question, piece),
         [*verdicts, *cases, (question.reference, (HERE, None)), *nodes],
+        into=ranked,
         more=lambda piece, results: _more(question, piece, results),
-    )
-    points = {k: _points_of(results, k) for k in question.cages}
-    here = points[question.reference].pop((HERE, None), None)
-    judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
-    drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
-    traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-    return _Findings(
-        points={k: rising(found.values()) for k, found in points.items()},
-        here=here,
-        judgements=judged,
-        drawn=drawn,
-        traced=traced,
-        complete=here is not None
-        and all(traced.values())
-        and (len(judged), len(drawn)) == (len(keys), len(cases)),
     )
 
 
@@ -243,7 +247,7 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
     stiffness, what = piece
     if isinstance(what, tuple):
         return question.tracers[stiffness].point(what)
-    cage = replace(question.cages[stiffness].cage, ball_cage_friction=what)
+    cage = question.cages[stiffness].cage_with(what)
     return judge(cage, question.runner.whole_ensemble(cage, question.settings))
 
 
@@ -279,7 +283,7 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
-    cage, complete = question.cages[question.reference].cage, found.traced[question.reference]
+    cage, complete = question.cages[question.reference].cage_with(0.0), found.traced[question.reference]
     return curve_of_points(
         cage,
         question.settings,
@@ -287,7 +291,6 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
         band=False,
         here=found.here,
         complete=complete,
-        jobs=question.runner.jobs,
     )
 
 
@@ -309,44 +312,36 @@ def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
 
 def _ranked(
     question: _Question, found: _Findings, table: Mapping[str, MeanFriction | None], environment: str
-) -> tuple[RankedMaterial, ...]:
+) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
-    rows = [_row(question, found, name, friction, environment) for name, friction in table.items()]
     known = {name: friction for name, friction in table.items() if friction is not None}
+    chances = lowest_among(known).probabilities
+    rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
+    judged = [row for row in rows if isinstance(row, Ranked)]
     places = ranks(
-        [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
+        [margin_interval(row) for row in judged],
+        lambda i, leader: same_rank(judged[i], judged[leader], known),
     )
-    lowest = lowest_among(known)
-    chances = [lowest.probabilities.get(row.name) for row in rows]
-    ranked = [
-        replace(row, rank=place, probability_lowest_friction=chance)
-        for row, place, chance in zip(rows, places, chances, strict=True)
-    ]
-    return tuple(sorted(ranked, key=_best_first))
-
-
-def _best_first(row: RankedMaterial) -> tuple[int, float, float]:
-    last = row.rank is None
+    ranked = [replace(row, rank=place) for row, place in zip(judged, places, strict=True)]
     return (
-        10**9 if row.rank is None else row.rank,
-        0.0 if last else -(row.margin or 0.0),
-        row.friction or 0.0,
+        *sorted(ranked, key=lambda row: (row.rank, -row.margin, row.friction)),
+        *sorted((row for row in rows if isinstance(row, NotFinished)), key=lambda row: row.friction),
+        *(NotMeasured(name=n, reason=not_measured(environment)) for n, f in table.items() if f is None),
     )
 
 
 def _row(
-    question: _Question, found: _Findings, name: str, friction: MeanFriction | None, environment: str
-) -> RankedMaterial:
+    question: _Question, found: _Findings, case: Case, friction: MeanFriction, chance: Ratio | None
+) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
-    if friction is None:
-        return RankedMaterial(name=name, reason=not_measured(environment))
-    stiffness = question.stiffness[name]
+    stiffness = question.stiffness[case.candidate]
     eta = _eta(question, stiffness)
-    row = RankedMaterial(
-        name=name,
+    row = NotFinished(
+        name=case.candidate,
         friction=friction.mean,
         friction_error=friction.error,
         friction_deviation=friction.deviation,
+        probability_lowest_friction=chance,
         friction_scatter_assumed=friction.assumed,
         extrapolation=friction.extrapolation,
         ball_cage_stiffness=stiffness,
@@ -358,27 +353,19 @@ def _row(
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    judged = replace(
-        row,
-        verdict=judgement.verdict.name,
-        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.value,
-        reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.",
-        pocket_impact_shares=tuple(judgement.pocket_impact_shares.tolist()),
-        **{name: getattr(judgement, name) for name in EVIDENCE},
-    )
-    if drawn := found.drawn.get(Case(name, environment)):
-        judged = replace(judged, **over_inputs(drawn))
+    drawn = found.drawn.get(case)
     threshold = _threshold(found, stiffness, friction)
     if threshold is None:
-        return judged
-    return replace(
-        judged,
+        unfinished = f"{judgement.reason} Its threshold: {NOT_FINISHED}."
+        return replace(row, judgement=judgement, over_inputs=drawn, reason=unfinished)
+    measured = {f.name: getattr(row, f.name) for f in fields(row)}
+    return Ranked(
+        **measured | {"judgement": judgement, "over_inputs": drawn, "reason": reason(threshold, judgement)},
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
-        reason=reason(threshold, judgement),
     )
 
 

@@ -8,10 +8,9 @@ from pathlib import Path
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
-from separatrix.study_file.document import Document, find, load
+from separatrix.study_file.document import find, load, shipped_studies
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import build_study
-from separatrix.study_file.shipped import shipped_studies, template
 from separatrix.units import printable
 
 __all__ = ["read_study", "require", "resolved", "shipped_studies", "template"]
@@ -31,27 +30,17 @@ def read_study(study: str | Path) -> Study:
         It asks for more than the model is good for; what, and what to do.
     """
     path = find(study)
-    built = _built(load(path), _name_of(path))
+    # a folder of answers has this name: never dots alone
+    name = printable(path.stem if path.stem.strip(".") else path.name, 100)
+    built = build_study(load(path), name)
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
     return built
 
 
-def _name_of(path: Path) -> str:
-    """Name of a study, and of the folder of its answers: the file's without its ending, never dots alone."""
-    return printable(path.stem if path.stem.strip(".") else path.name, 100)
-
-
-def _built(document: Document, name: str) -> Study:
-    """The study of a document; what a workbook says wrong is refused by the cell."""
-    try:
-        return build_study(document, name)
-    except InputError as error:
-        if document.cells:
-            from separatrix.study_file.workbook import in_cells
-
-            raise in_cells(document, error) from None
-        raise
+def template() -> str:
+    """A commented study to fill in, valid as it is: what `separatrix new` writes."""
+    return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
 
 
 def require(study: Study, verb: str, *sections: str) -> None:

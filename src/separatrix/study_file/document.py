@@ -1,21 +1,26 @@
-"""A study document: its sections key by key, each key with its place, after `extends` has been followed."""
+"""A study document: its sections key by key, each with its place, after `extends` has been followed."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from separatrix.distribution import Distribution
-from separatrix.errors import InputError
-from separatrix.study_file.shipped import shipped_studies
-from separatrix.toml_text import label_of, path_text, read_toml
+from separatrix.errors import InputError, together
+from separatrix.library import Library, beside, library_files, with_files
+from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
 from separatrix.toml_values import folded, nearest
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
 MOST_BASES = 8
+MOST_NAMED = 20
+"""Libraries that the key `library` may name."""
+
 WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
 WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 MOST_PROBLEMS = 100
@@ -48,20 +53,15 @@ _MEANINGLESS = {
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One value as the file gives it, and where it stands."""
+    """One value as the file gives it, or why it has none; and the folder of the file."""
 
     value: Any
-    place: str
-    item_places: tuple[str, ...] = ()
-    """Place of each item, if it is a list of tables."""
-
     folder: Path = Path()
-    """Folder of the file, beside which the files stand that it names."""
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryPlace:
-    """A study file of the chain, whose neighbours and whose key `library` say where materials are."""
+    """A study file of the chain, whose neighbours and whose key `library` give the libraries."""
 
     study: Path
     given: Entry | None
@@ -69,26 +69,38 @@ class LibraryPlace:
 
 @dataclass(slots=True)
 class Document:
-    """Sections of a study file, before anything is converted."""
+    """Sections of a study, from a text file or a workbook, before anything is converted.
+
+    What is wrong is noted under the path of its key, ``[cage] mass`` or ``[ranking] candidates[2].name``;
+    `locate` places it.
+    """
 
     label: str
     top: dict[str, Entry] = field(default_factory=dict)
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
-    lines: dict[str, int] = field(default_factory=dict)
+    places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
     """Of the uncertain numbers, by their names, as they are read."""
 
     libraries: list[LibraryPlace] = field(default_factory=list)
-
     folder: Path = Path()
-    cells: dict[str, str] = field(default_factory=dict)
-    """Of a workbook: the cell of each value, by the name that refusals give it."""
 
-    def place(self, *keys: str) -> str:
-        """File and line of the first of the dotted keys that has a line of its own."""
-        line = next((self.lines[key] for key in keys if key in self.lines), None)
-        return self.label if line is None else f"{self.label}, line {line}"
+    def locate(self, path: str) -> str:
+        """Return a path with its place; one of another file as it is."""
+        own = not path or path.startswith("[") or path in TOP
+        return self.places.locate(path) if own else path
+
+    def refusal(self) -> InputError:
+        """Everything that is wrong, each fault in its place."""
+        return together([problem.at(self.locate(problem.path)) for problem in self.problems])
+
+
+@cache
+def shipped_studies() -> dict[str, Path]:
+    """Path of each shipped example by its name."""
+    folder = Path(__file__).parents[1] / "examples"
+    return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix == ".toml"}
 
 
 def find(study: str | Path) -> Path:
@@ -116,10 +128,15 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     base = document.top.get("extends")
     if base is None:
         return document
-    where = f"{base.place}: extends"
+    where = document.locate("extends")
     if not isinstance(base.value, str):
         raise InputError(where, "must be a path or the name of a shipped example", shown(base.value))
-    target = _base(path, base.value, where)
+    target = path.parent / base.value if base.value and "\0" not in base.value else None
+    if target is None or not _is_file(target):
+        target = shipped_studies().get(base.value)
+    if target is None:
+        rule = "does not name a file beside this one"
+        raise InputError(where, rule, shown(base.value), _shipped_names(base.value))
     chain = (*above, path.resolve())
     if target.resolve() in chain:
         raise InputError(where, "leads back to a file that extends this one", shown(base.value))
@@ -147,58 +164,44 @@ def _own(path: Path) -> Document:
 
         return document_of(path)
     data, lines = read_toml(path)
-    document = Document(label_of(path), lines=lines, folder=path.parent)
+    document = Document(label_of(path), folder=path.parent)
+    document.places = places_of(document.label, data, lines)
     for name, value in data.items():
         if len(document.problems) > MOST_PROBLEMS:
             break
-        place = document.place(name, f"{name}.0")
-        plain = printable(name) or '""'
+        at = f"[{printable(name)}]"
         if name in TOP:
-            document.top[name] = Entry(value, place, folder=document.folder)
-        elif name in SECTIONS and isinstance(value, dict):
-            document.sections[name] = {key: _entry(document, f"{name}.{key}", v) for key, v in value.items()}
+            document.top[name] = Entry(value, document.folder)
         elif name in SECTIONS:
-            rule = f"must be one section, headed [{name}]"
             document.sections[name] = {}
-            document.problems.append(InputError(f"{place}: {name}", rule, shown(value)))
+            if isinstance(value, dict):
+                document.sections[name] = {key: Entry(item, document.folder) for key, item in value.items()}
+            else:
+                rule = f"must be one section, headed [{name}]"
+                document.problems.append(InputError(at, rule, shown(value)))
         elif isinstance(value, dict):
             cure = nearest(name, SECTIONS)
-            document.problems.append(InputError(f"{place}: [{plain}]", "is no section of a study", cure=cure))
+            document.problems.append(InputError(at, "is not a section of a study", cure=cure))
         else:
-            document.problems.append(
-                InputError(f"{place}: {plain}", "stands outside a section", cure=_OUTSIDE)
-            )
+            where = f"{document.places.of(name)}: {printable(name) or chr(34) * 2}"
+            document.problems.append(InputError(where, "is outside a section", cure=_OUTSIDE))
     document.libraries.append(LibraryPlace(path, document.top.get("library")))
     return document
 
 
-def _entry(document: Document, key: str, value: Any) -> Entry:
-    items = value if isinstance(value, list) else []
-    places = tuple(document.place(f"{key}.{i}", key) for i in range(len(items)))
-    return Entry(value, document.place(key, f"{key}.0"), places, document.folder)
-
-
-def _base(path: Path, text: str, where: str) -> Path:
-    beside = path.parent / text if text and "\0" not in text else None
-    if beside is not None and _is_file(beside):
-        return beside
-    if text in shipped_studies():
-        return shipped_studies()[text]
-    raise InputError(where, "names no file beside this one", shown(text), _shipped_names(text))
-
-
 def _merged(base: Document, document: Document) -> Document:
     merged = Document(
-        document.label, document.top, problems=base.problems + document.problems, folder=document.folder
+        document.label,
+        {"title": base.top["title"], **document.top} if "title" in base.top else document.top,
+        places=Places(document.label, base.places.known | document.places.known),
+        problems=base.problems + document.problems,
+        libraries=document.libraries + base.libraries,
+        folder=document.folder,
     )
-    merged.libraries = document.libraries + base.libraries
-    merged.cells = base.cells | document.cells
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)
         if below is not None or above is not None:
             merged.sections[name] = {**_kept(name, below or {}, above or {}), **(above or {})}
-    if "title" not in merged.top and "title" in base.top:
-        merged.top = {**merged.top, "title": base.top["title"]}
     return merged
 
 
@@ -234,3 +237,59 @@ def _shipped_names(text: str) -> str:
     names = list(shipped_studies())
     near = get_close_matches(text[:80], names, 1, 0.6)
     return f"Did you mean {near[0]}?" if near else f"Shipped examples: {', '.join(names)}."
+
+
+def library_of(document: Document) -> Library:
+    """Library of a study: what is shipped, stands beside its files, or is named in them.
+
+    Raises
+    ------
+    InputError
+        A library is missing or wrong, or two of them hold the same name.
+    """
+    paths = [path for place in document.libraries for path in _files(place)]
+    return with_files(paths)
+
+
+def used_records(library: Library, document: Document) -> dict[str, Any]:
+    """Whole records of what a study names besides materials: its fluid, its friction table."""
+    records: dict[str, Any] = {}
+    fluid = document.sections.get("operation", {}).get("fluid")
+    known = library.fluid(fluid.value) if fluid is not None and isinstance(fluid.value, str) else None
+    if known is not None:
+        records["operation.fluid"] = known.plain()
+    table = document.sections.get("ranking", {}).get("friction")
+    if table is not None and table.value in library.names("friction table"):
+        records["ranking.friction"] = library.friction_table(table.value).plain()
+    return records
+
+
+def _files(place: LibraryPlace) -> Iterator[Path]:
+    if place.study not in shipped_studies().values():
+        yield from beside(place.study.parent, besides=place.study)
+    if place.given is not None:
+        yield from _named(place.study.parent, place.given)
+
+
+def _named(folder: Path, given: Entry) -> Iterator[Path]:
+    names = given.value if isinstance(given.value, list) else [given.value]
+    if not 0 < len(names) <= MOST_NAMED:
+        raise InputError("library", f"must be one path or a list of 1 to {MOST_NAMED}", shown(given.value))
+    for name in names:
+        yield from _existing(folder, name)
+
+
+def _existing(folder: Path, name: Any) -> list[Path]:
+    if not isinstance(name, str) or not name or not name.isprintable():
+        raise InputError("library", "must be the path of a file or a folder, in quotes", shown(name))
+    path = folder / name
+    try:
+        found = library_files(path) if path.exists() else None
+    except OSError:  # a name too long for the file system
+        found = None
+    if found is None:
+        cure = "It is taken from the folder of the study."
+        raise InputError("library", "does not name a file or folder", shown(name), cure)
+    if not found:
+        raise InputError("library", "names a folder without a .toml file", shown(name))
+    return found

@@ -9,7 +9,7 @@ from typing import Any
 
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
-from separatrix.friction_fit import FrictionTest, TestedFriction
+from separatrix.friction.records import FrictionTest
 from separatrix.study import CageDesign, Candidate, Film, Friction, Material, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
@@ -173,6 +173,8 @@ def _ranking(study: Study) -> dict[str, Any] | None:
 
 def _other_tests(candidates: Sequence[Candidate]) -> list[FrictionTest]:
     """Tests of the friction file whose material is not ranked: its scatter is pooled over all of them."""
+    from separatrix.friction.fit import TestedFriction
+
     laws = [f.law for one in candidates for f in one.friction.values() if f is not None]
     tests = next((law.tests for law in laws if isinstance(law, TestedFriction)), ())
     ranked = {candidate.name for candidate in candidates}
@@ -189,6 +191,8 @@ def _candidate(candidate: Candidate) -> dict[str, Any]:
 
 def _friction(friction: Friction) -> dict[str, Any]:
     """A friction, and every test behind it if it comes from a friction file."""
+    from separatrix.friction.fit import TestedFriction
+
     names = ("mean", "standard_deviation", "count", "source", "confidence")
     item: dict[str, Any] = {name: getattr(friction, name) for name in names}
     if isinstance(friction.law, TestedFriction):

@@ -6,19 +6,21 @@ import hashlib
 from dataclasses import replace
 from math import exp, log
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.errors import InputError
-from separatrix.friction_file import read_friction
-from separatrix.friction_fit import FrictionTest, StatedFriction, TestedFriction
-from separatrix.friction_fit.records import CONDITIONS
+from separatrix.friction.file import read_friction
+from separatrix.friction.law import StatedFriction
+from separatrix.friction.records import CONDITIONS, FrictionTest
 from separatrix.library import FrictionTable
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document
-from separatrix.study_file.records import where
 from separatrix.toml_values import folded, nearest
 from separatrix.units import shown
+
+if TYPE_CHECKING:
+    from separatrix.friction.fit import TestedFriction
 
 SUFFIX = ".toml"
 DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].default
@@ -38,7 +40,7 @@ def tests_file(document: Document, name: str) -> Path | None:
     if not _is_file(path):
         rule = "names no file beside the study"
         cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
-        raise InputError(where(document, "ranking", "friction"), rule, shown(name), cure)
+        raise InputError("[ranking] friction", rule, shown(name), cure)
     return path
 
 
@@ -54,11 +56,11 @@ def scatter_of(given: dict[str, Any]) -> float:
     return float(given.get("friction_scatter", DEFAULT_SCATTER))
 
 
-def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> dict[str, Any]:
+def question_of_tests(path: Path, given: dict[str, Any]) -> dict[str, Any]:
     """Environments and candidates of a friction file, in the order in which they are first tested."""
     tests = read_friction(path)
     known = tuple(dict.fromkeys(test.material for test in tests))
-    chosen = chosen_materials(document, given, known, given["friction"])
+    chosen = chosen_materials(given, known, given["friction"])
     wanted = [test for test in tests if test.material in chosen]
     environments = tuple(dict.fromkeys(test.environment for test in wanted))
     scatter, source = scatter_of(given), _source(path)
@@ -68,16 +70,14 @@ def question_of_tests(document: Document, path: Path, given: dict[str, Any]) -> 
     }
 
 
-def chosen_materials(
-    document: Document, given: dict[str, Any], known: tuple[str, ...], name: str
-) -> tuple[str, ...]:
+def chosen_materials(given: dict[str, Any], known: tuple[str, ...], name: str) -> tuple[str, ...]:
     """Materials that the study ranks, in any spelling; by default all that are known."""
     by_spelling = {folded(material): material for material in known}
     chosen = [by_spelling.get(folded(material), material) for material in given.get("materials", known)]
     for material in chosen:
         if material not in known:
             rule, cure = f"names a material that {name} lacks", nearest(material, known)
-            raise InputError(where(document, "ranking", "materials"), rule, shown(material), cure)
+            raise InputError("[ranking] materials", rule, shown(material), cure)
     return tuple(chosen)
 
 
@@ -88,6 +88,8 @@ def _source(path: Path) -> str:
 def _candidate(
     name: str, environments: tuple[str, ...], tests: tuple[FrictionTest, ...], scatter: float, source: str
 ) -> Candidate:
+    from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
+
     tested = {test.environment for test in tests if test.material == name}
     laws = {
         env: TestedFriction(material=name, environment=env, tests=tests, default_scatter=scatter)
@@ -102,7 +104,7 @@ def _candidate(
 
 
 def _friction(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until the law is asked for what the pocket sees."""
+    """Mean over the tests, until the law predicts that at the pocket's conditions."""
     own = law.serving(values.current_temperature())
     if others := len(law.own) - len(own):
         source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"

@@ -1,60 +1,272 @@
-"""Readers of single values: from what TOML holds to what a record holds, or a refusal."""
+"""Readers of single values of a study: to what a record has, a number perhaps with its distribution."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 from separatrix import study
 from separatrix.cage_choice import NAMELESS
-from separatrix.distribution import Normal
+from separatrix.distribution import (
+    COVERAGE,
+    MOST_SAMPLES,
+    Distribution,
+    LogUniform,
+    Normal,
+    Samples,
+    Uniform,
+)
 from separatrix.errors import InputError
 from separatrix.library import Library
-from separatrix.measured_friction import refuse_scatter_about_zero
-from separatrix.study import Friction, Material
-from separatrix.study_file.distributions import Uncertain, friction_deviation, gathered, number, unwrapped
-from separatrix.toml_values import (
-    Reader,
-    as_is,
-    build,
-    choice,
-    list_of,
-    nearest,
-    quantity,
-    ratio,
-    table,
-    text,
-    whole,
-)
-from separatrix.units import shown
+from separatrix.study import Material
+from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ratio, table, text, whole
+from separatrix.units import NUMBER, parse, printable, shown
 
-__all__ = [
-    "Reader",
-    "as_is",
-    "build",
-    "cage_material",
-    "choice",
-    "current_library",
-    "current_temperature",
-    "friction",
-    "kicks",
-    "known_name",
-    "list_of",
-    "material",
-    "material_in_place",
-    "named_material",
-    "nearest",
-    "pocket_angles",
-    "quantity",
-    "ratio",
-    "restitution_factors",
-    "table",
-    "text",
-    "using",
-    "whole",
-]
+Made = TypeVar("Made", bound=Distribution)
+
+_SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
+_PLAIN = re.compile(NUMBER)
+_PERCENT = re.compile(rf"({NUMBER}) ?%")
+_BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
+_FORMS = "between, or mean with standard_deviation, or samples"
+_CERTAIN = "This key takes one certain value."
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A value whose numbers are uncertain: the value with the means, and the distributions by their names."""
+
+    value: Any
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)
+    """Under ``""`` that of the value itself, under the name of a property that of the property."""
+
+
+def number(reader: Reader, unit: str) -> Reader:
+    """Read a number, or what is known of an uncertain one, as `Uncertain`."""
+
+    def read(value: Any, where: str) -> Any:
+        found = distribution(value, where, reader, unit)
+        return reader(value, where) if found is None else Uncertain(found.mean, {"": found})
+
+    return read
+
+
+def count(value: Any, where: str) -> Any:
+    """Read a whole number, or a list of those that it may be, as `Uncertain`."""
+    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
+        rule = "must be a whole number, or a list of whole numbers that are equally likely"
+        raise InputError(where, rule, shown(value), "Write it like [12, 13].")
+    items = value["samples"] if isinstance(value, dict) else value
+    if not isinstance(items, list):
+        return whole(value, where)
+    found = _samples(items, where, whole, written(value))
+    return Uncertain(int(found.mean), {"": found})
+
+
+def certain(reader: Reader) -> Reader:
+    """Read with `reader`; a distribution is refused as one."""
+
+    def read(value: Any, where: str) -> Any:
+        if _is_spread(value):
+            raise InputError(where, "takes no distribution", shown(value), _CERTAIN)
+        if isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value):
+            raise InputError(where, "takes no distribution", written(value), _CERTAIN)
+        return reader(value, where)
+
+    return read
+
+
+def distribution(value: Any, where: str, reader: Reader, unit: str) -> Distribution | None:
+    """Read a distribution of a number that `reader` reads; None if the value is no distribution."""
+    if isinstance(value, list):
+        return _samples(value, where, reader, written(value))
+    if isinstance(value, dict):
+        return _table(value, where, reader, unit)
+    return _plus_minus(value, where, reader, unit) if _is_spread(value) else None
+
+
+def written(value: Any) -> str:
+    """The value as the file has it, on one short line."""
+    if isinstance(value, dict):
+        inside = ", ".join(f"{printable(str(key))} = {written(item)}" for key, item in value.items())
+        return f"{{ {inside} }}"
+    if isinstance(value, list):
+        few = [written(item) for item in (value if len(value) <= 6 else value[:3])]
+        return f"[{', '.join(few)}{f', ... {len(value)} of them' if len(value) > 6 else ''}]"
+    return shown(value)
+
+
+def friction_deviation(value: Mapping[str, Any], where: str) -> Any:
+    """Standard deviation of a friction: a number, or percent of the mean."""
+    width, mean = value.get("standard_deviation"), value.get("mean")
+    if not isinstance(width, str) or "%" not in width:
+        return width
+    return _width(width, ratio(mean, f"{where}.mean"), str(mean), f"{where}.standard_deviation", "-")
+
+
+def unwrapped(value: Any) -> tuple[Any, Mapping[str, Distribution]]:
+    """The value with its means, and the distributions in it."""
+    return (value.value, value.distributions) if isinstance(value, Uncertain) else (value, {})
+
+
+def gathered(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Distribution]]:
+    """Values of a table with their means, and the distributions in them by dotted names."""
+    values: dict[str, Any] = {}
+    found: dict[str, Distribution] = {}
+    for key, item in given.items():
+        values[key], inside = unwrapped(item)
+        found |= {f"{key}.{name}".removesuffix("."): one for name, one in inside.items()}
+    return values, found
+
+
+def _is_spread(value: Any) -> bool:
+    return isinstance(value, str) and _SIGN.search(value) is not None
+
+
+def _plus_minus(text: str, where: str, reader: Reader, unit: str) -> Distribution:
+    """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations."""
+    parts = _sides(text.strip())
+    if len(text) > 120 or len(parts) != 2 or not all(parts):
+        rule = "must be one value, +- and one expanded uncertainty"
+        raise InputError(where, rule, shown(text), f'Write it like "{_example(unit)} +- 20 %".')
+    if unit != "-" and _PLAIN.fullmatch(parts[0]):
+        cure = f'Write it like "{_example(unit)} +- 20 %", with a unit on either side of +-.'
+        raise InputError(where, "needs a unit before +- too", shown(text), cure)
+    mean = _written_number(parts[0], where, reader, unit)
+    half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
+    return _made(Normal, where, mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
+
+
+def _sides(text: str) -> list[str]:
+    """What stands on either side of the sign; ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4)."""
+    shared = _BRACKETS.fullmatch(text)
+    if shared is None:
+        return _SIGN.split(text)
+    return [f"{part} {shared.group(2)}" for part in _SIGN.split(shared.group(1).strip())]
+
+
+def _table(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
+    """Read a table with bounds, with mean and standard deviation, or with samples."""
+    forms = {"between": "between", "log": "between", "mean": "mean", "standard_deviation": "mean"}
+    forms["samples"] = "samples"
+    for key in value:
+        if key not in forms:
+            at, cure = f"{where}.{printable(key) or chr(34) * 2}", nearest(key, forms)
+            raise InputError(at, f"is not a key of a distribution: {_FORMS}", cure=cure)
+    found = {forms[key] for key in value if key != "log"}
+    if len(found) != 1:
+        rule = f"must have {_FORMS}" if not found else f"must have only one of {_FORMS}"
+        raise InputError(where, rule, written(value))
+    if "log" in value and "between" not in value:
+        raise InputError(f"{where}.log", "has a meaning only with between")
+    if "samples" in found:
+        if not isinstance(value["samples"], list):
+            raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(value["samples"]))
+        return _samples(value["samples"], f"{where}.samples", reader, written(value))
+    return _between(value, where, reader) if "between" in found else _moments(value, where, reader, unit)
+
+
+def _between(value: dict[str, Any], where: str, reader: Reader) -> Distribution:
+    bounds, log = value["between"], value.get("log", False)
+    if not isinstance(log, bool):
+        raise InputError(f"{where}.log", "must be true or false", shown(log))
+    if not isinstance(bounds, list) or len(bounds) != 2:
+        got = f"a list of {len(bounds)}" if isinstance(bounds, list) else shown(bounds)
+        raise InputError(f"{where}.between", "must be a list of two bounds", got)
+    low, high = (reader(bound, f"{where}.between, item {i},") for i, bound in enumerate(bounds, 1))
+    if not low < high:
+        got = f"{written(bounds[0])} and {written(bounds[1])}"
+        cure = "Write the value alone if it is certain." if low == high else "Write the lower one first."
+        raise InputError(f"{where}.between", "must rise", got, cure)
+    if log and low <= 0.0:
+        cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
+        raise InputError(f"{where}.between", "must be > 0 with log = true", shown(bounds[0]), cure)
+    return _made(LogUniform if log else Uniform, f"{where}.between", low=low, high=high, text=written(value))
+
+
+def _moments(value: dict[str, Any], where: str, reader: Reader, unit: str) -> Distribution:
+    if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
+        raise InputError(where, f"lacks: {missing[0]}", written(value))
+    mean, width = reader(value["mean"], f"{where}.mean"), value["standard_deviation"]
+    at = f"{where}.standard_deviation"
+    if isinstance(width, str) and (unit != "-" or "%" in width):
+        deviation = _width(width, mean, str(value["mean"]), at, unit)
+    else:
+        deviation = _not_zero(reader(width, at), width, at)
+    return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
+
+
+def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples:
+    """Read equally likely values."""
+    if not 2 <= len(items) <= MOST_SAMPLES:
+        cure = "Write one value without brackets." if len(items) == 1 else ""
+        raise InputError(where, f"must hold 2 to {MOST_SAMPLES} samples", str(len(items)), cure)
+    values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
+    if min(values) == max(values):
+        cure = "Write the value alone if it is certain."
+        raise InputError(where, "must differ: there is no spread in them", written(items), cure)
+    return _made(Samples, where, values=values, text=text)
+
+
+def _made(kind: type[Made], where: str, **values: Any) -> Made:
+    """Make a distribution; its refusals are given the place in the file."""
+    try:
+        return kind(**values)
+    except InputError as error:
+        raise error.at(where) from None
+
+
+def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:
+    """Read a width: percent of the mean, or a difference of two values of the quantity."""
+    percent = _PERCENT.fullmatch(text.strip())
+    if percent is None and unit != "-" and _PLAIN.fullmatch(text.strip()):
+        cure = f'Write "{printable(text.strip())} %", or the width with its unit.'
+        raise InputError(where, "needs a unit, or %", shown(text), cure)
+    if percent is None:
+        return _not_zero(_difference(text, where, unit), text, where)
+    if unit == "K" and not re.search(r"[0-9] ?K$", mean_text.strip()):
+        cure = "Write the width in kelvin."
+        raise InputError(where, "is a share of a temperature, whose zero is arbitrary", shown(text), cure)
+    share = _not_zero(float(percent.group(1)) / 100.0, text, where)
+    if mean == 0.0:
+        raise InputError(where, "is a share of 0", shown(text), "Write the width with its unit.")
+    return share * abs(mean)
+
+
+def _difference(text: str, where: str, unit: str) -> float:
+    """Read a difference: of temperatures, without the zero of the scale."""
+    if unit == "-":
+        return _written_number(text, where, ratio, unit)
+    value = parse(text, unit, where)
+    if unit != "K":
+        return value
+    scale = re.sub(r"^\s*[-+.0-9eE]+\s*", "", text)
+    return value - parse(f"0 {scale}", unit, where)
+
+
+def _written_number(text: str, where: str, reader: Reader, unit: str) -> float:
+    """Read a number inside a text; a ratio stands there without quotes of its own."""
+    if unit != "-":
+        return float(reader(text, where))
+    if _PLAIN.fullmatch(text.strip()) is None:
+        cure = "Write a decimal point." if "," in text else f'Write it like "{_example(unit)} +- 20 %".'
+        raise InputError(where, "must be a plain number, without a unit", shown(text), cure)
+    return float(reader(float(text), where))
+
+
+def _not_zero(width: float, written_as: Any, where: str) -> float:
+    if not width > 0.0:
+        cure = "Write the value alone if it is certain." if width == 0.0 else "A width has no sign."
+        raise InputError(where, "must be a width > 0", shown(written_as), cure)
+    return width
+
+
+def _example(unit: str) -> str:
+    return {"m": "0.5 um", "N": "300 daN", "Pa": "1.5 GPa", "-": "0.1"}.get(unit, "1.5 " + unit)
 
 
 _LIBRARY: ContextVar[Library | None] = ContextVar("library", default=None)
@@ -82,26 +294,27 @@ def current_temperature() -> float | None:
     return _TEMPERATURE.get()
 
 
+def _items(value: Any, where: str, reader: Reader, default: str) -> list[Any]:
+    """Read a list that is not empty."""
+    if not value and isinstance(value, list):
+        raise InputError(where, "must not be empty", cure=f"Leave it out to have {default}.")
+    return list(list_of(reader)(value, where))
+
+
 def kicks(value: Any, where: str) -> tuple[float, ...]:
     """Read the speeds of the kicks, in any order."""
-    if not value and isinstance(value, list):
-        raise InputError(where, "must not be empty", cure="Leave it out to have them chosen.")
-    return tuple(sorted(list_of(quantity("m/s"))(value, where)))
+    return tuple(sorted(_items(value, where, quantity("m/s"), "them chosen")))
 
 
 def pocket_angles(value: Any, where: str) -> tuple[float, ...]:
     """Read the angle of each pocket; that there is one for each ball is the study's to check."""
-    if not value and isinstance(value, list):
-        raise InputError(where, "must not be empty", cure="Leave it out for pockets that stand evenly.")
-    return tuple(list_of(quantity("rad"))(value, where))
+    return tuple(_items(value, where, quantity("rad"), "evenly spaced pockets"))
 
 
 def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
     """Read ``{ from = 0.05, to = 0.95, count = 19 }``, or a list of numbers."""
-    if not value and isinstance(value, list):
-        raise InputError(where, "must not be empty", cure="Leave it out to have them chosen.")
-    if isinstance(value, list):
-        return tuple(list_of(ratio)(value, where))
+    if not isinstance(value, dict):
+        return tuple(_items(value, where, ratio, "them chosen"))
     given = table(value, where, {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
     if not 2 <= given["count"] <= 1000:
         raise InputError(where, "needs a count from 2 to 1000", shown(given["count"]))
@@ -115,8 +328,10 @@ def material(kind: str) -> Reader:
         if isinstance(value, str):
             return named_material(value, kind, where)
         if not isinstance(value, dict):
-            rule = f"must be the name of a {kind} in quotes, or a table with its properties in {{braces}}"
-            raise InputError(where, rule, shown(value))
+            rule = f"must be the name of a {kind}, or its properties elastic_modulus and poisson_ratio"
+            raise InputError(
+                where, rule, shown(value), f'Write it like "{current_library().names(kind)[0]}".'
+            )
         return material_in_place(value, where)
 
     return read
@@ -147,7 +362,7 @@ def known_name(name: str, kind: str, where: str, more: str = "") -> str:
     near = nearest(name, names)
     raise InputError(
         where,
-        f"is no {kind} of the library",
+        f"is not a {kind} of the library",
         shown(name),
         f"{near} {listed}{more}" if near.startswith("Did") else f"{listed}{more}",
     )
@@ -167,26 +382,3 @@ def material_in_place(value: Any, where: str, name: str = NAMELESS) -> Material 
     given, found = gathered(table(value, where, readers, ("elastic_modulus", "poisson_ratio")))
     made = build(Material, {"name": name, **given}, where)
     return Uncertain(made, found) if found else made
-
-
-def friction(value: Any, where: str) -> Friction | Uncertain:
-    """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
-    if isinstance(value, dict) and not {"between", "samples"} & set(value):
-        readers: dict[str, Reader] = {
-            "mean": ratio,
-            "standard_deviation": ratio,
-            "count": whole,
-            "source": text,
-        }
-        given = {**value, "standard_deviation": friction_deviation(value, where)}
-        kept = {key: item for key, item in given.items() if key in value}
-        stated = build(Friction, table(kept, where, readers, ("mean",)), where)
-        return refuse_scatter_about_zero(stated, where)
-    mean, found = unwrapped(number(ratio, "-")(value, where))
-    if not found:
-        return build(Friction, {"mean": mean}, where)
-    deviation = found[""].standard_deviation
-    known = build(Friction, {"mean": mean, "standard_deviation": deviation}, where)
-    if isinstance(found[""], Normal):
-        refuse_scatter_about_zero(known, where)
-    return Uncertain(known, found)

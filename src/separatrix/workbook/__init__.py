@@ -23,8 +23,8 @@ def results_workbook(document: Mapping[str, Any], path: Path) -> None:
     path : Path
         The file to write.
     """
-    from separatrix.spreadsheet.writing import new_workbook, workbook_bytes
     from separatrix.workbook import about, curve, inputs, materials, ranking
+    from separatrix.workbook_looks import new_workbook, workbook_bytes
 
     book = new_workbook()
     ranking.add(book, document)

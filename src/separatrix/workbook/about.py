@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from separatrix.spreadsheet.writing import WRAPPED, Look, add_sheet, headings, put, widths
+from separatrix.workbook_looks import WRAPPED, Look, add_sheet, headings, put, widths
 
 if TYPE_CHECKING:
     from openpyxl import Workbook

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from separatrix.spreadsheet.writing import HEADING, SMALL, Look, add_sheet, headings, put, widths
+from separatrix.workbook_looks import HEADING, SMALL, Look, add_sheet, headings, put, widths
 
 if TYPE_CHECKING:
     from openpyxl import Workbook

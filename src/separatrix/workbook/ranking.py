@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from separatrix.results.labels import unit_of
-from separatrix.spreadsheet.cells import cell_name
-from separatrix.spreadsheet.writing import Look, add_sheet, headings, put, widths
+from separatrix.cage import Judgement
+from separatrix.present.walk import field_units
+from separatrix.ranking import Ranked
+from separatrix.workbook_looks import Look, add_sheet, headings, put, widths
 
 if TYPE_CHECKING:
     from openpyxl import Workbook
@@ -111,7 +112,7 @@ def _candidates(sheet: Worksheet, rows: Sequence[Row], columns: Sequence[Column]
             _cell(sheet, number, place, row, column)
     widths(sheet, *(column.width for column in given))
     if given:
-        sheet.auto_filter.ref = f"A1:{cell_name(len(rows) + 1, len(given))}"
+        sheet.auto_filter.ref = f"A1:{sheet.cell(len(rows) + 1, len(given)).coordinate}"
 
 
 def _margin_ends(row: Row) -> Row:
@@ -155,7 +156,7 @@ def _others(rows: Sequence[Row]) -> list[Column]:
 
 
 def _other(key: str) -> Column:
-    unit = unit_of(key)
+    unit = (field_units(Judgement) | field_units(Ranked)).get(key.removeprefix("uncertain_"))
     heading = key.replace("_", " ") + (f" ({unit})" if unit else "")
     return Column(key=key, heading=heading, number_format="0.000E+00" if unit != "-" else "0.000", width=14)
 

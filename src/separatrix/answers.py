@@ -1,0 +1,100 @@
+"""What each verb answers: records of the chain and of ensembles, with what belongs beside them.
+
+The answer of `bearing` is a `BearingState`, that of `sweep` a `Sweep`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from separatrix.cage import History, PlanarCage
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.lubrication import LubricationCurve
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction import ShearField, TractionCurve
+from separatrix.explore.records import UncertainStudy
+from separatrix.limits import StabilityCurve
+from separatrix.limits.map_records import StabilityMap
+from separatrix.ranking import Ranking
+from separatrix.units import Metre, MetrePerSecond, Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckAnswer:
+    """The bearing at standstill; None with the reason if its balance was not found."""
+
+    static: BearingState | None
+    static_reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TractionAnswer:
+    """Traction curves, as they are and at other pivoting-to-rolling ratios, and shear in free rolling."""
+
+    race_friction: Ratio
+    bearing: BearingState
+    inner: TractionCurve
+    outer: TractionCurve
+    inner_others: tuple[TractionCurve, ...]
+    outer_others: tuple[TractionCurve, ...]
+    inner_shear: ShearField
+    outer_shear: ShearField
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionAnswer:
+    """Restitution factor, and what it would be with other films; None without a film material."""
+
+    solution: Solution
+    film_thickness: Metre
+    lubrication: LubricationCurve | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OfCage:
+    """The chain, and the cage that an answer is for."""
+
+    solution: Solution
+    cage: PlanarCage
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityAnswer(OfCage):
+    """Stability curve of the cage."""
+
+    curve: StabilityCurve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAnswer(OfCage):
+    """The map, and the cage of the study itself."""
+
+    map: StabilityMap
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationAnswer(OfCage):
+    """One run of the ensemble, from one kick."""
+
+    history: History
+    kick: MetrePerSecond
+    run: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RankingAnswer(OfCage):
+    """The ranking, and the cage of its reference candidate."""
+
+    ranking: Ranking
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensitivityAnswer(OfCage):
+    """The uncertain study, and the cage of its reference candidate.
+
+    `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
+    """
+
+    uncertain: UncertainStudy
+    film_thickness: Metre | None
+    race_friction: Ratio

@@ -1,0 +1,280 @@
+"""The verbs as Python functions: each takes a study and returns an `Answer`, as the command line gives it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from separatrix import verbs
+from separatrix.answers import (
+    CheckAnswer,
+    MapAnswer,
+    RankingAnswer,
+    RestitutionAnswer,
+    SensitivityAnswer,
+    SimulationAnswer,
+    StabilityAnswer,
+    TractionAnswer,
+)
+from separatrix.chain.contacts import BearingState
+from separatrix.cluster import cluster as connected
+from separatrix.errors import ValidityWarning
+from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
+from separatrix.explore.sweep import Case, Sweep
+from separatrix.ledger import NAME, Ledger
+from separatrix.notes import grouped, noted_warnings
+from separatrix.runner import Progress, Runner, made_into
+from separatrix.study import Study
+from separatrix.study_file import read_study, require
+from separatrix.units import MetrePerSecond
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Record = TypeVar("Record")
+
+# A study, the path of its file, or the name of a shipped one.
+Asked = Study | str | Path
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(Generic[Record]):
+    """What a verb answers to a study; the names of its record are its own, too.
+
+    Attributes
+    ----------
+    verb : str
+        The question.
+    record : record
+        What was computed.
+    study : Study
+        What it was computed for.
+    notes : tuple of str
+        Where a model leaves its range.
+    """
+
+    verb: str
+    record: Record
+    study: Study
+    notes: tuple[str, ...]
+
+    def __getattr__(self, name: str) -> Any:
+        """Name of the record."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.record, name)
+
+    def __repr__(self) -> str:
+        """Verb and study; `summary` has the answer."""
+        return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
+
+    def document(self) -> dict[str, Any]:
+        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        from separatrix.present import document
+
+        return document(self.verb, self.record, self.study, list(self.notes))
+
+    def summary(self, *, full: bool = False) -> str:
+        """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
+        from separatrix.present import report
+
+        return report(self.verb, self.record, self.study, list(self.notes), full=full)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Labelled arrays with their units, as they are saved in netCDF files."""
+        from separatrix.present import dataset
+
+        return dataset(self.verb, self.record, self.study, self.notes)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """One row for each ball, point, material or case."""
+        from separatrix.present import to_dataframe
+
+        return to_dataframe(self.record)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Return the first figure of the answer, or the one whose file has this name."""
+        from separatrix.figures import plot
+
+        return plot(self.verb, self.to_xarray(), name)
+
+
+def _asked(study: Asked) -> Study:
+    return study if isinstance(study, Study) else read_study(study)
+
+
+def _answer(verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str) -> Answer[Record]:
+    """Answer of a verb, with what was noted on the way; the notes are warnings for the caller, too."""
+    with noted_warnings() as notes:
+        asked = _asked(study)
+        require(asked, verb, *needs)
+
+        def made(record: Record) -> Answer[Record]:
+            return Answer(verb=verb, record=record, study=asked, notes=tuple(grouped(notes)))
+
+        answer = made_into(made, lambda: compute(asked))
+    for note in answer.notes:
+        warnings.warn(note, ValidityWarning, stacklevel=3)
+    return answer
+
+
+@contextlib.contextmanager
+def _runner(
+    jobs: int | None, folder: str | Path | None, cluster: str | None, progress: Progress | None
+) -> Iterator[Runner]:
+    """Yield the runner of a long job; `folder` keeps its finished runs."""
+    with contextlib.ExitStack() as stack:
+        ledger = None
+        if folder is not None:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            ledger = Ledger(Path(folder) / NAME)
+            stack.callback(ledger.close)
+        executor, threads = (
+            stack.enter_context(connected(cluster)) if cluster else (None, jobs or os.cpu_count())
+        )
+        yield Runner(jobs=threads or 1, progress=progress, ledger=ledger, executor=executor)
+
+
+def check(study: Asked) -> Answer[CheckAnswer]:
+    """Inputs of a study with their sources, and the bearing at standstill."""
+    return _answer("check", study, verbs.check)
+
+
+def bearing(study: Asked) -> Answer[BearingState]:
+    """Ball equilibrium, and the contacts of the most loaded ball."""
+    return _answer("bearing", study, verbs.bearing)
+
+
+def traction(study: Asked) -> Answer[TractionAnswer]:
+    """Traction curves of ball on race, and their slopes."""
+    return _answer("traction", study, verbs.traction)
+
+
+def restitution(study: Asked) -> Answer[RestitutionAnswer]:
+    """Restitution factor of an impact of ball and cage."""
+    return _answer("restitution", study, verbs.restitution, "cage")
+
+
+def simulate(
+    study: Asked, *, kick: str | MetrePerSecond | None = None, run: int = 0
+) -> Answer[SimulationAnswer]:
+    """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
+    return _answer("simulate", study, lambda one: verbs.simulate(one, kick=kick, run=run), "cage")
+
+
+def stability(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[StabilityAnswer]:
+    """Critical friction against restitution factor.
+
+    Parameters
+    ----------
+    study : Study, str or Path
+        A study, the path of its file, or the name of a shipped one.
+    jobs : int, optional
+        Threads, by default one for each processor; the numbers do not depend on it.
+    folder : str or Path, optional
+        Where finished runs are kept: a later call takes them from there.
+    cluster : str, optional
+        Address of a Dask scheduler, or ``"local:N"`` for N processes here.
+    progress : callable, optional
+        Called with (done, total) points.
+
+    Raises
+    ------
+    InputError
+        The study, or one of these arguments, is wrong.
+    Interrupted
+        With the answer made of what was finished.
+    """
+    with _runner(jobs, folder, cluster, progress) as runner:
+        return _answer("stability", study, lambda one: verbs.stability(one, runner), "cage")
+
+
+def map(
+    study: Asked,
+    x: str = DEFAULT_X,
+    y: str = DEFAULT_Y,
+    *,
+    points: int = 100,
+    runs: int = 16,
+    kick: str | MetrePerSecond | None = None,
+    adaptive: bool = False,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[MapAnswer]:
+    """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
+    with _runner(jobs, folder, cluster, progress) as runner:
+
+        def compute(one: Study) -> MapAnswer:
+            return verbs.map(one, runner, x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
+
+        return _answer("map", study, compute, "cage")
+
+
+def rank(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[RankingAnswer]:
+    """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
+    with _runner(jobs, folder, cluster, progress) as runner:
+        return _answer("rank", study, lambda one: verbs.rank(one, runner), "cage", "ranking")
+
+
+def sensitivity(
+    study: Asked,
+    *,
+    samples: int = verbs.SAMPLES,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[SensitivityAnswer]:
+    """Verdicts over the uncertain inputs, with so many bearings drawn; other parameters as of `stability`."""
+    with _runner(jobs, folder, cluster, progress) as runner:
+        return _answer(
+            "sensitivity",
+            study,
+            lambda one: verbs.sensitivity(one, runner, samples=samples),
+            "cage",
+            "ranking",
+        )
+
+
+def sweep(
+    study: Asked,
+    vary: str | Sequence[str] = (),
+    *,
+    cases: Path | Sequence[Case] | None = None,
+    verdicts: bool = False,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[Sweep]:
+    """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
+    ranges = (vary,) if isinstance(vary, str) else tuple(vary)
+    with _runner(jobs, folder, cluster, progress) as runner:
+        return _answer(
+            "sweep",
+            study,
+            lambda one: verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts),
+        )

@@ -1,0 +1,135 @@
+"""First links of the chain: the bearing's equilibrium, the contacts of its most loaded ball, their traction.
+
+Each is dear to solve, and is remembered by the value of the records that it depends on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+
+from separatrix.chain.contact_limits import beyond_contacts
+from separatrix.chain.creep import Creep, contact_creep
+from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.orbit import mean_speed
+from separatrix.chain.traction import TractionCurve, film_compliance, traction_curve
+from separatrix.errors import InputError
+from separatrix.study import BallBearing, Film, KinematicModel, Operation, Race, Study
+from separatrix.units import MetrePerSecond, Newton, Radian, RadianPerSecond, Ratio
+
+REMEMBERED = 1024
+"""Solutions of a stage that are kept, by the records it takes."""
+
+Solved = TypeVar("Solved", Equilibrium, TractionCurve)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceContact:
+    """Contact of the most loaded ball with one race."""
+
+    ball: int
+    contact_angle: Radian
+    load: Newton
+    ellipse: ContactEllipse
+    creep: Creep
+    spin_roll_ratio: Ratio
+    rolling_speed: MetrePerSecond
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingState:
+    """Equilibrium of the bearing, the contacts of its most loaded ball, and where they leave their model."""
+
+    equilibrium: Equilibrium
+    inner: RaceContact
+    outer: RaceContact
+    notes: tuple[str, ...] = ()
+
+    @property
+    def cage_speed(self) -> RadianPerSecond:
+        """Mean orbital speed of the balls [rad/s]."""
+        return mean_speed(self.equilibrium.orbital_speed)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceTraction:
+    """Traction curves of the most loaded ball's contacts."""
+
+    inner: TractionCurve
+    outer: TractionCurve
+
+
+@lru_cache(maxsize=REMEMBERED)
+def bearing_state(
+    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, race_friction: Ratio
+) -> BearingState:
+    """Equilibrium and contacts of a bearing, remembered by the value of these records."""
+    found = _unchangeable(equilibrium(bearing, operation, kinematics, race_friction))
+    inner, outer = (_race_contact(bearing, found, race) for race in Race)
+    ellipses = {Race.INNER: inner.ellipse, Race.OUTER: outer.ellipse}
+    turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
+    notes = tuple(beyond_contacts(bearing, found, ellipses, turns=turns))
+    return BearingState(equilibrium=found, inner=inner, outer=outer, notes=notes)
+
+
+def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceContact:
+    ball = found.most_loaded
+
+    def of_ball(quantity: str) -> float:
+        return float(getattr(found, f"{quantity}_{race.value}")[ball])
+
+    angle, ratio = of_ball("contact_angle"), of_ball("spin_roll_ratio")
+    return RaceContact(
+        ball=ball,
+        contact_angle=angle,
+        load=of_ball("load"),
+        ellipse=contact(found, bearing, race, ball),
+        creep=contact_creep(bearing, race, angle, ratio),
+        spin_roll_ratio=ratio,
+        rolling_speed=of_ball("rolling_speed"),
+    )
+
+
+@lru_cache(maxsize=REMEMBERED)
+def race_traction(
+    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, film: Film
+) -> RaceTraction:
+    """Traction curves of both races, remembered by the value of these records."""
+    state = bearing_state(bearing, operation, kinematics, film.race_friction)
+    inner, outer = (
+        traction_curve(
+            at.ellipse,
+            at.creep,
+            race_friction=film.race_friction,
+            film_compliance=film_compliance(film),
+            film_thickness=film.thickness or 0.0,
+        )
+        for at in (state.inner, state.outer)
+    )
+    return RaceTraction(inner=_unchangeable(inner), outer=_unchangeable(outer))
+
+
+def _unchangeable(solved: Solved) -> Solved:
+    """The same record, into whose arrays nobody can write: the next caller gets it, too."""
+    for value in (getattr(solved, field.name) for field in fields(solved)):
+        if isinstance(value, np.ndarray):
+            value.setflags(write=False)
+    return solved
+
+
+def require_rolling(study: Study) -> None:
+    """Refuse a bearing that does not roll: traction and restitution have no meaning there."""
+    if study.operation.inner_speed == study.operation.outer_speed:
+        cure = "Without rolling only the verb bearing has an answer."
+        raise InputError("[operation] inner_speed", "must differ from outer_speed for traction", cure=cure)
+    if study.film.race_friction <= 0.0:
+        raise InputError(
+            "[film] race_friction",
+            "must be > 0 for traction [-]",
+            f"{study.film.race_friction:g}",
+            "Without friction the races hold no ball.",
+        )

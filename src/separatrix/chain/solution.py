@@ -1,0 +1,336 @@
+"""The chain of the paper from a study to its cage: every link solved once, every intermediate kept.
+
+The contacts of the most loaded ball set the race damping: load raises the restitution factor, so this is the
+unfavourable ball.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any
+
+from separatrix.cage import PlanarCage
+from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
+from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
+from separatrix.chain.contacts import (
+    BearingState,
+    RaceTraction,
+    bearing_state,
+    race_traction,
+    require_rolling,
+)
+from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
+from separatrix.chain.orbit import OrbitalWaves, orbital_waves
+from separatrix.chain.pocket_contact import PocketConditions, pocket_conditions
+from separatrix.chain.pocket_friction import friction_in_pocket, names_of_fluid
+from separatrix.chain.restitution import (
+    Restitution,
+    ball_pocket_stiffness,
+    contact_damping,
+    hertz_coefficient_for,
+    restitution,
+)
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.study import (
+    CageDesign,
+    Candidate,
+    Friction,
+    PocketContact,
+    StabilitySettings,
+    Study,
+)
+from separatrix.units import (
+    MetrePerSecond,
+    NewtonPerMetre,
+    Ratio,
+    format_quantity,
+)
+
+NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
+NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
+
+
+def solve(study: Study, candidate: Candidate | None = None) -> Solution:
+    """Chain of a study, from the bearing's equilibrium to its cage.
+
+    Parameters
+    ----------
+    study : Study
+        The bearing; [cage] is needed from the restitution factor on.
+    candidate : Candidate, optional
+        Whose material the cage has; by default the one that the study's [cage] names.
+
+    Returns
+    -------
+    Solution
+        Its links are solved as they are asked for.
+
+    Examples
+    --------
+    >>> import separatrix
+    >>> found = separatrix.solve(separatrix.read_study("cryogenic-turbopump"))
+    >>> round(found.restitution.restitution_factor, 2)
+    0.17
+    """
+    return Solution(study=study, candidate=candidate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solution:
+    """Every link of the chain of a study; asked for a link, it solves those before it.
+
+    `candidate` is the one that the cage is asked to be made of; None is the study's own cage.
+    """
+
+    study: Study
+    candidate: Candidate | None = None
+
+    @cached_property
+    def bearing(self) -> BearingState:
+        """Equilibrium, and the contacts of the most loaded ball.
+
+        Warns
+        -----
+        ValidityWarning
+            A contact leaves what races bear or what the model holds: `contact_limits`.
+        """
+        asked = self.study
+        state = bearing_state(asked.bearing, asked.operation, asked.kinematics, asked.film.race_friction)
+        for sentence in state.notes:
+            warnings.warn(sentence, ValidityWarning, stacklevel=2)
+        return state
+
+    @cached_property
+    def traction(self) -> RaceTraction:
+        """Traction curves of both races.
+
+        Raises
+        ------
+        InputError
+            The bearing does not roll, or its races have no friction.
+        """
+        asked = self.study
+        require_rolling(asked)
+        _ = self.bearing  # its warnings
+        return race_traction(asked.bearing, asked.operation, asked.kinematics, asked.film)
+
+    @property
+    def design(self) -> CageDesign:
+        """The cage of the study.
+
+        Raises
+        ------
+        InputError
+            It has none.
+        """
+        if self.study.cage is None:
+            raise InputError(self.study.name, "lacks the section [cage]", cure=NO_CAGE)
+        return self.study.cage
+
+    @cached_property
+    def impact_speed(self) -> MetrePerSecond:
+        """Speed of an impact at which a Hertz pocket's stiffness is taken: the study's, or 2.5 pocket speeds.
+
+        It is a property of the bearing, whatever the kicks are.
+        """
+        design = self.design
+        if design.impact_speed is not None:
+            return design.impact_speed
+        return REFERENCE * pocket_speed(self.bearing.cage_speed, design.pocket_clearance)
+
+    @cached_property
+    def stability(self) -> StabilitySettings:
+        """The study's settings, with numbers for the kicks."""
+        speed = pocket_speed(self.bearing.cage_speed, self.design.pocket_clearance)
+        return with_kicks(self.study.stability, speed)
+
+    @cached_property
+    def _stiffness(self) -> tuple[NewtonPerMetre, str]:
+        """k_BC and where it comes from: the study, or Hertz with the modulus of the cage's material."""
+        design, own = self.design, cage_candidate(self.study)
+        if design.ball_cage_stiffness is not None:
+            return design.ball_cage_stiffness, "given in the study"
+        asked = self.candidate.material if self.candidate else None
+        wall = asked or design.material or (own.material if own else None)
+        if wall is None:
+            rule = "is missing, and no cage material is known"
+            raise InputError("[cage] ball_cage_stiffness", rule, cure=NO_STIFFNESS)
+        bearing, speed = self.study.bearing, self.impact_speed
+        stiffness = ball_pocket_stiffness(
+            bearing.ball_diameter, bearing.ball_material, wall, cage_mass=design.mass, impact_speed=speed
+        )
+        name = "[cage] material" if wall.name == NAMELESS else wall.name
+        return stiffness, f"Hertz, ball on a flat wall of {name} at {speed:.3g} m/s"
+
+    @property
+    def ball_cage_stiffness(self) -> NewtonPerMetre:
+        """k_BC of this pocket.
+
+        Raises
+        ------
+        InputError
+            The study gives neither it nor a cage material.
+        """
+        return self._stiffness[0]
+
+    @property
+    def stiffness_source(self) -> str:
+        """Where k_BC comes from."""
+        return self._stiffness[1]
+
+    @cached_property
+    def restitution(self) -> Restitution:
+        """Restitution factor of the cage's impacts, with the race damping behind it."""
+        mass = self.design.mass  # refused before anything is computed
+        slopes, contacts = self.traction, self.bearing
+        inner, outer = (
+            contact_damping(curve.slope, at.load, at.rolling_speed)
+            for curve, at in ((slopes.inner, contacts.inner), (slopes.outer, contacts.outer))
+        )
+        return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
+
+    @cached_property
+    def lubrication(self) -> LubricationCurve | None:
+        """Restitution factor against film thickness and race friction; None without a film material."""
+        if self.study.film.material is None:
+            return None
+        return lubrication_curve(
+            self.bearing.inner,
+            self.bearing.outer,
+            self.study.film.material,
+            ball_cage_stiffness=self.ball_cage_stiffness,
+            cage_mass=self.design.mass,
+        )
+
+    @cached_property
+    def pocket(self) -> PocketConditions:
+        """Sliding speed and pressure of ball on pocket."""
+        return pocket_conditions(
+            self.bearing.equilibrium,
+            ball_diameter=self.study.bearing.ball_diameter,
+            ball_cage_stiffness=self.ball_cage_stiffness,
+            cage_mass=self.design.mass,
+            damping_ratio=self.restitution.damping_ratio,
+            impact_speed=self.impact_speed,
+        )
+
+    @cached_property
+    def frictions(self) -> Mapping[str, Friction | None]:
+        """Friction of the candidate on the balls in this pocket, by environment; None where not measured.
+
+        Each is asked for at the sliding speed and pressure of the pocket, the temperature and the fluid of
+        the study. It has its standard error, the standard deviation of a new sample, and what was not
+        tested; a number without scatter gets that of an unrepeated test.
+        """
+        asked, candidate = self.study.ranking, self.candidate or cage_candidate(self.study)
+        if asked is None or candidate is None:
+            return {}
+        names = names_of_fluid(self.study)
+        return {
+            environment: None
+            if one is None
+            else friction_in_pocket(
+                one, self.pocket if one.law else None, self.study.operation, asked.friction_scatter, names
+            )
+            for environment, one in candidate.friction.items()
+        }
+
+    @property
+    def friction(self) -> Friction | None:
+        """Friction of cage on ball: the study's, or that of the candidate in the bearing's environment."""
+        given, asked = self.design.ball_cage_friction, self.study.ranking
+        if given is not None:
+            return Friction(mean=given)
+        environment = environment_of(asked) if asked else None
+        return self.frictions.get(environment) if environment else None
+
+    @cached_property
+    def cage(self) -> PlanarCage:
+        """Cage in the plane, with its friction.
+
+        Raises
+        ------
+        InputError
+            The friction is not known: what is missing, and what can be given instead.
+        """
+        require_friction(self.study)
+        friction = self.friction
+        return self.cage_with(friction.mean if friction else 0.0)
+
+    def cage_with(self, friction: Ratio) -> PlanarCage:
+        """Cage in the plane with the chain's race damping and any friction.
+
+        The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs
+        faster and slower around as the equilibrium says. A cage without a stated inertia is a thin ring.
+
+        Warns
+        -----
+        ValidityWarning
+            The balls lead and lag by more than half their clearance, so that the pockets drive them.
+        """
+        study, design = self.study, self.design
+        damping, waves, radius = self.restitution, self._waves, self.study.bearing.pitch_diameter / 2.0
+        inertia = design.mass * radius**2 if design.moment_of_inertia is None else design.moment_of_inertia
+        hertz = design.pocket_contact is not PocketContact.LINEAR
+        stiffness = damping.ball_cage_stiffness
+        cage = PlanarCage(
+            moment_of_inertia=inertia,
+            ball_count=study.bearing.ball_count,
+            pitch_radius=radius,
+            cage_speed=self.bearing.cage_speed,
+            inner_speed=study.operation.inner_speed,
+            outer_speed=study.operation.outer_speed,
+            ball_cage_stiffness=stiffness,
+            race_damping=damping.race_damping,
+            ball_cage_friction=friction,
+            # equal energy and depth in an impact at the impact speed
+            hertz_coefficient=hertz_coefficient_for(stiffness, design.mass, self.impact_speed)
+            if hertz
+            else None,
+            orbital_cosines=waves.cosines,
+            orbital_sines=waves.sines,
+            ramp_time=study.operation.ramp_time,
+            ramp_start=study.operation.ramp_start,
+            **_as_designed(design),
+        )
+        _warn_if_balls_are_driven(cage)
+        return cage
+
+    @cached_property
+    def _waves(self) -> OrbitalWaves:
+        found = self.bearing.equilibrium
+        return orbital_waves(found.orbital_speed, found.azimuth, self.study.bearing.pitch_diameter / 2.0)
+
+    @property
+    def orbital_share(self) -> Ratio | None:
+        """Share of the variance of the balls' orbital speeds that the cage's harmonics hold [-].
+
+        None where all balls run alike, as under an axial load.
+        """
+        return self._waves.share
+
+
+_NOT_COPIED = {
+    *("moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
+}
+
+
+def _as_designed(design: CageDesign) -> dict[str, Any]:
+    """What the cage in the plane takes from the design as it is: all other fields, under the same names."""
+    return {f.name: getattr(design, f.name) for f in fields(design) if f.name not in _NOT_COPIED}
+
+
+def _warn_if_balls_are_driven(cage: PlanarCage) -> None:
+    if cage.lead_amplitude > cage.half_play:
+        lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
+        warnings.warn(
+            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
+            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
+            "wear.",
+            ValidityWarning,
+            stacklevel=3,
+        )

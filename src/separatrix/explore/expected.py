@@ -1,0 +1,171 @@
+"""What a long verb will take: a few runs of its points are timed before it starts, and scaled."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from separatrix.cage import PlanarCage
+    from separatrix.limits.map_records import MapQuestion
+    from separatrix.study import StabilitySettings, Study
+    from separatrix.units import Ratio, Second
+
+SAMPLED = 3
+"""Runs from each kick that are timed at a friction."""
+
+LONGEST_SAMPLE = 5.0
+"""Time after which no further friction is timed [s]."""
+
+DAMPINGS = (None, 0.0, 0.5, 1.0)
+"""Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
+
+FACTORS = (0.0, 0.7, 1.5)
+"""Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
+and about it, for runs far above end soon."""
+
+MAP_POINTS_NOT_TIMED = 30
+"""A map of so few points needs no estimate."""
+
+PICTURES = 5.0
+"""Time of a ranking's figures and files [s]."""
+
+CURVE_POINTS = 16.0
+"""Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
+it bends more, its points take longer, too."""
+
+
+def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
+    """Time of a stability curve, with its band at every point or only at the cage's own damping."""
+    from separatrix.limits.growth import GrowthCounter
+    from separatrix.limits.point import linear_guess
+
+    counts = GrowthCounter(cage, settings)
+    some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
+    each = _mean(_time_of_a_run(one, settings) for one in some)
+    points = float(len(settings.restitution_factors)) or CURVE_POINTS
+    banded = points + 1.0 if band else 1.0
+    runs = points * _runs_of_a_point(settings, band=band) + banded * _runs_of_a_band(settings)
+    return each * runs / jobs
+
+
+def expected_verdicts(
+    cage: PlanarCage, settings: StabilitySettings, frictions: Iterable[Ratio], *, jobs: int
+) -> Second:
+    """Time of the whole ensembles at these frictions, by those at the least, the middle and the largest."""
+    asked = sorted(frictions)
+    if not asked:
+        return 0.0
+    some = {asked[0], asked[len(asked) // 2], asked[-1]}
+    each = _mean(_time_of_a_run(replace(cage, ball_cage_friction=f), settings) for f in sorted(some))
+    return each * len(asked) * len(settings.kicks) * settings.runs / jobs
+
+
+def expected_ranking(study: Study, *, jobs: int) -> Second:
+    """Time of a ranking: a curve for every pocket stiffness, and a verdict for every friction.
+
+    Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
+    """
+    from separatrix.chain.solution import solve
+    from separatrix.ranking import ranking_question
+
+    asked = ranking_question(study)
+    keys: set[tuple[float, Ratio]] = set()
+    cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
+    for candidate in asked.candidates:
+        solution = solve(study, candidate)
+        stiffness = solution.ball_cage_stiffness
+        cages[stiffness] = solution.cage_with(0.0), solution.stability
+        keys |= {(stiffness, found.mean) for found in solution.frictions.values() if found is not None}
+    cage, settings = cages[sorted(cages)[len(cages) // 2]]
+    curves = len(cages) * expected_curve(cage, settings, jobs=jobs, band=False)
+    verdicts = expected_verdicts(cage, settings, [friction for _, friction in keys], jobs=jobs)
+    return (
+        PICTURES + curves + (2.0 if study.distributions else 1.0) * verdicts
+    )  # central, and over the inputs
+
+
+def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
+    """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
+    from separatrix.chain.solution import solve
+    from separatrix.ranking import ranking_question
+
+    asked = ranking_question(study)
+    total = PICTURES
+    for candidate in asked.candidates:
+        solution = solve(study, candidate)
+        known = [found.mean for found in solution.frictions.values() if found is not None]
+        settings = replace(solution.stability, runs=bearings)
+        whole = expected_verdicts(solution.cage_with(0.0), settings, known, jobs=jobs)
+        total += SHARE_RUN * whole
+    return total
+
+
+SHARE_RUN = 0.7
+"""Of the runs of all cases, those that are made, with what the inverse questions take."""
+
+
+def expected_map(question: MapQuestion, *, jobs: int) -> Second:
+    """Time of the points of a map, by some of them on an even lattice.
+
+    Those of its first row and column are not timed: with them the links of the chain are made that others
+    share.
+    """
+    from separatrix.limits.map import PointFinder, require_cage_friction
+    from separatrix.runner import Runner
+
+    require_cage_friction(question)
+    xs, ys = (_some(axis.values) for axis in (question.x, question.y))
+    points = len(question.x.values) * len(question.y.values)
+    if points <= MAP_POINTS_NOT_TIMED:
+        return 0.0
+    finder = PointFinder(question, Runner())
+    for x in xs:
+        finder((x, ys[0]))
+    for y in ys[1:]:
+        finder((xs[0], y))
+    each = _mean(_time_of(finder, (x, y)) for x in xs[1:] for y in ys[1:])
+    return each * points / jobs
+
+
+def _some(values: Sequence[float]) -> list[float]:
+    """Three of the values of an axis, evenly chosen, or both of two."""
+    return list(dict.fromkeys(values[round(i * (len(values) - 1) / 2)] for i in range(3)))
+
+
+def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, float]) -> Second:
+    begun = time.perf_counter()
+    call(at)
+    return time.perf_counter() - begun
+
+
+def _runs_of_a_point(settings: StabilitySettings, *, band: bool) -> float:
+    """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
+    return 32.0 + (1.5 if band else 0.75) * settings.runs
+
+
+def _runs_of_a_band(settings: StabilitySettings) -> float:
+    """Runs behind a band: a first look at three crossings of every kick, and more at the ends."""
+    return len(settings.kicks) * (16.0 + 1.5 * settings.runs)
+
+
+def _mean(times: Iterable[Second]) -> Second:
+    """Mean of times, of which no more is taken once they have taken long themselves."""
+    begun, found = time.monotonic(), []
+    for one in times:
+        found.append(one)
+        if time.monotonic() - begun > LONGEST_SAMPLE:
+            break
+    return sum(found) / len(found)
+
+
+def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
+    """Time of a run, the mean over the kicks; the compiled code is loaded beforehand."""
+    from separatrix.cage import run_ensemble
+
+    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1)
+    begun = time.perf_counter()
+    run_ensemble(cage, settings, runs=SAMPLED)
+    return (time.perf_counter() - begun) / (SAMPLED * len(settings.kicks))

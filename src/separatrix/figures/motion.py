@@ -1,0 +1,219 @@
+"""What figures and films draw of a run: boundaries and path of the cage centre, and its whirl spectrum."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
+from separatrix.units import Array, Hertz
+
+AROUND = np.linspace(0.0, 2 * np.pi, 1441)
+"""Directions in which boundaries are drawn: a quarter of a degree apart."""
+
+FINE, LAST = 6, 5
+"""Points drawn for a sample of the path, and turns at its end that are drawn darker."""
+
+BEYOND = 2.0
+"""Half the play over the land's gap from which the pockets are left out of the picture."""
+
+NEVER = 1e3
+"""A boundary so many times the play away, along the radius of a single ball, does not exist."""
+
+LAND: Look = {"color": VERMILION, "lw": 3.5, "alpha": 0.45, "zorder": 1.5}
+POCKETS: Look = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5)), "zorder": 1.5}
+"""Boundaries lie below the path, the land wide and light: neither hides the other or a path along it."""
+
+FAINTEST, SEEN = -50.0, -30.0
+"""Weakest whirl of the picture against time, and weakest for which it goes on, under the strongest [dB]."""
+
+SHORTEST, BANDS = 8, 12.0
+"""Least samples of a piece of the run with its own spectrum; least frequencies from 0 to the highest."""
+
+STRONG, PRESENT = 0.3, 0.05
+"""Shares of the largest amplitude from which a whirl is strong, and is shown."""
+
+
+def ring(radius: Array | float, angle: Array) -> Array:
+    """Return points at angles on a circle, or at a radius for each, shape (angle, 2)."""
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+
+
+def pocket_angles(data: xr.Dataset) -> Array:
+    """Return the angle of each pocket in the frame of the ball set [rad]; even unless the data differ."""
+    if "pocket_angle" in data:
+        return np.asarray(data["pocket_angle"].values, dtype=float)
+    count = data.sizes["ball"]
+    return 2 * np.pi * np.arange(count) / count
+
+
+def half_plays(data: xr.Dataset) -> Array:
+    """Return half the play of each ball in its pocket [m]."""
+    if "half_play" in data:
+        return np.asarray(data["half_play"].values, dtype=float)
+    return np.full(data.sizes["ball"], 0.5 * float(data["cage_pocket_clearance"]))
+
+
+def pocket_boundary(angles: Array, plays: Array) -> Array:
+    """Return how far the centre may go in each direction until a pocket touches its ball [m].
+
+    Without rotation and lead that is where |r . e_t,j| = c_j: the polygon inside 2 Z lines. A single ball
+    leaves the way along its own radius free: there it is infinite.
+    """
+    across = np.abs(np.sin(AROUND[:, np.newaxis] - angles))
+    reach = plays / np.maximum(across, 1.0 / NEVER)
+    return np.where((across < 1.0 / NEVER).all(axis=1), np.inf, reach.min(axis=1))
+
+
+def land_boundary(data: xr.Dataset) -> Array | None:
+    """Return how far the centre may go in each direction until the land touches [m]; None without one."""
+    clearance = float(data.get("cage_land_clearance", np.nan))
+    guidance = str(data["cage_guidance"].values) if "cage_guidance" in data else "ball"
+    if guidance == "ball" or not np.isfinite(clearance):
+        return None
+    wave, lobes = float(data.get("cage_land_out_of_round", 0.0)), int(data.get("cage_land_lobes", 2))
+    sign = (-1) ** lobes if guidance == "inner" else 1
+    return 0.5 * clearance - wave * sign * np.cos(lobes * AROUND)
+
+
+def smooth_path(time: Array, position: Array, velocity: Array) -> Array:
+    """Return the path through samples as the cubics that have their positions and velocities.
+
+    Straight lines between the samples of a fast whirl would be drawn as a polygon.
+    """
+    s = np.linspace(0.0, 1.0, FINE, endpoint=False)[:, np.newaxis]
+    step = np.diff(time)[:, np.newaxis, np.newaxis]
+    start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
+    slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
+    there = start + (end - start) * s**2 * (3 - 2 * s)
+    path = there + slope * s * (1 - s) ** 2 - next_slope * s**2 * (1 - s)
+    return np.concatenate([path.reshape(-1, 2), position[-1:]])
+
+
+def last_turns(path: Array) -> int:
+    """Return the first point of the `LAST` turns, by their length; 0 if the path is not much longer."""
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    around = 2 * np.pi * float(np.hypot(*path[-1]))
+    first = int(np.searchsorted(length, length[-1] - LAST * around))
+    return first if length[-1] > 2 * LAST * around and around > 0.0 else 0
+
+
+def largest_play(data: xr.Dataset) -> float | None:
+    """Return half the largest play of the pockets [m]; None if the centre stays far within."""
+    play, land = float(half_plays(data).max()), land_boundary(data)
+    far = float(np.hypot(*data["position"].values.T).max())
+    return play if land is None or play <= BEYOND * max(far, float(land.max())) else None
+
+
+def orbit_reach(data: xr.Dataset) -> float:
+    """Return what a picture of the orbit must show on either side [m]."""
+    far, land, play = (float(np.abs(data["position"].values).max()), land_boundary(data), largest_play(data))
+    return 1.12 * max(far, play or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
+
+
+def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
+    """Draw the centre's path between its boundaries, on a scale that has room for the other runs."""
+    path = 1e3 * smooth_path(*(data[name].values.astype(float) for name in ("time", "position", "velocity")))
+    most = 1e3 * max(map(orbit_reach, (data, *others)))
+    axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="x [mm]", ylabel="y [mm]")
+    axes.set_aspect("equal", adjustable="box", anchor="NW")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+    first, land = last_turns(path), land_boundary(data)
+    if first:
+        axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
+    pockets = pocket_boundary(pocket_angles(data), half_plays(data)) if largest_play(data) else None
+    for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance")):
+        if radius is not None and radius.max() > 0.0:
+            axes.plot(
+                *ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND).T, **look, label=label
+            )
+    label = "path" if not first else f"last {LAST} orbits"
+    axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label, zorder=3)
+    axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
+    axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end", zorder=4)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.5, handlelength=2.0)
+
+
+def even_velocity(time: Array, velocity: Array) -> tuple[Array, Array]:
+    """Return evenly spaced times [s], at least `SHORTEST`, and the complex velocity at them [m/s]."""
+    even = np.linspace(0.0, time[-1] or 1.0, max(SHORTEST, time.size))
+    return even, np.interp(even, time, velocity[:, 0]) + 1j * np.interp(even, time, velocity[:, 1])
+
+
+def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
+    """Return frequency [Hz] and amplitude of the complex velocity, the largest being 1.
+
+    Frequency rises from negative (backward) to positive (forward); times need not be even.
+    """
+    even, v = even_velocity(time, velocity)
+    amplitude = np.abs(np.fft.fftshift(np.fft.fft(v)))
+    frequency = np.fft.fftshift(np.fft.fftfreq(even.size, even[1] - even[0]))
+    return frequency, amplitude / (amplitude.max() or 1.0)
+
+
+def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
+    """Spectra of pieces of the run, each with Hann's window and three quarters over the one before.
+
+    Returns the middles of the pieces [s], frequency [Hz] and amplitude over the largest, shape
+    (piece, frequency). Pieces are long enough for a picture that reaches to `reach`, unless that is 0.
+    """
+    even, v = even_velocity(time, velocity)
+    fine = BANDS / (reach * (even[1] - even[0])) if reach > 0.0 else 1.0
+    wanted = max(2.0 ** round(np.log2(3.0 * np.sqrt(v.size))), 2.0 ** np.ceil(np.log2(fine)))
+    length = int(min(max(v.size // 4, SHORTEST), max(SHORTEST, wanted)))
+    starts = np.arange(0, v.size - length + 1, max(1, length // 4))
+    pieces = v[starts[:, np.newaxis] + np.arange(length)] * np.hanning(length)
+    amplitude = np.abs(np.fft.fftshift(np.fft.fft(pieces, axis=1), axes=1))
+    frequency = np.fft.fftshift(np.fft.fftfreq(length, even[1] - even[0]))
+    return even[starts] + 0.5 * (even[length - 1] - even[0]), frequency, amplitude / (amplitude.max() or 1.0)
+
+
+def of_run(data: xr.Dataset) -> tuple[Array, Array]:
+    """Return the spectrum of a simulation."""
+    return whirl_spectrum(data["time"].values, data["velocity"].values)
+
+
+def spectrum_reach(data: xr.Dataset) -> Hertz:
+    """Return the frequency up to which a picture of the spectrum must go [Hz]."""
+    frequency, share = of_run(data)
+    shown = np.abs(frequency[share > PRESENT])
+    return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
+
+
+def fastest_whirl(data: xr.Dataset) -> Hertz:
+    """Return the highest frequency that is strong in a simulation [Hz]; 0 for a cage at rest."""
+    frequency, share = of_run(data)
+    return float(np.abs(frequency[share > STRONG]).max(initial=0.0))
+
+
+def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Look, ...] = ({"color": BLUE},)) -> None:
+    """Draw the two-sided spectra of the velocity of some runs; forward whirl turns as the balls do."""
+    for data, look in zip(runs, looks, strict=True):
+        frequency, share = of_run(data)
+        axes.plot(1e-3 * frequency, share, **{"lw": 0.8, **look})
+    axes.axvline(0.0, color=GREY, lw=0.5)
+    most = 1e-3 * max(map(spectrum_reach, runs))
+    axes.set(xlim=(-most, most), xlabel="frequency [kHz]; backward < 0 < forward")
+    axes.set(ylim=(0, 1.1), ylabel="share of the largest [-]")
+
+
+def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the spectrum against linear time while there is a whirl to see, darker for a stronger one."""
+    most, whole = spectrum_reach(data), 1e3 * float(data["time"].values[-1]) or 1.0
+    middles, frequency, share = spectrum_against_time(data["time"].values, data["velocity"].values, most)
+    shown = np.abs(frequency) <= max(1.1 * most, 2.1 * (frequency[1] - frequency[0]))
+    level = 20.0 * np.log10(np.maximum(share[:, shown], 10.0 ** (FAINTEST / 20.0)))
+    step = frequency[1] - frequency[0]
+    rows = 1e-3 * np.append(frequency[shown] - 0.5 * step, frequency[shown][-1] + 0.5 * step)
+    # the first and the last piece reach to the ends of the run
+    columns = 1e3 * np.concatenate([[0.0], 0.5 * (middles[1:] + middles[:-1]), [1e-3 * whole]])
+    look: Look = {"cmap": "Greys", "vmin": FAINTEST, "vmax": 0.0, "rasterized": True}
+    mesh = axes.pcolormesh(columns, rows, level.T, **look)
+    axes.axhline(0.0, color=BLUE, lw=0.5)
+    last = 1.5 * columns[1:][(level > SEEN).any(axis=1)].max(initial=0.0)
+    axes.set(xlim=(0.0, min(whole, last or whole)), xlabel="time [ms]")
+    axes.set(ylim=(-1e-3 * most, 1e-3 * most), ylabel="frequency [kHz]")
+    colour_bar(mesh, [axes], "level under the largest [dB]", pad=0.02, aspect=20)

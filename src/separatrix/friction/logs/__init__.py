@@ -1,0 +1,283 @@
+"""Reading tribometer logs: the format is detected from what the file holds, not from its name."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from separatrix.errors import InputError
+from separatrix.friction.logs.clock import CLOCK
+from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
+from separatrix.friction.logs.columns import Understood, understand
+from separatrix.friction.logs.formats import Layout, layout_of
+from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, ColumnRead, Conditions, RawLog, RawTable
+from separatrix.friction.logs.raw import raw_log
+from separatrix.friction.logs.sliding import motion_columns
+from separatrix.regular_file import size_of, unreadable
+from separatrix.units import format_quantity, printable, shown, unit_of
+
+__all__ = ["ColumnMap", "Conditions", "RawLog", "column_map", "described", "read_column_map", "read_log"]
+
+LARGEST = 2_000_000_000
+"""Bytes that a log may have."""
+
+
+def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
+    """Logs of one file: one for each table, sheet, channel group or step in it.
+
+    Parameters
+    ----------
+    path : str or Path
+        Anton Paar, Rtec, Bruker UMT, PCS, LabVIEW or Phoenix Compend text, plain CSV or TSV, ``.xlsx`` or
+        ``.tdms``.
+    column_map : ColumnMap, optional
+        What the file does not state itself, from `read_column_map`.
+
+    Raises
+    ------
+    InputError
+        What cannot be read or decided: file, line, and what to write in a column map. Nothing is guessed.
+    """
+    path = Path(path)
+    name = printable(path.name or str(path), 150)
+    raw = _content(path, name)
+    chosen = column_map or ColumnMap()
+    file = _File(path, name, hashlib.sha256(raw).hexdigest(), chosen, chosen.conditions(path))
+    if raw.startswith(b"PK\x03\x04"):
+        return _logs(_tables_of_workbook(file), file, "Excel workbook")
+    if raw.startswith(b"TDSm"):
+        from separatrix.friction.logs import tdms
+
+        return _logs(tdms.read_tables(path), file, "LabVIEW TDMS")
+    from separatrix.friction.logs.dialect import text_of
+
+    text, encoding = text_of(raw, name, chosen.format.encoding)
+    if not text[:65536].strip():
+        raise InputError(name, "is empty")
+    tables, words = _tables_of_text(text, file)
+    layout = tables[0].layout
+    logs = _logs(tables, file, f"{layout.name} ({encoding}, {words})")
+    series = layout.series(_head(text))
+    if not series:
+        return logs
+    # parts of one test share the words of the head, and settings of the step but for the sign
+    same = [" ".join([series, *(log.metadata.get(k, "").lstrip("+-") for k in layout.same)]) for log in logs]
+    return tuple(replace(log, series=one) for log, one in zip(logs, same, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A file that is read, and what the user states about it."""
+
+    path: Path
+    name: str
+    checksum: str
+    chosen: ColumnMap
+    given: Mapping[str, str | float]
+    """Its conditions by the column map."""
+
+    def understood(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> Understood | None:
+        """What the columns mean; None for a table that is not a log, which `raw_log` refuses."""
+        constant = "normal_force" in self.given
+        try:
+            return understand(headers, units, self.name, self.chosen, layout, constant_force=constant)
+        except InputError:
+            return None
+
+    def wanted(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> list[int]:
+        """Numbers of the columns of a table that are to be read."""
+        found = self.understood(headers, units, layout)
+        if found is None:
+            return []
+        used = {column.index for column in found.used.values()}
+        twins = {i for places in found.twins.values() for i in places}
+        return sorted({*used, *twins, *motion_columns(headers, units), *_step_column(headers, layout)})
+
+
+def _content(path: Path, name: str) -> bytes:
+    size = size_of(path, name)
+    if size > LARGEST:
+        cure = "Split it, or log at a lower rate."
+        raise InputError(name, "is too large: at most 2 GB", f"{size / 1e9:.1f} GB", cure)
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise unreadable(name, error) from None
+
+
+def _head(text: bytes) -> str:
+    return text[:20_000].decode(errors="ignore")
+
+
+def _tables_of_text(text: bytes, file: _File, sheet: str = "") -> tuple[list[RawTable], str]:
+    """Tables of a text, those of one test as one, and the words for how it is written."""
+    from separatrix.friction.logs.text import read_tables
+
+    layout, form = layout_of(_head(text)), file.chosen.format
+    source = f"{file.name}, sheet {printable(sheet)}" if sheet else file.name
+    if sheet:
+        form = replace(form, separator="\t", decimal=".")
+    headless = any(choice.number is not None for choice in file.chosen.columns.values())
+    tables, dialect = read_tables(
+        text, source, form, layout, lambda h, u: file.wanted(h, u, layout), headless=headless
+    )
+    tests: list[list[RawTable]] = []
+    for table in tables:
+        if tests and _goes_on(tests[-1][-1], table, file):
+            tests[-1].append(table)
+        else:
+            tests.append([table])
+    found = [_one(parts) for parts in tests]
+    if len({table.name for table in found}) < len(found):
+        found = [replace(table, name=f"table {i}") for i, table in enumerate(found, 1)]
+    return found, dialect.words
+
+
+def _tables_of_workbook(file: _File) -> list[RawTable]:
+    """Tables of all sheets, or of those that the column map names."""
+    from separatrix.friction.logs.sheet import sheets_as_text, with_formats
+
+    texts = sheets_as_text(file.path, file.name)
+    named = file.chosen.format.tables
+    found = []
+    for sheet, text in texts.items():
+        if named and set(named) <= texts.keys() and sheet not in named:
+            continue
+        try:
+            tables, _ = _tables_of_text(text, file, sheet)
+        except InputError as error:
+            raise error.at(error.path.replace(": line ", ": row ", 1)) from None
+        for table in tables:
+            read = file.wanted(table.headers, table.units, table.layout)
+            given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
+            odd = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
+            odd += [i for i in read if np.isnan(table.columns[i][0])]
+            if odd:  # only a percentage, or a formula without a value, must be looked at again
+                table = with_formats(table, file.path, sheet, file.name, odd)
+            found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
+    return found
+
+
+def _goes_on(before: RawTable, table: RawTable, file: _File) -> bool:
+    """Whether a table under repeated headers goes on where the one before it ends: one test."""
+    if (before.headers, before.units) != (table.headers, table.units) or table.metadata or table.name:
+        return False
+    found = file.understood(table.headers, table.units, table.layout)
+    columns = [found.used[name].index for name in ABSCISSAE if name in found.used] if found else []
+    return bool(columns) and all(table.columns[i][0] >= before.columns[i][-1] for i in columns)
+
+
+def _one(parts: Sequence[RawTable]) -> RawTable:
+    if len(parts) == 1:
+        return parts[0]
+    columns = [np.concatenate(pieces) for pieces in zip(*(part.columns for part in parts), strict=True)]
+    lines = [part.lines for part in parts if part.lines is not None]
+    return replace(parts[0], columns=columns, lines=np.concatenate(lines) if lines else None)
+
+
+def _step_column(headers: Sequence[str], layout: Layout) -> list[int]:
+    """Number of the column whose change begins a new test; none where the format has no such column."""
+    names = [header.strip().casefold() for header in headers]
+    return [names.index(name.casefold()) for name in layout.split_by if name.casefold() in names][:1]
+
+
+def _by_step(table: RawTable) -> list[RawTable]:
+    """The table, or one for each step in it; a step of a single row is left out, for it is not a log."""
+    found = _step_column(table.headers, table.layout)
+    if not found:
+        return [table]
+    steps = table.columns[found[0]]
+    bounds = [0, *(np.flatnonzero(np.diff(steps) != 0.0) + 1).tolist(), len(steps)]
+    pieces = [(a, b) for a, b in pairwise(bounds) if b - a >= 2]
+    if len(bounds) == 2 or not pieces:
+        return [table]
+    parts: list[RawTable] = []
+    names: list[str] = []
+    for start, stop in pieces:
+        names.append(f"step {steps[start]:g}")
+        again = names.count(names[-1])
+        name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
+        part = replace(
+            table,
+            name=f"{table.name}, {name}" if table.name else name,
+            columns=[column[start:stop] for column in table.columns],
+            lines=table.lines[start:stop] if table.lines is not None else None,
+        )
+        parts.append(part)
+    return parts
+
+
+def _logs(tables: Sequence[RawTable], file: _File, format_name: str) -> tuple[RawLog, ...]:
+    """The log of each table; where only some are logs, the refusal states how to leave out the others."""
+    found: list[tuple[str, RawLog]] = []
+    wrong: InputError | None = None
+    for table in _named_tables([part for whole in tables for part in _by_step(whole)], file):
+        source = f"{file.name}, {table.name}" if table.name else file.name
+        try:
+            log = raw_log(table, source, file.checksum, format_name, file.chosen, file.given)
+            found.append((table.name, log))
+        except InputError as error:
+            wrong = wrong or error
+    if wrong is None:
+        return _without_copies([log for _, log in found])
+    if not found:
+        raise wrong
+    names = ", ".join(shown(name) for name, _ in found)
+    cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
+    raise wrong.at(wrong.path, cure=cure)
+
+
+def _named_tables(tables: Sequence[RawTable], file: _File) -> list[RawTable]:
+    """Those that the column map names, or all; a name that is not there is refused."""
+    by_name = {table.name: table for table in tables}
+    for name in file.chosen.format.tables:
+        if name not in by_name:
+            there = ", ".join(f'"{printable(table)}"' for table in by_name if table)
+            cure = f"It has {there}." if there else "It has one table, without a name."
+            raise InputError(file.name, f'has no table "{printable(name)}"', cure=cure)
+    return [by_name[name] for name in file.chosen.format.tables] or list(tables)
+
+
+def _without_copies(logs: Sequence[RawLog]) -> tuple[RawLog, ...]:
+    """The logs, but each table once: the same numbers again are not another test."""
+    kept: dict[bytes, RawLog] = {}
+    for log in logs:
+        columns = [log.friction, *(getattr(log, name) for name in log.abscissae)]
+        numbers = b"".join(column.tobytes() for column in columns)
+        if numbers in kept:
+            note = f"{log.source} has the same numbers and is left out"
+            log = replace(kept[numbers], notes=(*kept[numbers].notes, note))
+        kept[numbers] = log
+    return tuple(kept.values())
+
+
+def described(log: RawLog) -> list[str]:
+    """What was read, in lines: columns with their units and reasons, rows, what is missing, conditions."""
+    lines = [f"{log.source}: {log.format}, {log.rows} rows, sha256 {log.checksum[:12]}"]
+    lines += [f"  {column.meaning}: {_column(column)}" for column in log.columns if column.meaning]
+    rest = [column for column in log.columns if not column.meaning and column.header]
+    lines += [f"  not used: {_column(column)}" for column in rest if column.why != "not needed"]
+    if others := [f'"{printable(column.header)}"' for column in rest if column.why == "not needed"]:
+        lines.append(f"  not used: {', '.join(others)}")
+    for name in log.abscissae:
+        ends = [format_quantity(float(getattr(log, name)[i]), MEANINGS[name]) for i in (0, -1)]
+        lines.append(f"  {name} from {' to '.join(ends)}")
+    known = []
+    for f in fields(log.conditions):
+        value, unit = getattr(log.conditions, f.name), unit_of(type(log.conditions), f.name)
+        if value is not None:
+            text = format_quantity(value, unit) if unit else printable(value, 200)
+            known.append(f"{f.name.replace('_', ' ')} {text}")
+    lines.append(f"  conditions: {'; '.join(known) or 'none known'}")
+    return lines + [f"  note: {note}" for note in log.notes]
+
+
+def _column(column: ColumnRead) -> str:
+    unit = f" in {column.unit}" if column.unit.strip("- ") else ""
+    unit = ", clock times," if column.unit == CLOCK else unit
+    return f'column "{printable(column.header)}"{unit} ({column.why})'

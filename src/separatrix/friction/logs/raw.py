@@ -1,0 +1,237 @@
+"""From a table of a file to a log in SI units: scaled, complete rows only, friction as magnitude."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from separatrix.errors import InputError
+from separatrix.friction.logs.column_map import ColumnMap
+from separatrix.friction.logs.columns import Meant, Understood, understand
+from separatrix.friction.logs.conditions import KEYS, conditions_of
+from separatrix.friction.logs.dialect import is_number
+from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, RawLog, RawTable
+from separatrix.friction.logs.names import Scale, header_parts, looks_extreme, plain
+from separatrix.friction.logs.sliding import sliding_rows
+from separatrix.units import Array, format_quantity, printable
+
+HIGHEST = 5.0
+"""Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
+
+Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+FEW = 0.1
+"""Share of the rows up to which such values are left out; with more of them the column is refused."""
+
+ONE_SIGN = 0.9
+"""Share of the rows in which the normal force must have one sign for it to be that of compression."""
+
+
+def raw_log(
+    table: RawTable,
+    source: str,
+    checksum: str,
+    format_name: str,
+    columns: ColumnMap,
+    given: Mapping[str, str | float],
+) -> RawLog:
+    """Log of one table, with the conditions that the column map states for its file.
+
+    Raises
+    ------
+    InputError
+        A column that is needed cannot be identified or has no unit, time runs backwards, fewer than two
+        complete rows: file, line and cure.
+    """
+    constant = given.get("normal_force")
+    force = constant if isinstance(constant, float) else None
+    understood = understand(
+        table.headers, table.units, source, columns, table.layout, constant_force=force is not None
+    )
+    _check_twins(table, understood, source)
+    notes: list[str] = []
+    mean = understood.used.get("friction")
+    if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
+        notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
+    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
+    arrays = {meaning: _in_si(table, one, absent) for meaning, one in understood.used.items()}
+    _drop_empty_abscissae(arrays, source, notes)
+    _mend_sign(arrays, understood, source, notes)
+    signed = _friction(arrays, force, notes)
+    arrays["friction"] = _magnitude(signed, source, notes)
+    kept = _complete(arrays, source)
+    missing = int(len(kept) - kept.sum())
+    if missing:
+        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
+    _check_order(arrays, kept, table, source)
+    kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
+    notes += [left_out] if left_out else []
+    if not kept.all():
+        arrays = {meaning: column[kept] for meaning, column in arrays.items()}
+    rotation = arrays.pop("rotational_speed", None)
+    turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
+    radius = given.get("track_radius")
+    if turns and isinstance(radius, float) and "slip_speed" not in arrays:
+        arrays["slip_speed"] = turns["rotational_speed"] * radius
+        notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
+    metadata = _without_stroke_speed(table, arrays, notes)
+    conditions, sentences = conditions_of(given, metadata, arrays | turns, source)
+    fields: dict[str, Any] = dict(arrays)
+    return RawLog(
+        source=source,
+        checksum=checksum,
+        format=format_name,
+        missing=missing,
+        columns=understood.columns,
+        metadata=dict(table.metadata),
+        conditions=conditions,
+        notes=(*notes, *sentences),
+        **fields,
+    )
+
+
+def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
+    """Refuse columns of one name that hold different numbers, where one of them is needed."""
+    for meaning, others in understood.twins.items():
+        if meaning not in understood.used:
+            continue
+        places = [understood.used[meaning].index, *others]
+        columns = [table.columns[i] for i in places]
+        both = np.isfinite(columns).all(axis=0)
+        if any(not np.array_equal(columns[0][both], one[both]) for one in columns[1:]):
+            header = table.headers[places[0]].strip()
+            rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
+            listed = ", ".join(f'"{printable(header)}"' for _ in places)
+            numbers = " or ".join(str(i + 1) for i in places)
+            cure = f"State which below [columns] in a column map: {meaning} = {numbers}."
+            raise InputError(source, rule, f"columns {listed}", cure)
+
+
+def _in_si(table: RawTable, one: Meant, absent: Sequence[float]) -> Array:
+    """A column in SI units; NaN for what is not finite or a number that means a missing value."""
+    scale, column = one.scale or Scale(), table.columns[one.index]
+    if absent:
+        column = np.where(np.isin(column, absent), np.nan, column)
+    if scale.factor != 1.0:
+        column = column * scale.factor
+    if scale.divisor != 1.0:
+        column = column / scale.divisor
+    if scale.offset != 0.0:
+        column = column + scale.offset
+    if one.sign < 0:
+        column = -column
+    return column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
+
+
+def _drop_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str]) -> None:
+    there = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
+    if empty == there:
+        raise InputError(source, f"has no value of {' or '.join(empty)} in any row")
+    for meaning in empty:
+        del arrays[meaning]
+        notes.append(f"the column of {meaning} is empty and not used")
+
+
+def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, notes: list[str]) -> None:
+    """Make compression positive: the sign of nearly all rows, or that of the column map."""
+    column = arrays.get("normal_force")
+    if column is None or understood.used["normal_force"].sign < 0:
+        return
+    negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
+    if negative > ONE_SIGN * (negative + positive):
+        arrays["normal_force"] = -column
+        notes.append("the normal force is negative in the file: compression counts negative there")
+    elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
+        rule = "has a normal force of both signs, so that the sign of compression is not certain"
+        got = f"{positive} rows above zero, {negative} below"
+        cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
+        if understood.used["normal_force"].why != "column map":
+            raise InputError(source, rule, got, cure)
+
+
+def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
+    """Friction with its sign as logged, or tangential over normal force."""
+    if "friction" in arrays:
+        return arrays["friction"]
+    tangential = np.abs(arrays["tangential_force"])
+    if "normal_force" not in arrays:
+        normal = np.nan if force is None else force
+        notes.append(f"friction is |tangential force| / {format_quantity(normal, 'N')}, the constant given")
+        return np.asarray(tangential / normal)
+    notes.append("friction is |tangential force| / normal force, row by row")
+    normal_force = arrays["normal_force"]
+    released = int((normal_force <= 0.0).sum())
+    if released:
+        notes.append(f"{released} rows without compression (normal force zero or pulling) are left out")
+    friction = np.full(len(tangential), np.nan)
+    np.divide(tangential, normal_force, out=friction, where=normal_force > 0.0)
+    return np.where(np.isfinite(friction), friction, np.nan)
+
+
+def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
+    """Magnitude of the friction, without values that cannot be a ratio of forces in sliding."""
+    size = np.abs(friction)
+    beyond = size > HIGHEST
+    if beyond.sum() > FEW * np.isfinite(size).sum():
+        cure = 'If it is in percent: friction = { name = "...", unit = "%" } below [columns] in a column map.'
+        rule = f"has a friction above {HIGHEST:g} in more than a tenth of its rows: not a ratio of forces"
+        raise InputError(source, rule, f"a median of {float(np.nanmedian(size)):.4g}", cure)
+    if beyond.any():
+        notes.append(
+            f"friction is above {HIGHEST:g} in {int(beyond.sum())} of {len(size)} rows (up to "
+            f"{np.max(size[beyond]):.4g}), which is not a ratio of forces in sliding: these rows are left out"
+        )
+        size[beyond] = np.nan
+    negative = int(((friction < 0.0) & ~beyond).sum())
+    if negative:
+        notes.append(
+            f"friction is negative in {negative} of {len(size)} rows (strokes there and back, or an "
+            "offset of zero): its magnitude is used"
+        )
+    return size
+
+
+def _complete(arrays: Mapping[str, Array], source: str) -> Rows:
+    """Rows that have friction and every abscissa."""
+    kept = np.isfinite(arrays["friction"])
+    for meaning in ABSCISSAE:
+        if meaning in arrays:
+            kept &= np.isfinite(arrays[meaning])
+    if kept.sum() < 2:
+        got = f"{int(kept.sum())} of {len(kept)} rows"
+        raise InputError(source, "needs at least two rows with a friction and its abscissa", got)
+    return kept
+
+
+def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
+    rows = np.flatnonzero(kept)
+    for meaning in ABSCISSAE:
+        if meaning not in arrays:
+            continue
+        column = arrays[meaning][kept]
+        back = np.flatnonzero(np.diff(column) < 0.0)
+        if len(back):
+            i = int(back[0]) + 1
+            row = f"table row {rows[i] + 1}" if table.lines is None else f"line {table.lines[rows[i]]}"
+            here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
+            cure = "Split the file there; or, if this column has another meaning, state it in a column map."
+            rule = f"{meaning} must not run backwards"
+            raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
+
+
+def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list[str]) -> dict[str, str]:
+    """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
+    strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
+    names = KEYS["slip_speed"].split("; ")
+    speeds = [key for key in table.metadata if plain(header_parts(key)[0][0]) in names]
+    if not strokes or not (speeds or "slip_speed" in arrays):
+        return dict(table.metadata)
+    arrays.pop("slip_speed", None)
+    notes.append(
+        "these are strokes there and back: the file has their greatest speed, which is not used; write "
+        "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
+    )
+    return {key: value for key, value in table.metadata.items() if key not in speeds}

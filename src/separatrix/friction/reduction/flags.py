@@ -1,0 +1,247 @@
+"""What a reader should know about a test, a plain sentence each, with its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from separatrix.friction.records import in_words
+from separatrix.friction.reduction.cycles import means
+from separatrix.friction.reduction.events import friction_step, run_in_rise, wear_step
+from separatrix.friction.reduction.steady import LONG
+from separatrix.units import format_number, format_quantity
+
+if TYPE_CHECKING:
+    from separatrix.friction.reduction import Reduction
+
+RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
+"""Size and words of the unit of a drift, by the abscissa."""
+
+CHANCE = 0.01
+"""Probability without any drift below which a drift is reported."""
+
+CLEAR = 0.25
+"""Power of an oscillation over that of all the rest from which it is reported."""
+
+HALF = 0.5
+"""Share of a test beyond which running-in is reported as long."""
+
+FEW_ROWS = 36
+"""Rows below which running-in cannot be judged."""
+
+RESOLVED = 5.0
+"""Rows an oscillation below which it may be the image of a faster one."""
+
+MOSTLY = 1.4
+"""Standard error over that by noise from which most of it is what may be left of running-in."""
+
+HIGH = 1.0
+"""Friction above which a wrong column or unit is likelier than a contact."""
+
+GAP = 0.05
+"""Share of the steady part without a row that is reported."""
+
+
+def flags(one: Reduction) -> Iterator[str]:
+    """Yield what a reader should know about a test."""
+    yield from _events(one)
+    yield from _run_in(one)
+    yield from _rise(one)
+    yield from _drift(one)
+    yield from _oscillation(one)
+    yield from _spikes(one)
+    yield from _steps(one)
+    yield from _length(one)
+    yield from _range(one)
+    yield from _digits(one)
+    yield from _gap(one)
+
+
+def _at_row(one: Reduction, row: int) -> str:
+    """Return the place of a row in words."""
+    return in_words(float(one.along[min(row, one.along.size - 1)]), one.test.run_in_axis)
+
+
+def _at(one: Reduction, ruled: float) -> str:
+    """Return a place on the ruler in words."""
+    return in_words(one.stretch.place(ruled), one.test.run_in_axis)
+
+
+def _events(one: Reduction) -> Iterator[str]:
+    """Report what begins or ends the test."""
+    for event in one.events:
+        place, usual = _at_row(one, event.row), format_number(event.usual, 3)
+        force, low = format_quantity(event.usual, "N"), format_quantity(event.size, "N")
+        if event.kind == "loading":
+            yield f"The normal force reaches its {force} only at {place}: what is before is left out."
+        elif event.kind == "force lost":
+            yield f"The normal force falls from {force} to {low} at {place}: the steady part ends before it."
+        elif event.kind == "seizure":
+            yield (
+                f"Seizure or a failed film: friction rises from {usual} to {format_number(event.size, 3)} at "
+                f"{place} and stays up; the steady part ends before it."
+            )
+
+
+def _run_in(one: Reduction) -> Iterator[str]:
+    """Report running-in that is long or does not end, and a steady part that is not level."""
+    test, found, start = one.test, one.run_in, float(one.stretch.along[0])
+    share = (test.run_in_end - start) / (test.steady_end - start)
+    end = in_words(test.run_in_end, test.run_in_axis)
+    rest = 0.0 if found is None else found.rest
+    of_mean = f"{format_number(rest, 2)} ({100 * rest / max(abs(test.friction), 1e-300):.2g} % of the mean)"
+    if found is not None and not found.ends:
+        yield (
+            f"Running-in does not end: friction still changes behind {end}, {100 * share:.0f} % of "
+            f"the test; later parts differ from the mean by up to {of_mean}."
+        )
+    elif found is not None and not found.level and rest > one.mean.standard_error:
+        yield (
+            f"The steady part is not level: its later parts differ from its mean by up to {of_mean}, "
+            "which is in the interval."
+        )
+    if share > HALF and (found is None or found.ends):
+        yield f"Running-in takes {100 * share:.0f} % of the test, up to {end}."
+
+
+def _rise(one: Reduction) -> Iterator[str]:
+    """Report running-in that ends far above where it began."""
+    rise = run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)
+    if rise is None:
+        return
+    low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
+    cut = "" if one.run_in is None else "if running-in ends elsewhere, write run_in_end in the column map; "
+    yield (
+        f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
+        f"running-in: a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
+        "use the log only up to the rise."
+    )
+
+
+def _drift(one: Reduction) -> Iterator[str]:
+    """Report a straight drift that is significant and large enough."""
+    mean, test = one.mean, one.test
+    if mean.change_chance >= CHANCE or abs(mean.change) < one.options.drift_ratio * abs(mean.mean):
+        return
+    size, words = RATES[test.run_in_axis]
+    rate, error = format_number(test.drift_rate * size, 3), format_number(test.drift_error * size, 2)
+    first, last = (format_number(mean.mean + half * mean.change, 3) for half in (-0.5, 0.5))
+    yield (
+        f"Friction drifts by {rate} {words} (standard error {error}), from {first} to {last} over the steady "
+        "part: its mean is that of this part, not of its end."
+    )
+
+
+def _oscillation(one: Reduction) -> Iterator[str]:
+    """Report an oscillation that is large enough and exceeds the noise."""
+    found, test = one.oscillation, one.test
+    small = found.amplitude < one.options.stick_slip_ratio * abs(test.friction)
+    if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
+        return
+    rate = format_number(found.frequency, 3)
+    where = {"time": f"at {rate} Hz", "distance": f"{rate} times per m", "cycles": f"{rate} times per cycle"}
+    what = "stick-slip"
+    if one.cycle is None:
+        what = "stick-slip, or once per turn or stroke (no cycle time is known)"
+    spacing = (test.steady_end - test.run_in_end) / max(test.steady_rows - 1, 1)
+    rows = 1.0 / (found.frequency * spacing)
+    if rows < RESOLVED:
+        what = (
+            f"with only {format_number(rows, 2)} rows an oscillation it may be stick-slip, run-out or the "
+            "image of something faster (aliasing); log more rows to distinguish them"
+        )
+    yield (
+        f"Friction oscillates {where[test.run_in_axis]} by {format_number(found.amplitude, 2)} from peak to "
+        f"peak, {100 * found.amplitude / abs(test.friction):.0f} % of its mean, with "
+        f"{format_number(found.signal_to_noise, 2)} times the power of all the rest: {what}."
+    )
+
+
+def _spikes(one: Reduction) -> Iterator[str]:
+    """Report friction that rises far in the steady part and comes back."""
+    low, high = one.test.run_in_end, one.test.steady_end
+    spikes = [e for e in one.events if e.kind == "spike" and low <= one.along[e.row] <= high]
+    if spikes:
+        largest = max(spikes, key=lambda event: event.size)
+        often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
+        sizes = f"{format_number(spikes[0].usual, 3)} to {format_number(largest.size, 3)}"
+        yield f"Friction spikes {often} at {_at_row(one, largest.row)}: from {sizes}, and comes back."
+
+
+def _steps(one: Reduction) -> Iterator[str]:
+    """Report steps in friction or wear depth."""
+    if (step := friction_step(one.spans)) is not None:
+        word = f"{'rises' if step[1] > 0 else 'falls'} in one step by {format_number(abs(step[1]), 2)}"
+        yield f"Friction {word} at {_at(one, step[0])}: a wear event, or a new surface."
+    depth, spans = one.log.wear_depth, one.spans
+    if depth is None or not np.isfinite(depth).all():
+        return
+    jump = wear_step(means(one.stretch.ruler, depth[one.rows], spans.start, spans.end, spans.means.size))
+    if jump is not None:
+        size = format_quantity(abs(jump[1]), "m", 2)
+        yield f"Wear depth jumps by {size} at {_at(one, jump[0])}: a wear event."
+
+
+def _length(one: Reduction) -> Iterator[str]:
+    """Report a test too short for its correlation, where the error is not mostly that of running-in."""
+    test, fewest = one.test, one.options.fewest_effective
+    if test.steady_rows < FEW_ROWS:
+        yield (
+            f"The steady part has {test.steady_rows} rows: too few to see running-in or correlation, and the "
+            "interval assumes none."
+        )
+    elif one.mean.is_long and test.standard_error < MOSTLY * one.mean.standard_error:
+        yield (
+            f"Friction is correlated over {100 / (np.pi * LONG):.0f} % of the steady part or longer: the "
+            "test is too short for its scatter, and the interval may be too narrow."
+        )
+    elif test.effective_count < fewest:
+        yield (
+            f"The steady part holds {format_number(test.effective_count, 2)} independent values, fewer than "
+            f"{format_number(fewest)}: the test is short for its scatter."
+        )
+
+
+def _range(one: Reduction) -> Iterator[str]:
+    """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
+    mean = one.test.friction
+    low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
+    if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
+        numbers = (format_number(value, 3) for value in (mean, low, high))
+        yield (
+            "Friction is outside 0 to 2 (mean {}, 98 % of its rows from {} to {}): "
+            "check zero, sign and units of the forces.".format(*numbers)
+        )
+    elif mean > HIGH:
+        yield (
+            f"Friction {format_number(mean, 3)} is above {format_number(HIGH)}, which dry sliding seldom "
+            "reaches: check that its column is not a force, and the units of the forces."
+        )
+
+
+def _digits(one: Reduction) -> Iterator[str]:
+    """Report friction whose noise is lost in the last digit of the log."""
+    step, error = one.last_digit
+    if step == 0.0:
+        yield (
+            f"Friction is {format_number(one.test.friction)} in every row: the log does not show its noise, "
+            "and the interval holds none."
+        )
+    elif error > one.mean.standard_error:
+        yield (
+            f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
+            f"makes a standard error of {format_number(error, 2)}."
+        )
+
+
+def _gap(one: Reduction) -> Iterator[str]:
+    """Report a stretch without rows in the steady part."""
+    longest = current = 0
+    for count in one.spans.counts:
+        current = current + 1 if count == 0 else 0
+        longest = max(longest, current)
+    share = longest / one.spans.counts.size
+    if share > GAP:
+        yield f"No row lies in {100 * share:.0f} % of the steady part in one piece: the mean bridges it."

@@ -1,0 +1,279 @@
+"""Logs of tribometers to friction tests and the fit to them: the verb `tribometer`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+from separatrix.errors import InputError, together
+from separatrix.friction.fit import FrictionFit, fit_friction
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import ColumnMap, read_column_map
+from separatrix.friction.logs.log import RawLog, by_series, in_order, joined
+from separatrix.friction.records import NAMES, FrictionTest
+from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
+from separatrix.units import printable
+
+_T = TypeVar("_T")
+_S = TypeVar("_S")
+Progress = Callable[[int, int], None]
+"""Called with the number of steps done and their total."""
+
+OTHERS = frozenset(
+    {".toml", ".md", ".json", ".nc", ".png", ".jpg", ".jpeg", ".pdf", ".py", ".svg", ".gif", ".docx"}
+)
+"""Suffixes of files in a folder that are not logs."""
+
+MOST_FILES = 10_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ReducedLogs:
+    """What logs of tribometers show: each test, and the friction of each material from all of them.
+
+    Attributes
+    ----------
+    reductions : tuple of Reduction
+        One for each test, with its log, its friction and the series behind it.
+    friction_tests : tuple of FrictionTest or None
+        The tests as a friction file keeps them; None where some do not state what slid on what.
+    fit : FrictionFit or None
+        Friction of each material over the conditions; None as above.
+    notes : tuple of str
+        What concerns all of them together.
+    """
+
+    reductions: tuple[Reduction, ...]
+    friction_tests: tuple[FrictionTest, ...] | None
+    fit: FrictionFit | None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def logs(self) -> list[RawLog]:
+        """The log of each test."""
+        return [one.log for one in self.reductions]
+
+    @property
+    def tests(self) -> list[TestFriction]:
+        """Friction of each test."""
+        return [one.test for one in self.reductions]
+
+
+def tribometer(
+    paths: str | Path | Sequence[str | Path],
+    *,
+    column_map: ColumnMap | str | Path | None = None,
+    run_in: str | None = None,
+    join: bool = False,
+    complete: bool = False,
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> ReducedLogs:
+    """Read logs of tribometers and reduce each test to its steady friction.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        Logs, each of one or several tests, or folders of them.
+    column_map : ColumnMap or path, optional
+        What the files do not state themselves.
+    run_in : str, optional
+        Where running-in ends in all of them, such as ``"10 min"``; else as in the map, else as detected.
+    join : bool
+        Whether all logs of a folder are parts of one test.
+    complete : bool
+        Whether a test that a friction file cannot keep is refused.
+    jobs : int
+        Threads. The answer does not depend on it.
+    progress : callable, optional
+        Called with the number of steps done and their total.
+
+    Raises
+    ------
+    InputError
+        A file is wrong: the first one, and how many others are.
+    """
+    files = _files([paths] if isinstance(paths, (str, Path)) else paths)
+    chosen = read_column_map(column_map) if isinstance(column_map, (str, Path)) else column_map or ColumnMap()
+    idle = chosen.unused(files)
+    if idle and complete:
+        raise together(idle)
+    options = ReductionOptions(run_in_end=run_in)
+    with _threads(jobs) as pool:
+        read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
+        _refuse_copies(files, read)
+        tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
+        reduced = _each(pool, lambda test: _reduced(*test, chosen, options), tests, progress, 500)
+    reductions = with_outliers(reduced)
+    friction_tests = _friction_tests(reductions, complete=complete)
+    return ReducedLogs(
+        reductions=tuple(reductions),
+        friction_tests=friction_tests,
+        fit=None if friction_tests is None else fit_friction(friction_tests),
+        notes=tuple(f"{one} A friction file is not written with it." for one in idle),
+    )
+
+
+def _files(paths: Sequence[str | Path]) -> list[Path]:
+    """The files named, and those in the folders named, in the order of their names and numbers."""
+    found: list[Path] = []
+    for path in map(Path, paths):
+        try:
+            is_folder = path.is_dir()
+        except OSError:
+            is_folder = False  # `read_log` reports why
+        if not is_folder:
+            found.append(path)
+            continue
+        inside = [one for one in path.iterdir() if one.is_file() and not one.name.startswith(".")]
+        logs = [one for one in inside if one.suffix.lower() not in OTHERS]
+        if not logs:
+            raise InputError(printable(str(path), 200), "is a folder without a log", cure="Name another.")
+        found += sorted(logs, key=lambda one: in_order(one.name))
+    if len(found) > MOST_FILES:
+        raise InputError("FILES", f"must be at most {MOST_FILES}", str(len(found)))
+    known: set[Path] = set()
+    for path in found:
+        if path.resolve() in known:
+            raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
+        known.add(path.resolve())
+    return found
+
+
+@contextmanager
+def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads that begin nothing new once the work is interrupted."""
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _each(
+    pool: ThreadPoolExecutor,
+    work: Callable[[_S], _T],
+    items: Sequence[_S],
+    progress: Progress | None,
+    start: float,
+) -> list[_T]:
+    """What the work returns for each item, in their order, or the refusal of the first that is wrong."""
+    found: list[_T] = []
+    wrong: list[InputError] = []
+    for done, job in enumerate([pool.submit(work, item) for item in items], 1):
+        try:
+            found.append(job.result())
+        except InputError as error:
+            wrong.append(error)
+        if progress is not None:
+            progress(round(start + 500 * done / len(items)), 1000)
+    if wrong:
+        raise _with_others(wrong)
+    return found
+
+
+def _with_others(wrong: Sequence[InputError]) -> InputError:
+    """The first refusal, and how many other files are refused."""
+    first, others = wrong[0], len(wrong) - 1
+    if not others:
+        return first
+    more = f"{others} other file{'s are' if others > 1 else ' is'} refused too."
+    return first.at(first.path, cure=f"{first.cure} {more}".strip())
+
+
+def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> None:
+    """Refuse the same content in two files: it would count as a repeated test."""
+    first: dict[str, Path] = {}
+    for path, (one, *_) in zip(paths, found, strict=True):
+        if one.checksum in first:
+            same = printable(str(first[one.checksum]), 200)
+            cure = "A test counts once; leave one of them out."
+            raise InputError(printable(str(path), 200), f"has the same content as {same}", cure=cure)
+        first[one.checksum] = path
+
+
+def _tests_of(
+    files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
+) -> list[tuple[Path, RawLog]]:
+    """Logs of tests, each with its first file: parts joined on request, or as their headers state."""
+    home = {log.source: path for path, logs in files for log in logs}
+    if join:
+        folders: dict[Path, list[RawLog]] = {}
+        for path, logs in files:
+            folders.setdefault(path.absolute().parent, []).extend(logs)
+        return [(home[parts[0].source], joined(parts)) for parts in folders.values()]
+    groups = by_series([log for _, logs in files for log in logs])
+    tests = [(home[parts[0].source], joined(parts)) for parts in groups]
+    counts = Counter(log.series for _, log in tests if log.series)
+    found = []
+    for path, log in tests:
+        count = counts[log.series]
+        if count > 1 and complete:
+            rule = f"is one of {count} strokes or parts of one test by the header"
+            raise InputError(log.source, rule, cure="Add --join: a test counts once.")
+        note = f"one of {count} parts of one test by the header: --join counts them as one"
+        found.append((path, replace(log, notes=(*log.notes, note)) if count > 1 else log))
+    return found
+
+
+def _reduced(path: Path, log: RawLog, chosen: ColumnMap, options: ReductionOptions) -> Reduction:
+    try:
+        return reduction(log, replace(options, run_in_end=options.run_in_end or chosen.run_in_end(path)))
+    except InputError as error:
+        if not error.path.startswith("ReductionOptions."):
+            raise
+        raise error.at(f"{printable(path.name, 150)}: the end of running-in") from None
+
+
+def _friction_tests(reductions: Sequence[Reduction], *, complete: bool) -> tuple[FrictionTest, ...] | None:
+    """Tests as a friction file keeps them; None where some do not state what slid on what."""
+    found: list[FrictionTest] = []
+    wrong: list[InputError] = []
+    for one in reductions:
+        try:
+            found.append(friction_test(one.test))
+        except InputError as error:
+            wrong.append(error)
+    if wrong and complete:
+        raise _with_others(wrong)
+    return None if wrong else tuple(found)
+
+
+def friction_test(test: TestFriction) -> FrictionTest:
+    """Test of a reduced log as a friction file keeps it.
+
+    Raises
+    ------
+    InputError
+        The log and its column map do not state what slid on what, or the friction is not above zero.
+    """
+    from separatrix import __version__
+
+    known = test.conditions
+    if missing := [name for name in NAMES if getattr(known, name) is None]:
+        cure = "Give it under [test] of a column map: --map map.toml."
+        raise InputError(test.source, f"does not state: {', '.join(missing)}", cure=cure)
+    points = {name: getattr(known, name) for name in ("temperature", "slip_speed", "pressure")}
+    return FrictionTest(
+        material=str(known.material),
+        counterface=str(known.counterface),
+        medium=str(known.medium),
+        friction=test.friction,
+        standard_error=test.standard_error,
+        standard_deviation=test.standard_deviation,
+        effective_count=test.effective_count,
+        sample=known.sample,
+        test=known.test,
+        run_in_end=test.run_in_end,
+        run_in_axis=test.run_in_axis,
+        flags=test.flags,
+        source=test.source,
+        checksum=test.checksum,
+        reduced_by=f"separatrix {__version__}",
+        **{name: None if value is None else (value, value) for name, value in points.items()},
+    )

@@ -1,0 +1,383 @@
+"""Text of a ranking: the answer for the bearing's own environment, and all of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from separatrix.present.text.cage import growth_text, judgement_facts, motion_words
+from separatrix.present.text.chain import basis
+from separatrix.present.text.stability import ensemble_facts
+from separatrix.present.text.tables import (
+    ABSENT,
+    facts,
+    number,
+    paragraph,
+    quantity,
+    section,
+    significant,
+    table,
+)
+from separatrix.ranking import NotMeasured, Ranked
+
+if TYPE_CHECKING:
+    from separatrix.answers import RankingAnswer
+    from separatrix.cage import Judgement
+    from separatrix.chain.pocket_contact import PocketConditions
+    from separatrix.ranking import RankedEnvironment, Ranking, Row
+    from separatrix.study import Study
+
+HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)
+SHORT_EVIDENCE = (
+    *("material", "motion", "stable runs by kick", "largest\noffset", "drift\n1/s"),
+    *("force at\na pocket", "force on\nthe land", "rubs\nwith"),
+)
+ETA = "bearing's\neta"
+EVIDENCE = (
+    *("material", "motion", ETA, "growth rate 1/s\n(95 %)", "offset\nmm", "drift\n1/s", "pocket\nN"),
+    *("land\nN", "whirl\nHz", "whirl\nratio"),
+)
+DIRECTIONS = {1: " forward", -1: " backward", 0: ""}
+
+LEGEND = (
+    "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta. "
+    "margin: threshold less the bearing's eta. P(stable): share of runs that settle, worst kick."
+)
+EVIDENCE_LEGEND = (
+    "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over those runs. "
+    "offset of the cage centre, force at a pocket and at the land: largest in any run. drift: median growth "
+    "of the mean offset of the runs that do not whirl. whirl: median of the runs that whirl, of all runs if "
+    "none does, seen from the balls; ratio: speed at which the centre orbits the axis over that of the balls."
+)
+
+MARK = "*"
+"""After a friction that is extrapolated beyond its tests."""
+
+POCKET = " (pocket: "
+"""Before what the pocket has, at the end of a sentence on an extrapolation."""
+
+NAMED, LEADERS = 6, 3
+"""Uncertain inputs, and candidates that lead elsewhere, that are named."""
+
+
+def rank(answer: RankingAnswer, study: Study) -> list[str]:
+    """The answer for the bearing's own environment, on a screen; `every_environment` has the rest."""
+    found = answer.ranking
+    rows, more = headline(found), "`--full` prints all evidence"
+    undecided = [row for row in rows if verdict_word(row) == "UNDECIDED"]
+    leads = []
+    for one in found.environments:
+        if one.name != found.environment:
+            names = [row.name for row in one.materials if isinstance(row, Ranked) and row.rank == 1]
+            rest = f" and {len(names) - LEADERS} more" if len(names) > LEADERS else ""
+            leads.append(f"{one.name}: {', '.join(names[:LEADERS]) + rest or 'none'}")
+    elsewhere = (
+        f"First elsewhere: {'; '.join(leads)}. {more}, for every environment." if leads else f"{more}."
+    )
+    evidence = f"Evidence: {_ensemble(found)}"
+    return [
+        paragraph(in_short(found), indent=""),
+        section(
+            _title(found.environment), verdicts(rows), "", paragraph(LEGEND), *footnotes(rows), *lowest(rows)
+        ),
+        *_over_inputs(rows, study),
+        section(evidence, _short_evidence(rows), *(["", *reasons(undecided)] if undecided else [])),
+        paragraph(elsewhere, indent=""),
+    ]
+
+
+def only_table(answer: RankingAnswer, study: Study) -> list[str]:  # noqa: ARG001
+    """The table of the bearing's own environment, for `--quiet`."""
+    found = answer.ranking
+    return [section(_title(found.environment), verdicts(headline(found)))]
+
+
+def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
+    """Verdict, margin, rank, evidence and reason of each candidate in each environment, then overall."""
+    found = answer.ranking
+    own, *others = sorted(found.environments, key=lambda one: bool(one.name != found.environment))
+    first = own.materials[0]
+    judged = judgement(first)
+    detail = (
+        [section(f"{first.name} in detail", facts(judgement_facts(judged, first.reason)))] if judged else []
+    )
+    return [
+        paragraph(in_short(found), indent=""),
+        environment(found, own),
+        *_over_inputs(own.materials, study),
+        paragraph(LEGEND),
+        paragraph(EVIDENCE_LEGEND),
+        *detail,
+        section("What the verdicts hold for", facts(_holds_for(answer, study))),
+        *(environment(found, one) for one in others),
+        *([_overall(found)] if others else []),
+    ]
+
+
+def headline(found: Ranking) -> tuple[Row, ...]:
+    """Return the rows of the bearing's own environment."""
+    return next(one.materials for one in found.environments if one.name == found.environment)
+
+
+def judgement(row: Row) -> Judgement | None:
+    """Return verdict and evidence of a candidate; None if it has none."""
+    return None if isinstance(row, NotMeasured) else row.judgement
+
+
+def verdict_word(row: Row) -> str:
+    """Return the verdict of a candidate, or why it has none."""
+    found = judgement(row)
+    if found is None:
+        return "not measured" if isinstance(row, NotMeasured) else "not finished"
+    return found.verdict.name
+
+
+def _title(name: str) -> str:
+    """Return the name of an environment as the title of its section."""
+    return name[:1].upper() + name[1:]
+
+
+def verdicts(rows: Sequence[Row]) -> str:
+    """Return the table of verdicts, margins and ranks."""
+    shared = Counter(row.rank for row in rows if isinstance(row, Ranked))
+    cells = []
+    for row in rows:
+        found, friction, margins = judgement(row), ABSENT, (ABSENT, ABSENT)
+        place = ABSENT
+        if not isinstance(row, NotMeasured):
+            friction = number(row.friction) + (MARK if row.extrapolation else "")
+        if isinstance(row, Ranked):
+            ends = row.restitution_threshold_low, row.restitution_threshold_high
+            margins = _with_interval(row.restitution_threshold, *ends), f"{row.margin:+.2f}"
+            place = f"{row.rank}{'=' if shared[row.rank] > 1 else ''}"
+        cells.append([place, row.name, friction, *margins, _probability(found), verdict_word(row)])
+    return table(HEADERS, cells, left=2)
+
+
+def _with_interval(value: float, low: float, high: float) -> str:
+    return f"{number(value, 2)} ({number(low, 2)} to {number(high, 2)})"
+
+
+def _probability(found: Judgement | None) -> str:
+    if found is None:
+        return ABSENT
+    return _with_interval(found.probability_stable, found.probability_low, found.probability_high)
+
+
+def lowest(rows: Sequence[Row]) -> list[str]:
+    """Return who has the lowest mean friction, with what probability; nothing if none was measured."""
+    measured = [row for row in rows if not isinstance(row, NotMeasured)]
+    known = [(row.probability_lowest_friction or 0.0, row.name) for row in measured]
+    likely = [f"{name} {share:.2f}" for share, name in sorted(known, reverse=True) if share >= 0.005]
+    if not measured:
+        return []
+    names = ", ".join(likely) or f"none, for only {measured[0].name} was measured here"
+    return [paragraph(f"Probability of the lowest mean friction: {names}.")]
+
+
+def footnotes(rows: Sequence[Row]) -> list[str]:
+    """Return what is extrapolated, each sentence once with its candidates unless it is all; or nothing."""
+    measured = [row for row in rows if not isinstance(row, NotMeasured)]
+    who: dict[str, list[str]] = {}
+    for row in measured:
+        for sentence in row.extrapolation:
+            who.setdefault(sentence, []).append(row.name)
+    each: dict[str, list[str]] = {}
+    for sentence, names in who.items():
+        stem, pocket, value = sentence.partition(POCKET)
+        whose = "" if len(names) == len(measured) else f" {', '.join(names)}"
+        each.setdefault(stem + pocket, []).append(f"{value.removesuffix(')')}{whose}" if pocket else whose)
+    sentences = [
+        f"{stem}{'; '.join(values)})"
+        if stem.endswith(POCKET)
+        else stem + (f" ({values[0][1:]})" if values[0] else "")
+        for stem, values in each.items()
+    ]
+    text = f"extrapolated beyond the tests: {'. '.join(sentences)}."
+    return [paragraph(text, first=f"  {MARK} ", indent="    ")] if sentences else []
+
+
+def reasons(rows: Sequence[Row]) -> list[str]:
+    """Return the reasons; candidates of the same friction share theirs."""
+    names: dict[str, list[str]] = {}
+    for row in rows:
+        names.setdefault(row.reason, []).append(row.name)
+    return [
+        paragraph(f"{', '.join(who)}: {reason}", first="  ", indent="      ") for reason, who in names.items()
+    ]
+
+
+def in_short(found: Ranking) -> str:
+    """Return the answer in three sentences: who is first here, with what margin, and what the others are."""
+    rows, place = headline(found), found.environment
+    first = [row for row in rows if isinstance(row, Ranked) and row.rank == 1]
+    if not first:
+        return f"No candidate was ranked in {place}."
+    words = ", ".join(dict.fromkeys(verdict_word(row) for row in first))
+    lead = f"{first[0].name} ranks first in {place}: {words}."
+    it, pocket = "It tolerates", "this bearing with its pocket has"
+    if len(first) > 1:
+        lead = (
+            f"{len(first)} materials tie for first in {place} ({', '.join(r.name for r in first)}): {words}."
+        )
+        it, pocket = "They tolerate", "this bearing and their pockets have"
+    limits = _span([row.restitution_threshold for row in first])
+    etas = _span([row.restitution_factor for row in first])
+    margins = _span([row.margin for row in first], "{:+.2f}")
+    others: dict[str, list[str]] = {}
+    for row in rows:
+        if row not in first:
+            others.setdefault(verdict_word(row), []).append(row.name)
+    rest = f" The others: {_by_verdict(others)}." if others else ""
+    return f"{lead} {it} a restitution factor up to {limits}; {pocket} {etas} (margin {margins}).{rest}"
+
+
+def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
+    """Return one number, or the least and the largest of several."""
+    return " to ".join(dict.fromkeys(form.format(value + 0.0) for value in (min(values), max(values))))
+
+
+def _by_verdict(each: Mapping[str, Sequence[str]]) -> str:
+    return "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
+
+
+def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
+    """Return the verdicts over the uncertain inputs; nothing if the study states none."""
+    known = [
+        (row.name, row.over_inputs) for row in rows if not isinstance(row, NotMeasured) and row.over_inputs
+    ]
+    if not known:
+        return []
+    each: dict[str, list[str]] = {}
+    for name, found in known:
+        each.setdefault(found.verdict.name, []).append(f"{name} {_probability(found)}")
+    names = ", ".join([*study.distributions][:NAMED]) + (", ..." if len(study.distributions) > NAMED else "")
+    text = (
+        f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
+        f"{known[0][1].runs} runs from each kick, P(stable) is: {_by_verdict(each)}."
+    )
+    return [paragraph(text, indent="")]
+
+
+def _ensemble(found: Ranking) -> str:
+    """Return the runs behind every verdict, their length and their kicks."""
+    kicks = ", ".join(f"{kick:g}" for kick in found.kicks)
+    return f"{found.runs} runs of {quantity(found.duration, 's')} from each kick, {kicks} m/s"
+
+
+def _short_evidence(rows: Sequence[Row]) -> str:
+    """Return motion, largest offset, drift, forces and rubbing of every candidate that has a verdict."""
+    cells = [
+        [
+            row.name,
+            motion_words(found.cage_motion),
+            " ".join(str(kick.settles) for kick in found.by_kick),
+            _rounded(found.largest_offset, "m"),
+            significant(found.drift_rate, 2),
+            _rounded(found.largest_contact_force, "N"),
+            _rounded(found.largest_land_force, "N"),
+            _rounded(found.rubbing_power, "W", 2),
+        ]
+        for row in rows
+        if (found := judgement(row)) is not None
+    ]
+    return table(SHORT_EVIDENCE, cells, left=3) if cells else "  none: no verdict was finished"
+
+
+def _rounded(value: float, unit: str, digits: int = 3) -> str:
+    return quantity(float(f"{value:.{digits}g}"), unit)
+
+
+def evidence(rows: Sequence[Row]) -> str:
+    """Return the evidence of verdicts; the bearing's eta only where candidates differ in it."""
+    etas = {
+        number(row.restitution_factor, 2)
+        for row in rows
+        if not isinstance(row, NotMeasured) and row.judgement
+    }
+    headers = [header for header in EVIDENCE if header != ETA or len(etas) > 1]
+    cells = []
+    for row in rows:
+        if isinstance(row, NotMeasured) or row.judgement is None:
+            cells.append([row.name, *[ABSENT] * (len(headers) - 1)])
+            continue
+        found = row.judgement
+        whirl = number(found.whirl_frequency, 1 if found.whirl_frequency < 10 else 0)
+        cells.append(
+            [
+                *(row.name, motion_words(found.cage_motion)),
+                *([number(row.restitution_factor, 2)] if len(etas) > 1 else []),
+                *(growth_text(found), number(1e3 * found.largest_offset), significant(found.drift_rate, 2)),
+                *(number(found.largest_contact_force, 0), number(found.largest_land_force, 0)),
+                *(whirl + DIRECTIONS[found.whirl_direction], number(found.whirl_ratio, 2)),
+            ]
+        )
+    return table(headers, cells, left=2)
+
+
+def environment(found: Ranking, one: RankedEnvironment) -> str:
+    """Return verdicts, evidence and reasons of one environment."""
+    rows = one.materials
+    shown = (f"  Evidence: {_ensemble(found)}", "", evidence(rows), "", *reasons(rows))
+    return section(_title(one.name), verdicts(rows), "", *footnotes(rows), *lowest(rows), "", *shown)
+
+
+def _overall(found: Ranking) -> str:
+    """Return the table of mean frictions, which belongs to no environment."""
+    title, rows = "Overall: mean friction over the measured environments", found.overall
+    notes = footnotes(rows)
+    return section(
+        title,
+        verdicts(rows),
+        *([""] if notes else []),
+        *notes,
+        *gaps(found),
+        "",
+        evidence(rows),
+        "",
+        *reasons(rows),
+    )
+
+
+def gaps(found: Ranking) -> list[str]:
+    """Return in how many environments a candidate was measured, if not in all."""
+    total = len(found.environments)
+    counts = Counter(
+        row.name for one in found.environments for row in one.materials if not isinstance(row, NotMeasured)
+    )
+    few = [f"{row.name} in {counts[row.name]}" for row in found.overall if counts[row.name] < total]
+    return ["", paragraph(f"Measured in fewer than {total} environments: {', '.join(few)}.")] if few else []
+
+
+def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
+    found = answer.ranking
+    rows = [row for one in found.environments for row in one.materials]
+    scatter = "none: every friction has its measured scatter"
+    if any(row.friction_scatter_assumed for row in rows if not isinstance(row, NotMeasured)):
+        share = f"{100.0 * found.friction_scatter:.3g} %"
+        scatter = f"assumed to scatter by {share} of their mean: a guess, [ranking] friction_scatter"
+    eta, limit, film = found.restitution_factor, found.solid_lubrication_limit, []
+    if eta < limit:
+        words = (
+            f"The contact model gives {number(eta, 2)} for this film, below that {limit:g}. Both are shown."
+        )
+        film = [("This film", words)]
+    return [
+        *basis(study, answer),
+        *ensemble_facts(found.kicks, found.runs, found.duration),
+        ("Ball on pocket", _pocket(found.pocket)),
+        ("Unrepeated tests", scatter),
+        ("The paper's bound", found.paper_statement),
+        *film,
+    ]
+
+
+def _pocket(pocket: PocketConditions) -> str:
+    """Return the sliding speed, pressure and force at which the frictions are taken."""
+    low, high = pocket.slip_speed_low, pocket.slip_speed_high
+    slip = f"{pocket.slip_speed:.3g} m/s"
+    if high > 1.001 * low:
+        slip += f" ({low:.3g} to {high:.3g} around the bearing)"
+    pressure, force = _rounded(pocket.pressure, "Pa"), _rounded(pocket.impact_force, "N")
+    return f"slides at {slip}; mean pressure {pressure} in an impact of {force} (impact speed)"

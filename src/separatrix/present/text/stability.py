@@ -1,0 +1,233 @@
+"""Text of the stability curve and of a stability map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from separatrix.cage_choice import cage_candidate
+from separatrix.limits.map_records import NOT_RUN
+from separatrix.present.text.cage import friction_text
+from separatrix.present.text.chain import basis
+from separatrix.present.text.tables import ABSENT, facts, number, paragraph, quantity, section, table
+
+if TYPE_CHECKING:
+    from separatrix.answers import MapAnswer, StabilityAnswer
+    from separatrix.limits import CriticalFriction, StabilityCurve
+    from separatrix.limits.map_records import (
+        Inference,
+        MapAxis,
+        MapChange,
+        MapPoint,
+        StabilityMap,
+        Stopping,
+    )
+    from separatrix.study import Study
+
+HEADERS = (
+    *("restitution\nfactor", "critical friction\n(95 %)", "band\nlow", "band\nhigh"),
+    *("linear\nlimit", "hard\nlimit"),
+)
+LEGEND = "\n" + paragraph(
+    "critical friction: half the runs whirl from the reference kick; fewer below, more above. band: nine in "
+    "ten runs settle from every kick below its low end, and whirl from every kick above its high end. linear "
+    "limit: no clearance. hard limit: walls as pockets, evenly spaced. Both for balls at rest."
+)
+MAP_LEGEND = paragraph(
+    "between the last point of a column at which, beyond the scatter, less than half the runs whirl and the "
+    "first at which more than half do; margin: distance of the study's own value to that band, positive "
+    "where the cage settles."
+)
+
+FRICTION = "ball_cage_friction"
+MOST_COLUMNS, SOME_COLUMNS = 20, 9
+"""Columns of the map whose bands are all printed, and how many are chosen of more."""
+
+ROUNDING = 1e-9
+"""A distance to a band below this share of the value is the rounding of its unit."""
+
+KINDS = {
+    "STABLE": "stable",
+    "UNSTABLE": "unstable",
+    "UNDECIDED": "undecided",
+    "refused": "refused",
+    "inferred": "inferred",
+    "not_run": "not run",
+}
+
+
+def stability(answer: StabilityAnswer, study: Study) -> list[str]:
+    """Critical friction with its band and limits, and the ensemble they hold for."""
+    found = answer.curve
+    reasons = dict.fromkeys(point.reason for point in found.curve if point.reason)
+    ensemble = ensemble_facts(found.kicks, found.runs, found.duration, middle=found.middle_kick)
+    holds_for = section("What it holds for", facts([*basis(study, answer), *ensemble]))
+    remarks = [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
+    return [*curve(found), holds_for, *remarks]
+
+
+def ensemble_facts(
+    kicks: Sequence[float], runs: int, duration: float, *, middle: float | None = None
+) -> list[tuple[str, str]]:
+    """Return the ensemble in a few words."""
+    each = ", ".join(f"{kick:g}" for kick in kicks)
+    return [
+        ("Kicks", f"{each} m/s" + (f"; the curve is that of {middle:g} m/s" if middle else "")),
+        ("Runs", f"{runs} at each point, of {quantity(duration, 's')}"),
+    ]
+
+
+def curve(found: StabilityCurve) -> list[str]:
+    """Points of the curve with band and limits, and the band at this bearing's own restitution factor."""
+    linear = {one.restitution_factor: one.critical_friction for one in found.linear_limit}
+    hard = {one.restitution_factor: one.critical_friction for one in found.hard_limit}
+    rows = []
+    for point in found.curve:
+        eta, critical = point.restitution_factor, ABSENT
+        if point.critical_friction is not None:
+            ends = f"{number(point.scatter_low)} to {number(point.scatter_high)}"
+            critical = f"{number(point.critical_friction)} ({ends})"
+        others = (point.critical_friction_low, point.critical_friction_high, linear.get(eta), hard.get(eta))
+        rows.append([number(eta), critical, *map(number, others)])
+    block = section("Stability curve", table(HEADERS, rows), LEGEND + drift_note(found))
+    return [block] if found.here is None else [block, _here(found, found.here)]
+
+
+def drift_note(found: StabilityCurve) -> str:
+    """Return that a cage without a land is stable nowhere, and how fast it drifts; empty if it has one."""
+    if not found.drifts:
+        return ""
+    rate = found.drift_rate_law
+    pace = ""
+    if rate:
+        pace = f", by the linear law at {number(rate)} 1/s (e-fold every {quantity(1.0 / rate, 's')})"
+    return "\n\n" + paragraph(
+        f"This cage has no land and drifts at any friction{pace}. Below the curve disturbances decay, but no "
+        "verdict there is STABLE."
+    )
+
+
+def _here(found: StabilityCurve, here: CriticalFriction) -> str:
+    """What this bearing's own damping allows: frictions between which the kick decides."""
+    low, high = here.critical_friction_low, here.critical_friction_high
+    kicks = zip(found.kicks, here.kick_critical_friction, strict=True)
+    lines = [
+        ("Every kick settles below", "none" if low is None else f"a friction of {number(low)}"),
+        ("Every kick whirls above", "none" if high is None else f"a friction of {number(high)}"),
+        ("Half the runs whirl at", ", ".join(f"{number(at)} from {kick:g} m/s" for kick, at in kicks)),
+        *([("Reason", here.reason)] if here.reason else []),
+    ]
+    title = f"Sub-critical band of this bearing, restitution factor {number(here.restitution_factor)}"
+    return section(title, facts(lines))
+
+
+def stability_map(answer: MapAnswer, study: Study) -> list[str]:
+    """Shares of the plane, bands at a few columns, the rule, and what it holds for."""
+    found = answer.map
+    candidate = None
+    if study.cage is None or study.cage.ball_cage_friction is None:
+        candidate = cage_candidate(study)
+    axes = [
+        (name, _axis(axis, candidate.name if candidate and axis.parameter == FRICTION else "the study"))
+        for name, axis in (("x", found.x), ("y", found.y))
+    ]
+    shares = [
+        [name, str(found.counts[kind]), f"{100 * found.counts[kind] / len(found.points):.1f} %"]
+        for kind, name in KINDS.items()
+        if found.counts[kind] or kind in ("STABLE", "UNSTABLE")
+    ]
+    chosen = _chosen(found.x.values)
+    total, shown = len(found.x.values), len(chosen)
+    part = f"{shown} of {total} columns of the map are shown; map.json and map.nc have all of them."
+    legend = ["", *([paragraph(part)] if shown < total else []), MAP_LEGEND]
+    headers = (found.x.parameter, "from", "to", "whirls", "margin")
+    bands = table(headers, [row for x in chosen for row in _bands(found, x)])
+    varied = (found.x.parameter, found.y.parameter)
+    friction = [] if FRICTION in varied else [("Pocket friction", friction_text(answer.cage, study))]
+    ensemble = [
+        ("Kick", "each point its own" if "kick" in varied else quantity(found.kick, "m/s")),
+        ("Runs", _runs(found.stopping)),
+        *_inference(found.inference),
+        ("Run", f"{quantity(found.duration, 's')}, ball scatter {found.ball_scatter:g}"),
+    ]
+    refused = [one for one in found.points if not one.runs and not one.reason.startswith(NOT_RUN)]
+    first = f"{len(refused)} points were refused; the first: {refused[0].reason}" if refused else ""
+    return [
+        section("Stability map", facts(axes), "", table(("", "points", "share"), shares)),
+        section("Where the cage begins to whirl", bands, *legend),
+        section("What it holds for", facts([*basis(study, answer), *friction, *ensemble])),
+        *([paragraph(first, first="  - : ", indent="      ")] if first else []),
+    ]
+
+
+def _chosen(values: Sequence[float]) -> list[float]:
+    """Values of x whose bands are printed: all, or evenly chosen."""
+    if len(values) <= MOST_COLUMNS:
+        return list(values)
+    return [values[round(i * (len(values) - 1) / (SOME_COLUMNS - 1))] for i in range(SOME_COLUMNS)]
+
+
+def _axis(axis: MapAxis, whose: str) -> str:
+    low, high = (quantity(axis.values[i], axis.unit) for i in (0, -1))
+    here = "" if axis.here is None else f", {whose} has {quantity(axis.here, axis.unit)}"
+    return f"{axis.parameter}, {low} to {high}, {len(axis.values)} values{here}"
+
+
+def _bands(found: StabilityMap, x: float) -> list[list[str]]:
+    """Return the bands of a column; one that does not change has a row with what it is."""
+    unit, here, start = found.y.unit, found.y.here, quantity(x, found.x.unit)
+    changes = [change for change in found.changes if change.x == x]
+    if not changes:
+        return [[start, "-", "-", _of_one_kind([p for p in found.points if p.x == x and p.runs]), "-"]]
+    return [
+        [
+            *(start, quantity(change.y_low, unit), quantity(change.y_high, unit)),
+            "above" if change.whirls_above else "below",
+            "-" if here is None else quantity(_margin(change, here), unit),
+        ]
+        for change in changes
+    ]
+
+
+def _margin(change: MapChange, here: float) -> float:
+    distance = max(change.y_low - here, here - change.y_high, 0.0)
+    distance *= distance > ROUNDING * abs(here)
+    whirls = (here > change.y_high) == change.whirls_above and distance > 0.0
+    return -distance if whirls else distance
+
+
+def _of_one_kind(points: Sequence[MapPoint]) -> str:
+    """Return what the points of a column are that does not change, beyond the scatter."""
+    if not points:
+        return "not run"
+    sides = {point.side for point in points}
+    if 0 in sides:
+        return "no boundary found"
+    return "everywhere" if sides == {1} else "nowhere"
+
+
+def _runs(rule: Stopping) -> str:
+    if rule.agreeing_runs == rule.most_runs:
+        return f"{rule.most_runs} at every point"
+    wrong, other = 100 * rule.wrong_side_probability, 100 * rule.other_decision_probability
+    return (
+        f"up to {rule.most_runs}, stopped after {rule.agreeing_runs} that agree (risk of the wrong "
+        f"side {wrong:.2g} %, of another decision {other:.2g} %)"
+    )
+
+
+def _inference(found: Inference | None) -> list[tuple[str, str]]:
+    """Return how many points were not run, and how often those around them were wrong where they were."""
+    if found is None or not found.points + found.checked:
+        return []
+    inferred = f"{found.points} points were not run, as those around them agree"
+    if found.error_low is None or found.error_high is None:
+        return [("Inferred", f"{inferred}; none was checked")]
+    return [
+        (
+            "Inferred",
+            f"{inferred}; {found.checked} more of that kind were run as a check, of which "
+            f"{found.decided_otherwise} are decided otherwise "
+            f"(95 %: {100 * found.error_low:.2g} to {100 * found.error_high:.2g} %)",
+        )
+    ]

@@ -1,1 +1,0 @@
-"""From raw tribometer logs to friction with its scatter."""

@@ -1,0 +1,365 @@
+"""What each verb computes, from a study to the record of its answer."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from separatrix.answers import (
+    CheckAnswer,
+    MapAnswer,
+    RankingAnswer,
+    RestitutionAnswer,
+    SensitivityAnswer,
+    SimulationAnswer,
+    StabilityAnswer,
+    TractionAnswer,
+)
+from separatrix.cage import History, PlanarCage, linear_whirl_frequency
+from separatrix.cage import simulate as follow
+from separatrix.cage_choice import (
+    cage_candidate,
+    environment_of,
+    reference_candidate,
+    required_environment,
+)
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.restitution import Restitution
+from separatrix.chain.shown_traction import curves_by_ratio, shear
+from separatrix.chain.solution import Solution, solve
+from separatrix.draws import uncertain_inputs
+from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
+from separatrix.explore.cases import asked_cases
+from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
+from separatrix.explore.sweep import Case, Sweep
+from separatrix.explore.sweep import sweep as run_cases
+from separatrix.explore.uncertain import uncertain_study
+from separatrix.friction.fit import TestedFriction
+from separatrix.limits import stability_curve
+from separatrix.limits.map import stability_map, value_here
+from separatrix.limits.map_parameters import KICK
+from separatrix.limits.map_records import MapQuestion
+from separatrix.ranking import rank as rank_materials
+from separatrix.ranking import ranking_question
+from separatrix.ranking.drawn import frictions_to_draw
+from separatrix.ranking.plausible import Moved, beyond_motion
+from separatrix.runner import Runner, made_into
+from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
+from separatrix.units import MetrePerSecond, format_quantity, parse
+
+SAMPLES_A_WHIRL = 15
+"""Samples of a simulated run in a period of the linear whirl."""
+
+MOST_SHOWN = 20_000
+"""Samples of a simulated run."""
+
+LAST_RUN = MOST_RUNS = 1_000_000
+SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
+"""Bearings that `sensitivity` draws."""
+
+
+def check(study: Study) -> CheckAnswer:
+    """The bearing at standstill, for its contact pressures.
+
+    Warns
+    -----
+    ValidityWarning
+        `sensitivity` refuses the friction that tests predict in the pocket: its line.
+    """
+    _try_predicted_friction(study)
+    at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
+    try:
+        return CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
+    except SeparatrixError as error:
+        return CheckAnswer(static=None, static_reason=str(error))
+
+
+def _try_predicted_friction(study: Study) -> None:
+    """Warn where `sensitivity` refuses the friction that tests predict in the pocket."""
+    candidates = study.ranking.candidates if study.ranking and study.cage else ()
+    if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
+        return
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)  # the chain was not asked for
+            uncertain_inputs(study, frictions_to_draw(study))
+    except SeparatrixError as error:
+        warnings.warn(f"`sensitivity` refuses this study: {error}", ValidityWarning, stacklevel=2)
+
+
+def bearing(study: Study) -> BearingState:
+    """Ball equilibrium and the contacts of the most loaded ball."""
+    return solve(study).bearing
+
+
+def traction(study: Study) -> TractionAnswer:
+    """Traction curves, as they are and at other pivoting-to-rolling ratios."""
+    solution = solve(study)
+    contacts = solution.bearing
+    inner = curves_by_ratio(study.film, contacts.inner, solution.traction.inner)
+    outer = curves_by_ratio(study.film, contacts.outer, solution.traction.outer)
+    return TractionAnswer(
+        race_friction=study.film.race_friction,
+        bearing=contacts,
+        inner=inner[0],
+        outer=outer[0],
+        inner_others=inner[1:],
+        outer_others=outer[1:],
+        inner_shear=shear(study.film, contacts.inner),
+        outer_shear=shear(study.film, contacts.outer),
+    )
+
+
+def restitution(study: Study) -> RestitutionAnswer:
+    """Restitution factor from the traction slopes, and what other films would give.
+
+    Warns
+    -----
+    ValidityWarning
+        The factor is 0: the impact is overdamped.
+    """
+    solution = solve(study)
+    _warn_if_overdamped(solution.restitution)
+    return RestitutionAnswer(
+        solution=solution, film_thickness=study.film.thickness or 0.0, lubrication=solution.lubrication
+    )
+
+
+def _warn_if_overdamped(found: Restitution) -> None:
+    """Warn that eta is 0 and what follows from it."""
+    if found.restitution_factor == 0.0:
+        damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
+        warnings.warn(
+            f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
+            f"= {least}; every material has its full threshold as margin. C_mu falls as race friction falls "
+            "and as speed rises. Test experience may differ: docs/theory/restitution.md.",
+            ValidityWarning,
+            stacklevel=2,
+        )
+
+
+def stability(study: Study, runner: Runner) -> StabilityAnswer:
+    """Critical friction against restitution factor."""
+    solution = solve(study)
+    cage, settings = _shown_cage(solution), solution.stability
+    runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
+    return made_into(
+        lambda curve: StabilityAnswer(solution=solution, cage=cage, curve=curve),
+        lambda: stability_curve(cage, settings, runner=runner),
+    )
+
+
+def _shown_cage(solution: Solution) -> PlanarCage:
+    """Cage of a study in an answer over many frictions; without friction where none is known."""
+    friction = solution.friction
+    _warn_of_extrapolation(solution)
+    return solution.cage_with(friction.mean if friction else 0.0)
+
+
+def _warn_of_extrapolation(solution: Solution) -> None:
+    """Warn where the friction of the cage comes from tests at other conditions."""
+    friction, own = solution.friction, cage_candidate(solution.study)
+    if friction is not None and own is not None and friction.law is not None and friction.extrapolation:
+        place = environment_of(solution.study.ranking) if solution.study.ranking else ""
+        warnings.warn(
+            f"Pocket friction {friction.mean:.3g} of {own.name} in {place}, extrapolated beyond the "
+            f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction overrides it.",
+            ValidityWarning,
+            stacklevel=3,
+        )
+
+
+def map(
+    study: Study,
+    runner: Runner,
+    *,
+    x: str = DEFAULT_X,
+    y: str = DEFAULT_Y,
+    points: int = 100,
+    runs: int = 16,
+    kick: str | MetrePerSecond | None = None,
+    adaptive: bool = False,
+) -> MapAnswer:
+    """Verdicts in the plane of two parameters of a study.
+
+    Parameters
+    ----------
+    x, y : str
+        Axes, each ``PARAM=LOW..HIGH[unit][:N][:log]``.
+    points : int
+        Points of an axis that states no number.
+    runs : int
+        Most runs of a point.
+    kick : str or float, optional
+        Initial disturbance at every point, text with a unit or [m/s]; by default the reference kick.
+    adaptive : bool
+        Run only points near a change of the answer.
+
+    Raises
+    ------
+    InputError
+        An axis or a number is wrong, or no point can be run.
+    """
+    checked_points(points, "--points")
+    if not 1 <= runs <= MOST_RUNS:
+        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", got=str(runs))
+    axes = read_axis(x, "--x", points), read_axis(y, "--y", points)
+    names = [axis.parameter for axis in axes]
+    if names[0] == names[1]:
+        cure = f"Without --x it is {DEFAULT_X}, without --y {DEFAULT_Y}."
+        raise InputError("--x and --y", "must be two parameters", got=f"{names[0]} twice", cure=cure)
+    if kick is not None and KICK in names:
+        raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
+    solution = solve(study)
+    speed = solution.stability.middle_kick if kick is None else kick_speed(kick)
+    across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
+    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
+    cage = _shown_cage(solution)
+    runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
+    return made_into(
+        lambda found: MapAnswer(solution=solution, cage=cage, map=found),
+        lambda: stability_map(asked, runner=runner),
+    )
+
+
+def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
+    """Speed of a kick, from text with a unit or a number [m/s].
+
+    Raises
+    ------
+    InputError
+        It is not a speed that a study may have.
+    """
+    speed = parse(kick, "m/s", "--kick") if isinstance(kick, str) else float(kick)
+    if not LEAST_KICK < speed < MOST_KICK:
+        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
+        raise InputError("--kick", rule, f"{speed:g}", NO_KICK)
+    return speed
+
+
+def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0) -> SimulationAnswer:
+    """Follow one run of the ensemble, by default the first from the reference kick.
+
+    Parameters
+    ----------
+    kick : str or float, optional
+        Initial disturbance, text with a unit or [m/s].
+    run : int
+        Which run of the ensemble.
+
+    Raises
+    ------
+    InputError
+        The kick or the run's number is wrong.
+    """
+    if not 0 <= run <= LAST_RUN:
+        raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(run))
+    speed = None if kick is None else kick_speed(kick)
+    solution = solve(study)
+    cage, settings = solution.cage, solution.stability
+    _warn_of_extrapolation(solution)
+    speed = settings.middle_kick if speed is None else speed
+    samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
+    history = follow(
+        cage,
+        kick=speed,
+        run=run,
+        seed=settings.seed,
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        samples=int(min(max(samples, 1000), MOST_SHOWN)),
+    )
+    _warn_if_beyond_model(solution, history)
+    return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
+
+
+def _warn_if_beyond_model(solution: Solution, history: History) -> None:
+    """Warn where the run leaves the range of the model or of hardware."""
+    made_of = cage_candidate(solution.study)
+    force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
+    run = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
+    for note in beyond_motion(solution, [run]):
+        warnings.warn(note, ValidityWarning, stacklevel=3)
+
+
+def rank(study: Study, runner: Runner) -> RankingAnswer:
+    """Verdict, margin, rank and reason of each candidate material."""
+    solution, cage = _reference(study)
+    _warn_if_overdamped(solution.restitution)
+    runner.expect(lambda: expected_ranking(study, jobs=runner.jobs))
+    return made_into(
+        lambda found: RankingAnswer(solution=solution, cage=cage, ranking=found),
+        lambda: rank_materials(study, runner=runner),
+    )
+
+
+def _reference(study: Study) -> tuple[Solution, PlanarCage]:
+    """Chain and cage of the reference candidate of a ranking; without friction where none is known."""
+    asked = ranking_question(study)
+    required_environment(study, asked)
+    solution = solve(study, reference_candidate(study, asked))
+    friction = solution.friction
+    return solution, solution.cage_with(friction.mean if friction else 0.0)
+
+
+def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> SensitivityAnswer:
+    """Draw bearings from the uncertain inputs and judge the cages of every candidate.
+
+    Parameters
+    ----------
+    samples : int
+        Bearings drawn, a power of two.
+
+    Raises
+    ------
+    InputError
+        It is not a sensible number of bearings, or nothing is uncertain.
+    """
+    if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
+        near = 1 << max(0, samples - 1).bit_length()
+        cure = f"Try {min(max(near, FEWEST_SAMPLES), MOST_SAMPLES)}."
+        rule = f"must be a power of two from {FEWEST_SAMPLES} to {MOST_SAMPLES}"
+        raise InputError("--samples", rule, got=str(samples), cure=cure)
+    solution, cage = _reference(study)
+    uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
+    runner.expect(lambda: expected_uncertain(study, samples, jobs=runner.jobs))
+    return made_into(
+        lambda found: SensitivityAnswer(
+            solution=solution,
+            cage=cage,
+            uncertain=found,
+            film_thickness=study.film.thickness,
+            race_friction=study.film.race_friction,
+        ),
+        lambda: uncertain_study(study, samples, runner=runner),
+    )
+
+
+def sweep(
+    study: Study,
+    runner: Runner,
+    *,
+    vary: Sequence[str] = (),
+    cases: Path | Sequence[Case] | None = None,
+    verdicts: bool = False,
+) -> Sweep:
+    """Chain and, if asked, verdict of many cases of a study.
+
+    Parameters
+    ----------
+    vary : sequence of str
+        Ranges, each ``PARAM=LOW..HIGH[unit][:N][:log]``; every value of one with every value of the others.
+    cases : Path, or sequence of mapping, optional
+        In their place a CSV file, or values by the names of a study file in SI units.
+    verdicts : bool
+        Whether to run the whole ensemble of each case, too.
+
+    Raises
+    ------
+    InputError
+        A range or the table of cases is wrong.
+    """
+    return run_cases(study, asked_cases(vary, cases), verdicts=verdicts, runner=runner)

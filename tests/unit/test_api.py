@@ -1,0 +1,122 @@
+"""The verbs as Python functions: text, tables, arrays and figure, equal to the command line's."""
+
+import copy
+import json
+import warnings
+
+import numpy as np
+import pytest
+
+import separatrix
+from separatrix import api
+from separatrix.cli import main
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.runner import Interrupted
+
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+
+SMALL = """
+extends = "momentum-wheel"
+[stability]
+runs = 4
+duration = "10 ms"
+restitution_factors = [0.4, 0.6]
+"""
+
+
+@pytest.fixture
+def small(tmp_path):
+    """The shipped wheel with an ensemble of no weight."""
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return path
+
+
+CALLS = {
+    "check": {},
+    "bearing": {},
+    "traction": {},
+    "restitution": {},
+    "simulate": {"kick": "0.4 m/s"},
+    "stability": {},
+    "map": {"x": "restitution_factor=0.2..0.8:2", "y": "ball_cage_friction=0..0.4:3", "runs": 2},
+    "rank": {},
+    "sweep": {"vary": "cage.mass=3..4g:2"},
+}
+WORDS = {
+    "simulate": ["--kick", "0.4 m/s"],
+    "map": ["--x", "restitution_factor=0.2..0.8:2", "--y", "ball_cage_friction=0..0.4:3", "--runs", "2"],
+    "sweep": ["--vary", "cage.mass=3..4g:2"],
+}
+
+
+@pytest.mark.parametrize("verb", CALLS)
+def test_python_and_command_line_answer_alike(verb, small, capsys):
+    """The same document to the last digit; text, table, arrays and figure come from it."""
+    answer = getattr(api, verb)(small, **CALLS[verb])
+    assert main([verb, str(small), *WORDS.get(verb, []), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert json.loads(json.dumps(answer.document())) == printed
+    assert answer.summary().startswith(printed["title"])
+    if verb != "check":
+        assert answer.to_xarray().attrs["verb"] == verb
+        assert len(answer.to_dataframe()) > 0
+    assert verb in repr(answer)
+
+
+def test_an_answer_has_the_names_of_its_record(small):
+    """So `answer.ranking` is `answer.record.ranking`; an unknown one is an AttributeError; copies work."""
+    answer = api.restitution(small)
+    assert answer.solution is answer.record.solution
+    with pytest.raises(AttributeError):
+        _ = answer.no_such_name
+    assert copy.deepcopy(answer).document() == answer.document()
+
+
+def test_a_figure_by_its_name(small):
+    """The first one, or the one asked for; another name is refused."""
+    answer = api.traction(small)
+    assert answer.plot().axes
+    assert answer.plot("traction-shear").axes
+    with pytest.raises(InputError, match="no picture nothing"):
+        answer.plot("nothing")
+
+
+def test_notes_are_warnings_and_stay_in_the_answer(tmp_path):
+    """MoS2 on the races: eta is 0, and the caller is warned once."""
+    path = tmp_path / "slippery.toml"
+    path.write_text('extends = "cryogenic-turbopump"\n[film]\nrace_friction = 0.02\n', encoding="utf-8")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        answer = api.restitution(path)
+    said = [str(one.message) for one in caught if issubclass(one.category, ValidityWarning)]
+    assert any(note.startswith("eta = 0") for note in answer.notes)
+    assert set(answer.notes) <= set(said)
+
+
+def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
+    """And the folder keeps the runs for the next call."""
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as caught:
+        api.rank(small, jobs=1, folder=tmp_path / "kept", progress=stop)
+    part = caught.value.finished
+    assert part.verb == "rank"
+    assert part.document()["complete"] is False
+    whole = api.rank(small, folder=tmp_path / "kept")
+    assert whole.document()["complete"] is True
+    assert whole.document() == api.rank(small).document()
+
+
+def test_a_study_that_lacks_a_section_is_refused(tmp_path):
+    """As the command line refuses it."""
+    path = tmp_path / "bare.toml"
+    text = separatrix.shipped_studies()["le7"].read_text(encoding="utf-8")
+    path.write_text(text, encoding="utf-8")
+    study = separatrix.read_study(path)
+    if study.cage is None:
+        with pytest.raises(InputError, match=r"\[cage\]"):
+            api.restitution(study)
+    assert np.isfinite(api.bearing(study).to_dataframe()["load_inner"]).all()

@@ -1,0 +1,88 @@
+"""Runs on a Dask cluster: the same numbers, also when a worker is killed; and what is refused."""
+
+import os
+import signal
+import sys
+from dataclasses import replace
+
+import distributed
+import pytest
+
+from separatrix import cluster as clusters
+from separatrix.chain.solution import solve
+from separatrix.cluster import cluster
+from separatrix.errors import InputError
+from separatrix.limits import stability_curve
+from separatrix.runner import Runner
+from separatrix.study_file import read_study
+
+WHEEL = solve(read_study("momentum-wheel"))
+SETTINGS = replace(WHEEL.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
+
+
+@pytest.fixture(scope="module")
+def three():
+    """Three worker processes; one more is started in the place of one that is lost."""
+    with distributed.LocalCluster(
+        n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as found:
+        yield found
+
+
+def test_a_cluster_of_three_of_which_one_is_killed_gives_the_same_curve(three):
+    """To the last bit; the scheduler makes the lost worker's runs again elsewhere."""
+    killed = []
+
+    def kill(done, total):
+        if not killed:
+            killed.append(three.workers[0].pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    with cluster(three.scheduler_address) as (executor, threads):
+        assert threads == 6  # two for each worker
+        runner = Runner(jobs=threads, executor=executor, progress=kill)
+        far = stability_curve(WHEEL.cage_with(0.0), SETTINGS, runner=runner)
+    assert killed
+    assert far == stability_curve(WHEEL.cage_with(0.0), SETTINGS)
+
+
+def test_workers_of_another_version_are_refused(three, monkeypatch):
+    """Their runs would be another engine's; the worker is named."""
+    monkeypatch.setattr(clusters, "program", lambda: str(os.getpid()).encode())
+    with (
+        pytest.raises(InputError, match=r"--cluster has workers with another version.*tcp://"),
+        cluster(three.scheduler_address),
+    ):
+        pass
+
+
+WRONG = {
+    "local:0": "must be local:N with N from 1 to 1024",
+    "local:many": "must be local:N",
+    "local:2000": "must be local:N",
+    "nowhere": "is not the address of a running Dask scheduler",
+    "tcp://127.0.0.1:1": "is not the address of a running Dask scheduler",
+}
+
+
+@pytest.mark.parametrize(("address", "words"), WRONG.items(), ids=WRONG.keys())
+def test_a_wrong_address_is_refused_in_one_line(address, words, monkeypatch):
+    """With the option, the rule and what was given."""
+    monkeypatch.setattr(clusters, "PATIENCE", "0.5s")
+    with pytest.raises(InputError) as refusal, cluster(address):
+        pass
+    text = str(refusal.value)
+    assert text.startswith("--cluster ")
+    assert words in text
+    assert f'"{address}"' in text
+    assert "\n" not in text
+
+
+def test_without_the_extra_the_refusal_names_it(monkeypatch):
+    """dask[distributed] is not among the requirements."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with (
+        pytest.raises(InputError, match=r"needs the extra cluster.*separatrix\[cluster\]"),
+        cluster("local:1"),
+    ):
+        pass

@@ -1,0 +1,226 @@
+"""What the figures of a run rely on: true boundaries, spectra, forces, energies, common scales."""
+
+from __future__ import annotations
+
+import drawn
+import numpy as np
+import pytest
+
+from separatrix.figures import motion, simulation
+from separatrix.figures.motion import AROUND, half_plays, land_boundary, pocket_angles, pocket_boundary
+from separatrix.figures.style import journal
+
+ODD = {
+    "nothing touches": drawn.run(touching=False),
+    "no land": drawn.run(guidance="ball"),
+    "one sample": drawn.run(samples=1),
+    "one sample of a run that settles": drawn.run(samples=1, outcome="SETTLES"),
+    "it whirls at once": drawn.run(samples=2),
+    "it stalls": drawn.run(samples=7, outcome="STALLED"),
+    "a land only": drawn.run(play=1e-2, contact_force=(("time", "ball"), np.zeros((drawn.MADE, 5)))),
+    "it settles": drawn.run(outcome="SETTLES"),
+    "one ball": drawn.run(count=1),
+    "no play": drawn.run(play=0.0),
+    "hundred balls": drawn.run(count=100),
+    "at rest": drawn.run(touching=False).map(lambda v: 0.0 * v if v.dims[:1] == ("time",) else v),
+}
+
+
+def compared(data):
+    """The comparison with an ordinary run."""
+    return simulation.comparison(data, drawn.run(), ("one", "the other"))
+
+
+@pytest.mark.parametrize("draw", [simulation.run, simulation.forces, compared])
+@pytest.mark.parametrize("data", ODD.values(), ids=ODD.keys())
+def test_every_run_is_drawn_without_a_warning(draw, data):
+    """Warnings are errors here."""
+    with journal():
+        draw(data).draw_without_rendering()
+
+
+def test_compared_runs_have_common_scales_and_short_names():
+    """Both orbits, of a run that settles early and one that whirls twice as far; all else on shared axes."""
+    whirls = drawn.run()
+    far = whirls.assign(position=2 * whirls["position"], contact_force=3 * whirls["contact_force"])
+    with journal():
+        figure = simulation.comparison(
+            drawn.run(outcome="SETTLES", samples=40), far, ("a", "a long name " * 20)
+        )
+    left, right, *shared = figure.axes
+    assert left.get_xlim() == right.get_xlim() == left.get_ylim() == right.get_ylim()
+    assert [len(axes.get_legend().get_texts()) for axes in shared] == [2, 2, 2]
+    lines = right.get_title(loc="left").splitlines()
+    assert len(lines) == 3
+    assert lines[1].endswith("...")
+    assert lines[2] == "kick 0.5 m/s: the cage whirls (run of 10 ms)"
+
+
+@pytest.mark.parametrize("turns", [40.0, -40.0])
+def test_whirl_spectrum_tells_forward_from_backward(turns):
+    """A velocity turning at 40 Hz with the ball set peaks at +40 Hz, against it at -40 Hz."""
+    time = np.linspace(0, 1, 1001)
+    frequency, share = motion.whirl_spectrum(time, motion.ring(1.0, 2 * np.pi * turns * time))
+    # one bin of a run of 1 s
+    assert frequency[share.argmax()] == pytest.approx(turns, abs=1.0)
+    assert share.max() == 1.0
+
+
+def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
+    """A velocity that turns at 1000 t Hz is strongest near 1000 t Hz in each piece of the run."""
+    time = np.linspace(0, 1, 4001)
+    found = motion.spectrum_against_time(time, motion.ring(1.0, np.pi * 1000.0 * time**2))
+    middles, frequency, share = found
+    # one bin
+    wanted = pytest.approx(1000.0 * middles, abs=frequency[1] - frequency[0])
+    assert frequency[share.argmax(axis=1)] == wanted
+    assert middles[0] < 0.1
+    assert middles[-1] > 0.9
+
+
+def test_the_spectrum_against_time_fills_its_picture():
+    """The first piece begins at 0: no gap that looks like a cage at rest."""
+    axes = simulation.run(drawn.run(samples=400)).axes[5]
+    assert axes.collections[0].get_coordinates()[0, 0, 0] == 0.0
+
+
+def test_a_circle_of_few_samples_is_drawn_as_a_circle():
+    """Eight samples a turn: within 1e-3 of the radius, where straight lines are off by 1 - cos 22.5 deg."""
+    time = np.linspace(0.0, 3.0, 25)
+    circle = motion.ring(1.0, 2 * np.pi * time)
+    path = motion.smooth_path(time, circle, 2 * np.pi * circle[:, ::-1] * [-1.0, 1.0])
+    # a cubic's error, (pi/4)^4 / 384 = 1e-3
+    assert np.hypot(*path.T) == pytest.approx(1.0, abs=1e-3)
+    assert path[::6] == pytest.approx(circle)
+
+
+@pytest.mark.parametrize(("turns", "first"), [(20, 15), (6, 0)])
+def test_the_last_turns_of_a_long_path_are_found(turns, first):
+    """Five of twenty turns; of a path of six turns all."""
+    path = motion.ring(1.0, np.linspace(0.0, 2 * np.pi * turns, 100 * turns + 1))
+    # the chords of 100 points a turn are shorter than its arcs
+    assert motion.last_turns(path) == pytest.approx(100 * first, abs=2)
+
+
+@pytest.mark.parametrize("count", [2, 3, 8, 13])
+def test_on_the_pocket_boundary_one_pocket_touches(count):
+    """There max |r . e_t,j| / c_j = 1 over the pockets, whatever their plays (docs/theory/cage.md)."""
+    rng = np.random.default_rng(count)
+    angles, plays = np.sort(rng.uniform(0.0, 2 * np.pi, count)), rng.uniform(0.5, 1.5, count)
+    centre = motion.ring(pocket_boundary(angles, plays), AROUND)
+    along = np.stack([-np.sin(angles), np.cos(angles)])
+    # rounding
+    assert (np.abs(centre @ along) / plays).max(axis=1) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_one_pocket_leaves_the_way_along_its_ball_free():
+    """Along the radius of the only ball there is no boundary; across it, half the play."""
+    reach = pocket_boundary(np.zeros(1), np.ones(1))[[0, 360, 720]]
+    assert reach.tolist() == [np.inf, 1.0, np.inf]
+
+
+def test_pockets_are_where_the_run_says():
+    """Angles and plays of the run come before those of an even cage."""
+    uneven = drawn.run(pocket_angle=("ball", [0, 1, 2, 4, 5]), half_play=("ball", [1e-4] * 5))
+    assert pocket_angles(drawn.run())[1] == pytest.approx(2 * np.pi / 5)
+    assert half_plays(drawn.run()).tolist() == [3e-4] * 5
+    assert pocket_angles(uneven).tolist() == [0, 1, 2, 4, 5]
+    assert half_plays(uneven).tolist() == [1e-4] * 5
+
+
+@pytest.mark.parametrize(("guidance", "side"), [("outer", 1), ("inner", -1)])
+@pytest.mark.parametrize("lobes", [2, 3])
+def test_on_the_land_boundary_the_depth_is_zero(guidance, side, lobes):
+    """Depth r - c + a L cos(n psi), L = 1 outside and (-1)^n inside (docs/theory/cage.md)."""
+    lobed = drawn.run(guidance=guidance, cage_land_out_of_round=2e-5, cage_land_lobes=lobes)
+    sign = 1 if side > 0 else (-1) ** lobes
+    depth = land_boundary(lobed) - 5e-4 + 2e-5 * sign * np.cos(lobes * AROUND)
+    # rounding of half a millimetre
+    assert np.abs(depth).max() < 1e-15
+    assert land_boundary(drawn.run(guidance="ball")) is None
+    assert land_boundary(drawn.run(cage_land_clearance=np.nan)) is None
+
+
+def test_a_contact_is_counted_once_and_on_its_side():
+    """One that begins before the first sample counts; one that changes side counts on both."""
+    force = np.array([[5.0, 0.0, 0.0], [4.0, -1.0, 2.0], [0.0, 0.0, -2.0], [3.0, -1.0, -2.0]])
+    assert simulation.contact_counts(force).tolist() == [[2, 0, 1], [0, 2, 1]]
+
+
+@pytest.mark.parametrize("columns", [3, 10, 40])
+def test_pooling_loses_no_impact(columns):
+    """The largest force of each pocket stays, with fewer columns than samples and with more."""
+    rng = np.random.default_rng(1)
+    time, force = np.linspace(0.0, 1.0, 11), rng.normal(size=(11, 4))
+    shown = simulation.pooled(time, force, np.linspace(0.0, 1.0 + 1e-9, columns + 1))
+    assert shown.shape == (columns, 4)
+    assert shown.max(axis=0).tolist() == np.abs(force).max(axis=0).tolist()
+
+
+def test_the_energy_balance_and_what_springs_store():
+    """3 t - 2 t = t is closed; a spring that nothing loads leaves its energy over the largest work."""
+    closed = drawn.run()
+    # rounding
+    assert simulation.energy_gap(closed) < 1e-12
+    spring = closed["time"].values * 0.3
+    assert simulation.energy_gap(closed.assign(spring_energy=("time", spring))) == pytest.approx(0.1)
+    assert simulation.energy_gap(drawn.run(touching=False)) == 0.0
+    with_land = drawn.run(land_energy=("time", np.full(drawn.MADE, 0.5)))
+    more = simulation.total_energy(with_land) - simulation.total_energy(closed)
+    # rounding
+    assert more == pytest.approx(0.5, abs=1e-15)
+
+
+def test_a_source_has_one_look_everywhere():
+    """No two sources share colour and dashes."""
+    looks = [tuple(map(str, simulation.source_look(name).values())) for name in simulation.SOURCES]
+    assert len(set(looks)) == len(looks)
+
+
+@pytest.mark.parametrize(("judged", "spans"), [({"judged_from": 0.008, "judged_until": 0.009}, 3), ({}, 0)])
+def test_the_judged_part_of_a_run_is_shaded(judged, spans):
+    """In energy, offset and work; nothing in a file of an earlier version, which does not record it."""
+    page = simulation.run(drawn.run(samples=40, **judged))
+    shaded = [patch for axes in page.axes for patch in axes.patches if patch.get_alpha() == 0.2]
+    assert [float(patch.get_xy()[0]) for patch in shaded] == pytest.approx([8.0] * spans)
+    assert all(patch.get_extents().width > 0.0 for patch in shaded)
+
+
+def test_equal_clearances_and_the_path_on_them_are_all_seen():
+    """The land wide and light, the pockets dashed on it, the path above both."""
+    axes = simulation.run(drawn.run(samples=40, play=1e-3)).axes[0]
+    lines = {line.get_label(): line for line in axes.lines}
+    land, pockets, path = (lines[name] for name in ("land clearance", "pocket clearance", "path"))
+    assert land.get_linewidth() > 3.0 * pockets.get_linewidth()
+    assert land.get_alpha() < 0.6
+    assert path.get_zorder() > max(land.get_zorder(), pockets.get_zorder())
+
+
+def test_the_close_view_begins_before_the_largest_force():
+    """Also where the kick throws the cage into a pocket at once: the force lies inside the picture."""
+    data = drawn.run(samples=400)
+    data["contact_force"][:] = 0.0
+    data["contact_force"][1, 2] = 50.0
+    near = simulation.close_view(data)
+    first, last = simulation.view_ends(near)
+    peak = simulation.milliseconds(near)[int(simulation.largest_force(near).argmax())]
+    assert (peak - first) / (last - first) > 0.1
+
+
+def test_the_close_view_shows_some_turns_around_the_largest_force():
+    """A whirl of 143 Hz: six turns are 42 ms, longer than the run; one of 5 kHz: 1.2 ms around it."""
+    slow = drawn.run(samples=400)
+    assert simulation.close_view(slow).sizes["time"] == 400
+    velocity, force = motion.ring(1.0, 2 * np.pi * 5e3 * slow["time"].values), slow["contact_force"].copy()
+    force[200, 3] = 1e3
+    fast = simulation.close_view(slow.assign(velocity=(("time", "axis"), velocity), contact_force=force))
+    width = float(fast["time"][-1] - fast["time"][0])
+    # the samples at its ends
+    assert width == pytest.approx(simulation.TURNS / 5e3, abs=3 * 0.01 / 400)
+    assert simulation.largest_force(fast).max() == 1e3
+
+
+def test_energy_is_shown_in_a_unit_of_which_it_is_at_least_one():
+    """No power of ten beside an axis."""
+    shown = [simulation.energy_unit(largest)[1] for largest in (2e3, 5.0, 3e-3, 0.0)]
+    assert shown == ["kJ", "J", "mJ", "\N{MICRO SIGN}J"]

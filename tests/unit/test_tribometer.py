@@ -1,0 +1,62 @@
+"""The verb `tribometer` as a function of Python."""
+
+import json
+
+import numpy as np
+import pytest
+
+import separatrix
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.friction.logs import column_map
+
+MAP = {"test": {"material": "Armalon", "counterface": "440C", "medium": "air"}}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with two logs and a note."""
+    for name, friction in (("a2.csv", 0.1), ("a10.csv", 0.12)):
+        noise = np.random.default_rng(len(name)).normal(friction, 0.004, 400)
+        rows = (f"{0.5 * i},{value:.5f}" for i, value in enumerate(noise))
+        (tmp_path / name).write_text("\n".join(["time [s],COF", *rows]))
+    (tmp_path / "notes.md").write_text("none")
+    return tmp_path
+
+
+def test_it_returns_what_the_command_prints(folder, capsys):
+    """The same numbers, tests in the order of the numbers in their names, progress up to its total."""
+    steps = []
+    found = separatrix.tribometer(folder, progress=lambda done, total: steps.append((done, total)))
+    assert main(["tribometer", str(folder), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)["tests"]
+    assert [test.source for test in found.tests] == ["a2.csv", "a10.csv"]
+    assert [test.friction for test in found.tests] == [test["friction"] for test in printed]
+    assert [log.rows for log in found.logs] == [400, 400]
+    assert steps[-1] == (1000, 1000)
+    assert found.friction_tests is None
+    assert found.fit is None
+
+
+def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
+    """One path or several; a map as an object; the tests as a friction file keeps them."""
+    found = separatrix.tribometer([folder / "a2.csv"], column_map=column_map(MAP), run_in="60 s")
+    (test,) = found.friction_tests
+    assert (test.material, test.environment, test.run_in_end) == ("Armalon", "air, 440C", 60.0)
+    assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"complete": True}, "a2.csv does not state: material, counterface, medium."),
+        ({"run_in": "5 N"}, "ReductionOptions.run_in_end must be a time"),
+        ({"run_in": "5 m"}, "a2.csv needs a column of distance"),
+        ({"column_map": "none.toml"}, "none.toml cannot be read: no such file"),
+    ],
+)
+def test_a_wrong_call_is_refused(folder, arguments, words):
+    """As on the command line."""
+    with pytest.raises(InputError) as caught:
+        separatrix.tribometer(folder, **arguments)
+    assert words in str(caught.value)
