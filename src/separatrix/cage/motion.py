@@ -36,17 +36,7 @@ from separatrix.cage.records import (
     State,
     Whole,
 )
-from separatrix.cage.series import (
-    ROUNDING,
-    Motion,
-    centre,
-    fourths,
-    grip_at,
-    knots,
-    motion_at,
-    slope,
-    value,
-)
+from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
