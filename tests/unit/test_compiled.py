@@ -140,7 +140,7 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
         (package / name).write_text(source.replace(old, new))
 
     assert value_hits_misses() == [4, 0, 1]
-    edit("report/tables.py", '"""', '"""Edited. ')
+    edit("present/text/tables.py", '"""', '"""Edited. ')
     assert value_hits_misses() == [4, 1, 0]
     edit("cage/records.py", "HARMONICS = 4", "HARMONICS = 3")
     assert value_hits_misses() == [3, 0, 1]

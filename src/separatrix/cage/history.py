@@ -51,40 +51,12 @@ class History:
     """
 
     time: Annotated[Array, "s", ("time",)]
-    position: Annotated[
-        Array,
-        "m",
-        (
-            "time",
-            "axis",
-        ),
-    ]
-    velocity: Annotated[
-        Array,
-        "m/s",
-        (
-            "time",
-            "axis",
-        ),
-    ]
+    position: Annotated[Array, "m", ("time", "axis")]
+    velocity: Annotated[Array, "m/s", ("time", "axis")]
     rotation: Annotated[Array, "rad", ("time",)]
     rotation_rate: Annotated[Array, "rad/s", ("time",)]
-    ball_lead: Annotated[
-        Array,
-        "m",
-        (
-            "time",
-            "ball",
-        ),
-    ]
-    contact_force: Annotated[
-        Array,
-        "N",
-        (
-            "time",
-            "ball",
-        ),
-    ]
+    ball_lead: Annotated[Array, "m", ("time", "ball")]
+    contact_force: Annotated[Array, "N", ("time", "ball")]
     land_force: Annotated[Array, "N", ("time",)]
     kinetic_energy: Annotated[Array, "J", ("time",)]
     spring_energy: Annotated[Array, "J", ("time",)]
