@@ -26,7 +26,7 @@ docs: .venv/ready
 	$(BIN)/sphinx-build -W -n docs docs/_build
 
 clean:
-	rm -rf .venv demo docs/_build
+	rm -rf .venv demo docs/_build docs/generated
 
 .venv/ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "separatrix needs Python 3.11 or later; name one: make PYTHON=python3.11")'

@@ -14,9 +14,9 @@ from collections import Counter
 from dataclasses import replace
 
 from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
+from separatrix.limits import SEARCHED_FRICTION, cage_at, critical_friction
 from separatrix.runner import Runner
-from separatrix.stability import SEARCHED_FRICTION, cage_at, critical_friction
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 

@@ -24,9 +24,9 @@ from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome, Verdict, judge, wilson_interval
 from separatrix.explore.drivers import FEWEST, fitted
+from separatrix.limits import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.runner import Runner, joined
-from separatrix.stability import critical_friction
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.units import Array

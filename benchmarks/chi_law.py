@@ -41,7 +41,7 @@ from separatrix.figures.style import (
     save,
     settled,
 )
-from separatrix.stability import (
+from separatrix.limits import (
     Count,
     Crossing,
     GrowthCounter,
@@ -50,7 +50,7 @@ from separatrix.stability import (
     critical_friction,
     linear_limit,
 )
-from separatrix.stability.response import LADDER
+from separatrix.limits.response import LADDER
 from separatrix.study import StabilitySettings
 from separatrix.units import Array
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from separatrix.cage import simulate
 from separatrix.cage.drive import drive_energy
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.study_file import read_study
 
 mpl.use("Agg")

@@ -6,8 +6,8 @@ a point, and points that were not run but inferred.
 
 import pytest
 
-from separatrix.stability.map import stability_map
-from separatrix.stability.map_records import MapAxis, MapQuestion
+from separatrix.limits.map import stability_map
+from separatrix.limits.map_records import MapAxis, MapQuestion
 from separatrix.study_file import read_study
 
 JOBS = 2

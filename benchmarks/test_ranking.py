@@ -2,9 +2,9 @@
 
 import pytest
 
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
+from separatrix.limits import GrowthCounter, critical_friction
 from separatrix.ranking import rank
-from separatrix.stability import GrowthCounter, critical_friction
 from separatrix.study_file import read_study
 
 

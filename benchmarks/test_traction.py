@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from separatrix.creep import Creep
-from separatrix.hertz import contact_ellipse
-from separatrix.traction import solve_strip, traction_curve, traction_slope
-from separatrix.traction.layer import BondedLayer, layer_tables
-from separatrix.traction.master import film_tables
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.traction import solve_strip, traction_curve, traction_slope
+from separatrix.chain.traction.layer import BondedLayer, layer_tables
+from separatrix.chain.traction.master import film_tables
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 FILM = 0.3 * ELLIPSE.semi_minor / ELLIPSE.contact_modulus

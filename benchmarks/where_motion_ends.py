@@ -24,7 +24,7 @@ import numpy as np
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
 from separatrix.cage.kicks import pocket_speed
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))

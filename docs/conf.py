@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
+import ast
+import contextlib
+import io
+import os
+import runpy
 from importlib.metadata import version as installed_version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import separatrix
+
+os.environ["MPLBACKEND"] = "agg"
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 project = "separatrix"
 author = "The separatrix founders"
@@ -23,3 +37,62 @@ numpydoc_show_class_members = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autosummary_generate = False
+
+REFERENCE = """# Python
+
+After this page you can look up any public function or record: every name in `dir(separatrix)`, under the
+module that holds it. All numbers are in SI units; each array has its shape and unit in the docstring. To
+begin, see [compute in Python](../tutorials/python.md) and the [gallery](gallery.md).
+"""
+GALLERY = """# Gallery
+
+After this page you can copy a script for your own question. Each script of `examples/` is shown with
+what it prints and its figure. All of them are run when this page is built, and by the tests.
+"""
+SECTION = """
+## {title}
+
+![{title}]({name}.png)
+
+```text
+{printed}```
+
+```{{literalinclude}} ../../examples/{name}.py
+:language: python
+```
+"""
+
+
+def write_gallery(app: Sphinx) -> None:
+    """Run every example; write the page of their figures, texts and sources."""
+    folder = Path(app.srcdir) / "generated"
+    folder.mkdir(exist_ok=True)
+    page = GALLERY
+    for script in sorted((folder.parents[1] / "examples").glob("*.py")):
+        title = (ast.get_docstring(ast.parse(script.read_text(encoding="utf-8"))) or "").rstrip(".")
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            left = runpy.run_path(str(script))
+        left["figure"].savefig(folder / f"{script.stem}.png", dpi=100)
+        page += SECTION.format(title=title, name=script.stem, printed=printed.getvalue())
+    (folder / "gallery.md").write_text(page, encoding="utf-8")
+
+
+def write_reference(app: Sphinx) -> None:
+    """Write the page of the public names, under the modules that hold them."""
+    page = REFERENCE
+    homes: dict[str, list[str]] = {}
+    for name in sorted(set(dir(separatrix)) - {"__version__"}):
+        found = getattr(separatrix, name)
+        kind = "autoclass" if isinstance(found, type) else "autofunction"
+        stage = found.__module__.split(".")[1]
+        members = "\n   :members:" if kind == "autoclass" else ""
+        homes.setdefault(stage, []).append(f".. {kind}:: separatrix.{name}{members}\n")
+    for stage, names in sorted(homes.items()):
+        page += f"\n## {stage}\n\n```{{eval-rst}}\n" + "\n".join(names) + "```\n"
+    (Path(app.srcdir) / "generated" / "python.md").write_text(page, encoding="utf-8")
+
+
+def setup(app: Sphinx) -> None:
+    """Write the generated pages before the pages are read."""
+    app.connect("builder-inited", write_gallery)
+    app.connect("builder-inited", write_reference)

@@ -1,23 +1,29 @@
-"""The slope of the traction curve, bare and with films of a soft material (the paper's Figs 7 and 8)."""
+"""Traction curves of ball on race, bare and with films of a soft material (the paper's Fig. 7)."""
 
-from separatrix.chain import bearing_state
-from separatrix.study import Film
-from separatrix.study_file import read_study
-from separatrix.traction import film_compliance, traction_slope
+from dataclasses import replace
 
-study = read_study("cryogenic-turbopump")
-at = bearing_state(study).outer
-material = study.film.material
+import matplotlib.pyplot as plt
 
+import separatrix
+
+study = separatrix.read_study("cryogenic-turbopump")
+outer = separatrix.solve(study).bearing.outer
+bare = replace(study.film, material=None, thickness=None)
+films = {"bare": bare} | {f"{um:g} um": replace(study.film, thickness=um * 1e-6) for um in (0.1, 1.0, 3.0)}
+
+figure, axes = plt.subplots(layout="constrained")
 slopes = {}
-for thickness in (None, 0.1e-6, 1e-6, 10e-6):
-    film = Film(race_friction=0.1, material=material if thickness else None, thickness=thickness)
-    slope, error = traction_slope(
-        at.ellipse, at.creep, race_friction=film.race_friction, film_compliance=film_compliance(film)
+for name, film in films.items():
+    curve = separatrix.traction_curve(
+        outer.ellipse,
+        outer.creep,
+        race_friction=film.race_friction,
+        film_compliance=separatrix.film_compliance(film),
     )
-    slopes[thickness] = slope
-    print(
-        f"{'bare' if thickness is None else f'{thickness * 1e6:g} um':>7}: alpha = {slope:.3f} +- {error:.3f}"
-    )
+    slopes[name] = curve.slope
+    print(f"{name:>6}: slope alpha = {curve.slope:.3f} +- {curve.slope_error:.3f}")
+    axes.plot(100 * curve.creep_increment, curve.traction_coefficient, label=name)
 
-ratio = slopes[10e-6] / slopes[None]
+axes.set(xlabel="creep increment [%]", ylabel="traction coefficient T/N [-]")
+axes.legend(title="film on the outer race")
+ratio = slopes["3 um"] / slopes["bare"]

@@ -2,16 +2,17 @@
 
 from dataclasses import replace
 
-from separatrix.chain import cage_state
-from separatrix.stability import stability_curve
-from separatrix.study_file import read_study
+import matplotlib.pyplot as plt
 
-study = read_study("cryogenic-turbopump")
+import separatrix
+
+study = separatrix.read_study("cryogenic-turbopump")
 # a small ensemble, for a quick look: 12 runs of 0.05 s from two kicks
 settings = replace(
     study.stability, kicks=(0.5, 2.0), runs=12, duration=0.05, restitution_factors=(0.3, 0.6, 0.9)
 )
-found = stability_curve(cage_state(study).cage, settings, jobs=2)
+cage = separatrix.solve(study).cage
+found = separatrix.stability_curve(cage, settings, runner=separatrix.Runner(jobs=2))
 
 for point, limit in zip(found.curve, found.linear_limit, strict=True):
     print(
@@ -21,3 +22,12 @@ for point, limit in zip(found.curve, found.linear_limit, strict=True):
     )
 
 frictions = [point.critical_friction for point in found.curve]
+factors = [point.restitution_factor for point in found.curve]
+low = [point.critical_friction_low for point in found.curve]
+high = [point.critical_friction_high for point in found.curve]
+figure, axes = plt.subplots(layout="constrained")
+axes.fill_between(factors, low, high, alpha=0.3, label="the kick decides")
+axes.plot(factors, frictions, "o-", label="half of the runs whirl")
+axes.plot(factors, [limit.critical_friction for limit in found.linear_limit], "--", label="linear limit")
+axes.set(xlabel="restitution factor [-]", ylabel="pocket friction [-]")
+axes.legend()

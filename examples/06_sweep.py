@@ -1,13 +1,14 @@
-"""How much a thicker film takes off the restitution factor: many cases of a study, one table."""
+"""Vary one input over many cases: film thickness against restitution factor."""
 
-import numpy as np
+import matplotlib.pyplot as plt
 
-from separatrix.explore.sweep import sweep
-from separatrix.study_file import read_study
+import separatrix
 
-study = read_study("momentum-wheel")
-cases = [{"film.thickness": t} for t in np.geomspace(2e-7, 2e-6, 6)]
-table = sweep(study, cases, jobs=2).to_dataframe()
+study = separatrix.read_study("momentum-wheel")
+table = separatrix.sweep(study, "film.thickness=0.2..2um:6:log", jobs=2).to_dataframe()
 print(table[["film.thickness", "slope_inner", "race_damping", "restitution_factor"]])
 
 factors = table["restitution_factor"].tolist()
+figure, axes = plt.subplots(layout="constrained")
+axes.semilogx(1e6 * table["film.thickness"], factors, "o-")
+axes.set(xlabel="film thickness [um]", ylabel="restitution factor [-]")

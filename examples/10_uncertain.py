@@ -1,10 +1,11 @@
-"""P(stable) over bearings whose pocket clearance and mass are not known exactly."""
+"""P(stable) of bearings whose pocket clearance and cage mass are not known exactly."""
 
 import tempfile
 from pathlib import Path
 
-from separatrix.ranking import rank
-from separatrix.study_file import read_study
+import matplotlib.pyplot as plt
+
+import separatrix
 
 TEXT = """
 extends = "momentum-wheel"
@@ -17,12 +18,15 @@ duration = "20 ms"
 """
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "uncertain.toml"
-    path.write_text(TEXT)
-    found = rank(read_study(path), jobs=2)
+    path.write_text(TEXT, encoding="utf-8")
+    found = separatrix.rank(separatrix.read_study(path), jobs=2).ranking
 
+figure, axes = plt.subplots(layout="constrained")
+probabilities = {}
 for row in found.environments[0].materials:
-    drawn = row.over_inputs
-    low, high = drawn.probability_low, drawn.probability_high
-    print(f"{row.name}: P(stable) {drawn.probability_stable:.2f} ({low:.2f} to {high:.2f})")
-
-probabilities = {row.name: row.over_inputs.probability_stable for row in found.environments[0].materials}
+    drawn = row.over_inputs  # the verdict over the uncertain inputs
+    share, low, high = drawn.probability_stable, drawn.probability_low, drawn.probability_high
+    probabilities[row.name] = share
+    print(f"{row.name}: P(stable) {share:.2f} ({low:.2f} to {high:.2f})")
+    axes.errorbar(row.name, share, yerr=[[share - low], [high - share]], fmt="o", capsize=4)
+axes.set(ylabel="P(stable), 95 % interval [-]", ylim=(-0.05, 1.05))

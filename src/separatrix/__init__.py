@@ -10,26 +10,30 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
+    "api": "Answer bearing check map rank restitution sensitivity simulate stability sweep traction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
-    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble simulate wilson_interval",
-    "chain": "BearingState RaceContact RaceTraction Solution solve",
-    "creep": "Creep contact_creep",
-    "equilibrium": "Equilibrium contact",
+    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
+    "chain.contacts": "BearingState RaceContact RaceTraction",
+    "chain.creep": "Creep contact_creep",
+    "chain.equilibrium": "Equilibrium contact",
+    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
+    "chain.lubrication": "LubricationCurve lubrication_curve",
+    "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
+    "chain.solution": "Solution solve",
+    "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
-    "explore.sweep": "Sweep SweptCase sweep",
+    "explore.sweep": "Sweep SweptCase",
     "friction.tribometer": "ReducedLogs tribometer",
-    "hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
     "ledger": "Ledger",
     "runner": "Interrupted Runner",
-    "lubrication": "LubricationCurve lubrication_curve",
-    "ranking": "Ranking rank",
-    "restitution": "Restitution damping_ratio race_damping restitution_factor",
+    "ranking": "Ranking",
     "present": "dataset document load report save to_dataframe to_xarray",
-    "stability": "StabilityCurve critical_friction restitution_threshold stability_curve",
+    "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
-    "traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "tribometer.reading": "read_log",
+    "tribometer.reduction": "reduce_log",
 }
 """Module -> the public names it holds."""
 

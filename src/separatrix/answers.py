@@ -8,13 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.cage import History, PlanarCage
-from separatrix.chain import BearingState, Solution
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.lubrication import LubricationCurve
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
-from separatrix.lubrication import LubricationCurve
+from separatrix.limits import StabilityCurve
+from separatrix.limits.map_records import StabilityMap
 from separatrix.ranking import Ranking
-from separatrix.stability import StabilityCurve
-from separatrix.stability.map_records import StabilityMap
-from separatrix.traction import ShearField, TractionCurve
 from separatrix.units import Metre, MetrePerSecond, Ratio
 
 

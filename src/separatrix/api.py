@@ -21,7 +21,7 @@ from separatrix.answers import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.chain import BearingState
+from separatrix.chain.contacts import BearingState
 from separatrix.cluster import cluster as connected
 from separatrix.errors import ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from separatrix import _check
 from separatrix._check import between, must, not_negative, one_of, positive, whole
-from separatrix.bearing import Material
+from separatrix.bearing_design import Material
 from separatrix.errors import InputError
 from separatrix.measured_friction import FRICTION_LIMIT
 from separatrix.pocket_shape import Pocket, PocketShape, end_half_play, half_play

@@ -14,9 +14,9 @@ from typing import Any
 
 from separatrix import _check, cage_design
 from separatrix._check import between, increasing, must, not_negative, positive, whole
-from separatrix.bearing import MOST_BALLS as MOST_BALLS
-from separatrix.bearing import BallBearing as BallBearing
-from separatrix.bearing import Material as Material
+from separatrix.bearing_design import MOST_BALLS as MOST_BALLS
+from separatrix.bearing_design import BallBearing as BallBearing
+from separatrix.bearing_design import Material as Material
 from separatrix.cage_design import CageDesign as CageDesign
 from separatrix.cage_design import Guidance as Guidance
 from separatrix.cage_design import PocketContact as PocketContact

@@ -25,8 +25,10 @@ from separatrix.cage_choice import (
     reference_candidate,
     required_environment,
 )
-from separatrix.chain import BearingState, Solution, solve
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_ratio, shear
+from separatrix.chain.solution import Solution, solve
 from separatrix.draws import uncertain_inputs
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
@@ -36,16 +38,15 @@ from separatrix.explore.sweep import Case, Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
+from separatrix.limits import stability_curve
+from separatrix.limits.map import stability_map, value_here
+from separatrix.limits.map_parameters import KICK
+from separatrix.limits.map_records import MapQuestion
 from separatrix.ranking import rank as rank_materials
 from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.plausible import Moved, beyond_motion
-from separatrix.restitution import Restitution
 from separatrix.runner import Runner, made_into
-from separatrix.stability import stability_curve
-from separatrix.stability.map import stability_map, value_here
-from separatrix.stability.map_parameters import KICK
-from separatrix.stability.map_records import MapQuestion
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
 from separatrix.units import MetrePerSecond, format_quantity, parse
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.equilibrium import Equilibrium, equilibrium
+from separatrix.chain.equilibrium import Equilibrium, equilibrium
 from separatrix.study import BallBearing, KinematicModel, Material, Operation
 
 SOURCE = Path(__file__).parent / "sources" / "static_load_distribution.csv"

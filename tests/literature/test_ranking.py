@@ -13,8 +13,8 @@ from dataclasses import replace
 import pytest
 
 from separatrix.cage import Verdict
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.ranking import NotMeasured, Ranked, rank
-from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study

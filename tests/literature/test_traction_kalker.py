@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.creep import Creep
-from separatrix.hertz import ContactEllipse
-from separatrix.traction import traction_slope
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction import traction_slope
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from separatrix.cage.planar import turned_forward
-from separatrix.chain import solve
-from separatrix.lubrication import lubrication_curve
-from separatrix.orbit import orbital_waves
+from separatrix.chain.lubrication import lubrication_curve
+from separatrix.chain.orbit import orbital_waves
+from separatrix.chain.solution import solve
 from separatrix.study import Film, KinematicModel
 from separatrix.study_file import read_study
 

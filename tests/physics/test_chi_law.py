@@ -18,7 +18,7 @@ from separatrix.cage import (
 )
 from separatrix.cage.coefficients import time_unit
 from separatrix.cage.ending import BEAT, LONGEST
-from separatrix.stability import cage_at
+from separatrix.limits import cage_at
 from separatrix.study import StabilitySettings
 
 RADIUS, MASS, STIFFNESS, HALF_PLAY = 0.03, 0.05, 3e6, 0.3e-3

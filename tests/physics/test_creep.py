@@ -5,7 +5,7 @@ from math import cos, radians
 import numpy as np
 import pytest
 
-from separatrix.creep import Creep, contact_creep, deformed_radius
+from separatrix.chain.creep import Creep, contact_creep, deformed_radius
 from separatrix.study import BallBearing, Material, Race
 
 STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285)

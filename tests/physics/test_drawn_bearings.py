@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
 from separatrix.ranking import rank

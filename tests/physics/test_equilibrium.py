@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from separatrix.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.hertz import contact_modulus, race_curvatures
+from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.chain.hertz import contact_modulus, race_curvatures
 from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
 from separatrix.units import Array
 
@@ -234,7 +234,7 @@ def test_second_road_by_a_general_solver() -> None:
     mass = 7750.37 * math.pi * D**3 / 6.0
 
     def hertz(length: Array, f: float, race: Race, angle: Array) -> Array:
-        from separatrix.hertz import contact_ellipse
+        from separatrix.chain.hertz import contact_ellipse
 
         loads = []
         for gap, alpha in zip(length - (f - 0.5) * D, angle, strict=True):

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from separatrix.equilibrium import equilibrium
+from separatrix.chain.equilibrium import equilibrium
+from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.pocket_contact import contact_radius, impact_force, sliding_speed
+from separatrix.chain.restitution import damping_ratio, hertz_coefficient
 from separatrix.friction.fit import TestedFriction, fit_friction
 from separatrix.friction.law import StatedFriction
 from separatrix.friction.records import FrictionTest
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
-from separatrix.hertz import contact_ellipse
-from separatrix.pocket_contact import contact_radius, impact_force, sliding_speed
 from separatrix.ranking.lowest import lowest_of, probability_lowest
-from separatrix.restitution import damping_ratio, hertz_coefficient
 from separatrix.study_file import read_study
 
 ENVIRONMENT = "liquid nitrogen, 440C"

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import elliprd, elliprf
 
-from separatrix.hertz import (
+from separatrix.chain.hertz import (
     axis_ratio,
     contact_ellipse,
     contact_modulus,

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 
-from separatrix.hertz import contact_modulus
-from separatrix.restitution import (
+from separatrix.chain.hertz import contact_modulus
+from separatrix.chain.restitution import (
     ball_pocket_stiffness,
     damping_for,
     damping_ratio,

@@ -4,11 +4,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from separatrix.report.stability import drift_note
 
 from separatrix.cage import PlanarCage, drift_law, judge, run_ensemble, whirl_probability, wilson_interval
-from separatrix.runner import PART, Interrupted, Runner
-from separatrix.stability import (
+from separatrix.limits import (
     GrowthCounter,
     cage_at,
     critical_friction,
@@ -19,6 +17,8 @@ from separatrix.stability import (
     stability_curve,
     threshold_points,
 )
+from separatrix.present.text.stability import drift_note
+from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
 
 RADIUS, MASS = 0.03, 0.05
@@ -259,9 +259,9 @@ def test_the_curve_of_a_landless_cage_says_that_it_drifts():
     found = curve_of_points(landless, SETTINGS, [])
     assert found.drifts
     assert found.drift_rate_law == law
-    text = " ".join(drift_note({"drifts": found.drifts, "drift_rate_law": law}).split())
+    text = " ".join(drift_note(found).split())
     assert f"drifts at any friction, by the linear law at {law:.3f} 1/s" in text
     assert "no verdict there is STABLE" in text
     held = curve_of_points(replace(landless, cage_speed=0.0), SETTINGS, [])
     assert not held.drifts
-    assert drift_note({"drifts": held.drifts, "drift_rate_law": held.drift_rate_law}) == ""
+    assert drift_note(held) == ""

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from separatrix.chain.traction import dundurs_coupling, solve_strip
+from separatrix.chain.traction.influence import node_positions, node_pressure, strip_influence
+from separatrix.chain.traction.master import film_tables, master_traction, matched_knots, nested_sticks
 from separatrix.study import Material
-from separatrix.traction import dundurs_coupling, solve_strip
-from separatrix.traction.influence import node_positions, node_pressure, strip_influence
-from separatrix.traction.master import film_tables, master_traction, matched_knots, nested_sticks
 
 
 def toeplitz(nodes, lam):

@@ -5,9 +5,9 @@ from math import acos, atan, pi, sqrt
 import numpy as np
 import pytest
 
-from separatrix.creep import Creep
-from separatrix.hertz import contact_ellipse
-from separatrix.traction import direct_traction, shear_field, traction_curve, traction_slope
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.traction import direct_traction, shear_field, traction_curve, traction_slope
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 A, B, P0, E, N = ELLIPSE.semi_major, ELLIPSE.semi_minor, ELLIPSE.max_pressure, ELLIPSE.contact_modulus, 500.0

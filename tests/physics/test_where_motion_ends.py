@@ -23,8 +23,8 @@ from separatrix.cage.ending import LONGEST
 from separatrix.cage.linear import linear_roots
 from separatrix.cage.orbit import largest_room
 from separatrix.cage.verdict import kick_counts
-from separatrix.chain import solve
-from separatrix.stability.growth import cage_at
+from separatrix.chain.solution import solve
+from separatrix.limits.growth import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 

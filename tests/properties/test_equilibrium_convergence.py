@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sane_studies import bearing_study
 
-from separatrix.equilibrium import Equilibrium, equilibrium
+from separatrix.chain.equilibrium import Equilibrium, equilibrium
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import BallBearing, KinematicModel, Material, Operation
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.equilibrium import Equilibrium, equilibrium
+from separatrix.chain.equilibrium import Equilibrium, equilibrium
 from separatrix.study import BallBearing, KinematicModel, Material, Operation
 
 STEEL = Material(name="steel", elastic_modulus=205e9, poisson_ratio=0.285, density=7650.0)

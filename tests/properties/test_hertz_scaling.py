@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.hertz import contact_ellipse
+from separatrix.chain.hertz import contact_ellipse
 
 ROUNDING = 1e-11  # cube roots and the root of the shape, both to about 1e-15, over many magnitudes
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.restitution import (
+from separatrix.chain.restitution import (
     damping_for,
     damping_ratio,
     hertzian_restitution_factor,

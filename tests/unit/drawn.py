@@ -1,4 +1,4 @@
-"""Datasets as `results.load` returns them, made by hand, for the tests of the figures."""
+"""Datasets as `present.load` returns them, made by hand, for the tests of the figures."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from separatrix.cage_choice import other_than_candidates, require_friction, required_environment
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study
 

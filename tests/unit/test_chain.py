@@ -3,15 +3,17 @@
 from dataclasses import dataclass, replace
 
 import pytest
-from separatrix.report.cage import chain_facts
-from separatrix.results import documents
 
 from separatrix.answers import OfCage
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage_choice import require_friction
-from separatrix.chain import solution, solve
+from separatrix.chain import solution
+from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.present import plain
+from separatrix.present.shapes import shape
+from separatrix.present.text.chain import basis
 from separatrix.study import (
     Candidate,
     Film,
@@ -226,18 +228,24 @@ def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
     assert 0.0 < free.lead_amplitude < free.half_play
 
 
+def of_cage(asked):
+    """The cage of a study, with its chain."""
+    solution = solve(asked)
+    return OfCage(solution=solution, cage=solution.cage)
+
+
 def test_results_and_report_say_how_far_balls_lead_and_lag():
     """Beside half their play, with what the harmonics keep; nothing of it where all balls run alike."""
-    loaded = solve(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
-    chain = documents.cage(OfCage(solution=loaded, cage=loaded.cage))["chain"]
+    loaded = of_cage(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
+    chain = plain(shape(loaded)["chain"])
     assert chain["half_play"] == 3e-4
     assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
-    assert dict(chain_facts(chain))["Free balls lead and lag"] == (
+    assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
         "up to 63.57 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
     )
-    alike = documents.cage(OfCage(solution=solve(STUDY), cage=solve(STUDY).cage))["chain"]
-    assert (alike["lead_amplitude"], alike["orbital_share"]) == (0.0, None)
-    assert "Free balls lead and lag" not in dict(chain_facts(alike))
+    alike = of_cage(STUDY)
+    assert (alike.cage.lead_amplitude, alike.solution.orbital_share) == (0.0, None)
+    assert "Free balls lead and lag" not in dict(basis(STUDY, alike))
 
 
 def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():

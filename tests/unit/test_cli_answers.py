@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib import image
 
-from separatrix import figures, results
+from separatrix import figures, present
 from separatrix.cli import main
 from separatrix.cli.verbs import VERBS
 from separatrix.ledger import NAME
@@ -178,7 +178,7 @@ def test_files_are_whole_and_nothing_else_is_left(verb, folder):
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
 def test_a_saved_dataset_draws_the_same_figures(verb, folder, tmp_path):
     """Every figure can be drawn again from the netCDF file alone, to the byte."""
-    data = results.load(folder / verb / f"{verb}.nc")
+    data = present.load(folder / verb / f"{verb}.nc")
     for name, figure in figures.draw(verb, data):
         figures.save(figure, tmp_path / f"{name}.svg")
         assert (tmp_path / f"{name}.svg").read_bytes() == (folder / verb / f"{name}.svg").read_bytes()
@@ -203,11 +203,11 @@ def test_the_summary_fits_a_terminal(verb, folder):
 
 def test_the_dataset_names_dimensions_and_units(folder):
     """Ball and race, environment and material, are dimensions; quantities carry their unit."""
-    bearing = results.load(folder / "bearing" / "bearing.nc")
+    bearing = present.load(folder / "bearing" / "bearing.nc")
     assert bearing["load_inner"].dims == ("ball",)
     assert bearing["load_inner"].attrs["units"] == "N"
     assert bearing["contact_max_pressure"].sel(race="inner").attrs["units"] == "Pa"
-    rank = results.load(folder / "rank" / "rank.nc")
+    rank = present.load(folder / "rank" / "rank.nc")
     assert rank["material_friction"].dims == ("environment", "material")
     there = {"environment": "liquid nitrogen, 440C", "material": "Armalon"}
     assert float(rank["material_friction"].sel(there)) == 0.08
@@ -216,7 +216,7 @@ def test_the_dataset_names_dimensions_and_units(folder):
 
 def test_the_dataset_holds_the_numbers_of_the_document(folder):
     """The same curve in both."""
-    data = results.load(folder / "traction" / "traction.nc")
+    data = present.load(folder / "traction" / "traction.nc")
     found = answer(folder, "traction")["outer"]["traction_coefficient"]
     np.testing.assert_array_equal(data["traction_coefficient"].sel(race="outer"), found)
 
@@ -242,7 +242,7 @@ def test_every_dimensional_variable_has_a_unit(folder):
         "input_standard_deviation",
     }
     for verb in (verb.name for verb in VERBS if verb.writes_files):
-        data = results.load(folder / verb / f"{verb}.nc")
+        data = present.load(folder / verb / f"{verb}.nc")
         for name, variable in data.variables.items():
             if variable.dtype.kind == "f":
                 known = "units" in variable.attrs or any(str(name).endswith(count) for count in counts)

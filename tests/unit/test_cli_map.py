@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from separatrix import results
-from separatrix.chain import solve
+from separatrix import present
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.axes import read_axis
@@ -201,7 +201,7 @@ def test_the_dataset_stands_on_x_and_y(capsys):
     """Points have the dimensions (y, x) with the parameters' names and units."""
     clearance = "cage.pocket_clearance=0.2..1mm:3"
     found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
-    data = results.load("m/map.nc")
+    data = present.load("m/map.nc")
     assert data["probability_whirl"].dims == ("y", "x")
     assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
     for point in found["points"]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from separatrix import figures, results
+from separatrix import figures, present
 from separatrix.cli import main
 from separatrix.figures.animation import animate
 
@@ -120,7 +120,7 @@ def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch)
     assert not [name for name in names if name.startswith(".")]
     with Image.open("moving/simulation.gif") as film:
         assert film.n_frames > 1
-    animate(results.load("moving/simulate.nc"), Path("again.gif"))  # from what was saved, to the byte
+    animate(present.load("moving/simulate.nc"), Path("again.gif"))  # from what was saved, to the byte
     assert Path("again.gif").read_bytes() == Path("moving/simulation.gif").read_bytes()
 
 
@@ -136,13 +136,13 @@ def test_two_runs_are_compared(folder, capsys):
     mass = {"key": "cage.mass", "first": 0.025, "second": 0.05, "unit": "kg"}
     assert found["differences"] == [mass]
     offsets = [
-        float(results.load(folder / name / "simulate.nc")["largest_offset"]) for name in ("small", "heavy")
+        float(present.load(folder / name / "simulate.nc")["largest_offset"]) for name in ("small", "heavy")
     ]
     assert [run["largest_offset"] for run in found["runs"]] == offsets
     names = {path.name for path in Path("both").iterdir()}
     assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
     assert Path("both/compare.txt").read_text(encoding="ascii") == text
-    saved = [results.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
+    saved = [present.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
     ((_, figure),) = figures.draw("compare", *saved)
     figures.save(figure, Path("again.svg"))
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
@@ -156,7 +156,7 @@ def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys
     assert main(["simulate", str(folder / "other.toml"), *options]) == 0
     capsys.readouterr()
     assert main(["compare", str(folder / "small"), str(folder / "other"), "--json"]) == 0
-    found, small = json.loads(capsys.readouterr().out), results.load(folder / "small" / "simulate.nc")
+    found, small = json.loads(capsys.readouterr().out), present.load(folder / "small" / "simulate.nc")
     assert {one["key"]: (one["first"], one["second"]) for one in found["differences"]} == {
         "cage.ball_cage_friction": (0.1, 0.2),
         "stability.seed": (1, 2),
@@ -174,16 +174,16 @@ def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
     capsys.readouterr()
     assert main(["compare", str(folder / "small"), str(folder / "own"), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["differences"]
-    taken = float(results.load(folder / "own" / "simulate.nc")["cage_ball_cage_friction"])
+    taken = float(present.load(folder / "own" / "simulate.nc")["cage_ball_cage_friction"])
     assert found == [{"key": "cage.ball_cage_friction", "first": 0.1, "second": taken, "unit": "-"}]
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 1e300])
 def test_a_saved_run_of_numbers_that_cannot_be_drawn_is_refused(value, folder, capsys, tmp_path):
     """One line, not a traceback of the plotting library."""
-    data = results.load(folder / "small" / "simulate.nc")
+    data = present.load(folder / "small" / "simulate.nc")
     data["position"][:] = value
-    results.save(data, tmp_path / "odd.nc")
+    present.save(data, tmp_path / "odd.nc")
     assert main(["compare", str(tmp_path / "odd.nc"), str(folder / "small")]) == 2
     assert "must have finite numbers below 1e+30 in position" in capsys.readouterr().err
 

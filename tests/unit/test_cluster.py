@@ -9,11 +9,11 @@ import distributed
 import pytest
 
 from separatrix import cluster as clusters
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.cluster import cluster
 from separatrix.errors import InputError
+from separatrix.limits import stability_curve
 from separatrix.runner import Runner
-from separatrix.stability import stability_curve
 from separatrix.study_file import read_study
 
 WHEEL = solve(read_study("momentum-wheel"))

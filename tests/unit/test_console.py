@@ -19,8 +19,8 @@ import pytest
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
 from separatrix.cli.files import staged, writable_folder
-from separatrix.notes import noted_warnings
 from separatrix.errors import InputError, ValidityWarning
+from separatrix.notes import noted_warnings
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
@@ -285,7 +285,7 @@ def test_a_folder_below_a_file_is_refused(tmp_path):
 
 def test_the_commands_of_the_readme_exist():
     """Every `separatrix VERB` of README and docs is a verb."""
-    texts = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    texts = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     named = {
         verb for path in texts for verb in re.findall(r"^ *\$? ?separatrix (\w+)", path.read_text(), re.M)
     }

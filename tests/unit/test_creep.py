@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from separatrix.creep import Creep, deformed_radius
+from separatrix.chain.creep import Creep, deformed_radius
 
 
 def test_a_creep_cannot_be_changed():

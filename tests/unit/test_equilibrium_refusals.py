@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from separatrix.equilibrium import equilibrium
+from separatrix.chain.equilibrium import equilibrium
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import BallBearing, KinematicModel, Material, Operation
 

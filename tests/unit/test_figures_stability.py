@@ -6,10 +6,10 @@ import drawn
 import numpy as np
 import pytest
 
+from separatrix.chain.restitution import restitution_factor
 from separatrix.figures import map as maps
 from separatrix.figures import stability
 from separatrix.figures.style import journal
-from separatrix.restitution import restitution_factor
 
 ON = "restitution_factor"
 NAN = np.nan

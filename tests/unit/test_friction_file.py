@@ -8,14 +8,14 @@ from subprocess import run
 
 import pytest
 
-from separatrix.chain import solve
+from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.chain.pocket_friction import friction_in_pocket
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction.file import friction_text, read_friction, write_friction
 from separatrix.friction.fit import TestedFriction
 from separatrix.friction.records import FrictionTest
-from separatrix.pocket_contact import PocketConditions
-from separatrix.pocket_friction import friction_in_pocket
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 
@@ -237,7 +237,6 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
     assert axes.get_legend_handles_labels()[1] == ["friction extrapolated"]
     explain_extrapolated(bare := Figure().subplots(), xr.DataArray([["", ""]]))
     assert bare.get_legend_handles_labels()[1] == []
-
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from separatrix.chain.hertz import contact_ellipse
 from separatrix.errors import InputError
-from separatrix.hertz import contact_ellipse
 
 
 @pytest.mark.parametrize(

@@ -505,7 +505,7 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
 
     from separatrix.library import reading, records
 
-    page = (Path(__file__).parents[2] / "docs" / "materials.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]
     content = library.joined([library.library_of_text(block, "page")])
     assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9

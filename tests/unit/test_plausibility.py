@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from separatrix import verbs
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study

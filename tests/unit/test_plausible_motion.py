@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.ranking.plausible import Moved, beyond_motion, pocket_pressure, transmitted_force
 from separatrix.study_file import read_study
 

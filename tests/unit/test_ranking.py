@@ -6,8 +6,9 @@ from dataclasses import fields, replace
 import pytest
 
 from separatrix.cage import Judgement, Verdict, judge
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
+from separatrix.limits import RestitutionThreshold
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
 from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
@@ -15,7 +16,6 @@ from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
 from separatrix.runner import Interrupted, Runner
-from separatrix.stability import RestitutionThreshold
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
 

@@ -4,12 +4,12 @@ import os
 
 import pytest
 
-from separatrix import archive, results
+import separatrix
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction.logs import tdms
 from separatrix.regular_file import size_of
-from separatrix.spreadsheet import workbook
+from separatrix.workbook_guard import refuse_unsafe
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))
 CALLS = {
@@ -85,8 +85,8 @@ def test_neither_an_ending_nor_a_folder_nor_a_device_makes_a_difference(capsys, 
 
 @pytest.mark.parametrize(
     "read",
-    [results.load, archive.open_archive, workbook.open_workbook, tdms.read_tables],
-    ids=["load", "open_archive", "open_workbook", "read_tables"],
+    [separatrix.load, refuse_unsafe, tdms.read_tables],
+    ids=["load", "refuse_unsafe", "read_tables"],
 )
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):
     """Those that the verbs reach only after a check of their own."""

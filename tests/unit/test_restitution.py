@@ -2,8 +2,8 @@
 
 import pytest
 
+from separatrix.chain.restitution import damping_for, damping_ratio, damping_ratio_for
 from separatrix.errors import InputError
-from separatrix.restitution import damping_for, damping_ratio, damping_ratio_for
 
 
 @pytest.mark.parametrize("eta", [1.0, 1.2, -0.1, float("nan")])

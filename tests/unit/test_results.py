@@ -1,23 +1,27 @@
-"""Records as plain data, and plain data as labelled arrays."""
+"""Records as plain data, as labelled arrays, and as tables."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum, IntEnum
 from typing import Annotated
 
 import numpy as np
 import pytest
 
-from separatrix import results
+from separatrix import answers
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
-from separatrix.results import documents
-from separatrix.results.labels import RECORD_CLASSES, unit_of, units
-from separatrix.results.plain import NotFiniteError, field_units, plain
+from separatrix.explore import sweep
+from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray
+from separatrix.present.walk import field_units
+from separatrix.ranking import NotMeasured, Ranked
 from separatrix.study import Guidance
 from separatrix.study_file import read_study
-from separatrix.units import Newton, Ratio
+from separatrix.units import Newton, Ratio, Rows
+
+STUDY = read_study("cryogenic-turbopump")
 
 
 class Colour(Enum):
@@ -42,22 +46,46 @@ class Inner:
 
 @dataclass(frozen=True, slots=True)
 class Outer:
-    """A record of everything that results hold."""
+    """A record of everything that answers have."""
 
     inner: Inner
-    values: Annotated[np.ndarray, "Pa"]
+    values: Annotated[np.ndarray, "Pa", ("strip", "node")]
     colour: Colour = Colour.RED
     step: Step = Step.FIRST
     guidance: Guidance = Guidance.BALL
-    parts: tuple[Inner, ...] = ()
+    parts: Annotated[tuple[Inner, ...], Rows("part", "part_", label="load")] = ()
     by_name: dict | None = None
 
 
-def test_a_record_becomes_what_json_holds():
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A record with a name."""
+
+    name: str
+    friction: Ratio | None
+    extrapolation: tuple[str, ...] = ()
+    shares: Annotated[tuple[Ratio, ...] | None, ("ball",)] = None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Records in a record of a list."""
+
+    name: str
+    materials: Annotated[tuple[Row, ...], Rows("material", "material_", label="name")]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """An answer in two environments."""
+
+    restitution_factor: Ratio
+    environments: Annotated[tuple[Place, ...], Rows("environment", label="name")]
+
+
+def test_a_record_becomes_what_json_can_hold():
     """Nested records, arrays, enumerations, tuples and mappings; study enumerations keep their spelling."""
-    record = Outer(
-        Inner(2.0), np.array([[1.0, 2.0]]), parts=(Inner(1.0, 0.5),), by_name={Guidance.INNER: np.int64(3)}
-    )
+    record = Outer(Inner(2.0), np.array([[1.0, 2.0]]), parts=(Inner(1.0, 0.5),), by_name={"a": np.int64(3)})
     assert json.loads(json.dumps(plain(record), allow_nan=False)) == {
         "inner": {"load": 2.0, "ratio": None},
         "values": [[1.0, 2.0]],
@@ -65,30 +93,44 @@ def test_a_record_becomes_what_json_holds():
         "step": "FIRST",
         "guidance": "ball",
         "parts": [{"load": 1.0, "ratio": 0.5}],
-        "by_name": {"inner": 3},
+        "by_name": {"a": 3},
     }
+    assert plain({Guidance.INNER: 1}) == {"inner": 1}
+
+
+def test_units_and_dimensions_come_from_the_annotations():
+    """Of arrays, of records in a list along their dimension, and of single records behind their prefix."""
+    assert field_units(Outer) == {"values": "Pa"}
+    assert field_units(Inner) == {"load": "N", "ratio": "-"}
+    data = to_xarray(Outer(Inner(2.0), np.array([[1.0, 2.0]]), parts=(Inner(1.0, 0.5), Inner(3.0))))
+    assert (data["values"].dims, data["values"].attrs["units"]) == (("strip", "node"), "Pa")
+    assert (data["part"].values.tolist(), data["part"].attrs["units"]) == ([1.0, 3.0], "N")
+    np.testing.assert_array_equal(data["part_ratio"], [0.5, np.nan])
+    assert (float(data["inner_load"]), data["inner_load"].attrs["units"]) == (2.0, "N")
 
 
 @pytest.mark.parametrize(
     "bad", [float("nan"), float("inf"), np.array([0.0, np.nan])], ids=["nan", "inf", "array"]
 )
-def test_a_number_that_is_none_is_a_fault_that_says_where(bad):
+def test_a_number_that_is_not_finite_is_a_fault_with_its_place(bad):
     """NaN and infinity never reach a document; the message names the field."""
     with pytest.raises(NotFiniteError, match=r"result\.inner\.load"):
         plain(Outer(Inner(bad), np.zeros(1)))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_a_document_leaves_out_a_number_that_is_not_finite_and_says_so(bad, monkeypatch):
-    """Null and a reason, not a traceback after a long computation."""
-    study = read_study("cryogenic-turbopump")
-    monkeypatch.setitem(documents.DOCUMENTS, "check", lambda record: plain(record, "check"))
-    found = documents.document("check", {"a": 1.0, "b": [bad, 2.0], "c": bad}, study, ["A note."])
-    assert (found["a"], found["b"], found["c"]) == (1.0, [None, 2.0], None)
+def test_a_document_leaves_out_a_number_that_is_not_finite_with_a_warning(bad):
+    """Null and a reason, not a traceback after a long computation; missing in the dataset, too."""
+    record = Outer(Inner(bad), np.array([[bad, 1.0]]))
+    found = document("bearing", record, STUDY, ["A note."])
+    assert (found["inner"]["load"], found["values"]) == (None, [[None, 1.0]])
     note, reason = found["warnings"]
     assert note == "A note."
-    assert reason.startswith(f"A number is not finite and is left out: check.b[0] is {bad} and 1 more.")
+    assert reason.startswith(
+        f"A number is not finite and is left out: bearing.inner.load is {bad} and 1 more."
+    )
     json.dumps(found, allow_nan=False)
+    np.testing.assert_array_equal(to_xarray(record)["values"], [[np.nan, 1.0]])
 
 
 def test_what_has_no_plain_form_is_refused():
@@ -97,79 +139,60 @@ def test_what_has_no_plain_form_is_refused():
         plain({"a": print})
 
 
-def test_units_come_from_the_annotations():
-    """Also in unions, and for arrays; a field without a unit is left out."""
-    assert field_units(Outer) == {"values": "Pa"}
-    assert field_units(Inner) == {"load": "N", "ratio": "-"}
+def test_a_row_that_was_not_measured_has_all_keys():
+    """Null but for its name, the reason and the empty list; none of the ranked one's is missing."""
+    found = plain(NotMeasured(name="A", reason="not measured"))
+    assert {f.name for f in fields(Ranked)} - {"judgement", "over_inputs"} <= set(found)
+    given = {key: value for key, value in found.items() if value is not None}
+    assert given == {"name": "A", "reason": "not measured", "extrapolation": []}
 
 
-def test_one_name_has_one_unit():
-    """No two records give the same name different units."""
-    import importlib
-
-    for module, names in RECORD_CLASSES.items():
-        for name in names.split():
-            record = getattr(importlib.import_module(f"separatrix.{module}"), name)
-            for field, unit in field_units(record).items():
-                assert units()[field] == unit, f"{name}.{field}"
+ROWS = (Row("A", 0.1, ("too fast", "too hot"), (0.25, 0.75)), Row("B", None))
 
 
-def test_units_are_found_behind_prefixes():
-    """`chain_`, `contact_`, `cage_` and the like go before a name that has a unit."""
-    assert unit_of("chain_race_damping") == "N s/m"
-    assert unit_of("contact_max_pressure") == "Pa"
-    assert unit_of("cage_pocket_clearance") == "m"
-    assert unit_of("work_land_friction") == "J"
-    assert unit_of("material_name") is None
-
-
-def ranking(order: tuple[str, str]) -> dict:
-    """Return a small document with two environments and two materials, in either order."""
-    friction = {"A": 0.1, "B": None}
-    rows = [
-        {"name": n, "friction": friction[n], "reason": None if n == "A" else "not measured"} for n in order
-    ]
-    return {
-        "separatrix_version": "0",
-        "verb": "rank",
-        "warnings": ["one"],
-        "restitution_factor": 0.3,
-        "environments": [{"name": "x", "materials": rows}, {"name": "y", "materials": rows[::-1]}],
-    }
-
-
-@pytest.mark.parametrize("order", [("A", "B"), ("B", "A")])
-def test_materials_are_aligned_by_name(order):
-    """Each environment lists its best first; in the dataset a material has one place."""
-    data = results.dataset(ranking(order))
+@pytest.mark.parametrize("rows", [ROWS, ROWS[::-1]])
+def test_materials_are_aligned_by_name(rows, tmp_path):
+    """In a dataset a material has one place whatever its rank; what a row lacks is missing, texts are one."""
+    answer = Places(0.3, (Place("x", rows), Place("y", rows[::-1])))
+    data = dataset("rank", answer, STUDY, ["one"])
     assert data["material"].values.tolist() == ["A", "B"]
     np.testing.assert_array_equal(data["material_friction"], [[0.1, np.nan]] * 2)
-    assert data["material_reason"].values.tolist() == [["", "not measured"]] * 2
+    assert data["material_extrapolation"].values.tolist() == [["too fast; too hot", ""]] * 2
+    assert data["material_shares"].dims == ("environment", "material", "ball")
+    np.testing.assert_array_equal(data["material_shares"][0], [[0.25, 0.75], [np.nan] * 2])
     assert float(data["chain_restitution_factor"]) == 0.3
-
-
-def test_a_dataset_survives_its_file(tmp_path):
-    """Numbers, missing ones, texts and provenance come back from netCDF."""
-    data = results.dataset(ranking(("A", "B")))
-    results.save(data, tmp_path / "a.nc")
-    back = results.load(tmp_path / "a.nc")
-    assert back.identical(data) or back.equals(data)
-    assert back.attrs["separatrix_version"] == "0"
+    save(data, tmp_path / "a.nc")
+    back = load(tmp_path / "a.nc")
+    assert back.equals(data)
     assert json.loads(back.attrs["warnings"]) == ["one"]
+    assert json.loads(back.attrs["study"])["bearing"]["ball_count"]["value"] == 13
 
 
-def test_what_is_no_result_is_refused(tmp_path):
+def test_what_is_not_a_result_is_refused(tmp_path):
     """A missing file, and one that is something else."""
     (tmp_path / "b.nc").write_text("no")
     for name, rule in (("a.nc", "cannot be read: no such file"), ("b.nc", "is not a readable netCDF result")):
         with pytest.raises(InputError, match=rule):
-            results.load(tmp_path / name)
+            load(tmp_path / name)
 
 
-def test_a_list_that_one_row_lacks_is_a_row_of_missing_values():
-    """The dimensions are those of the rows that have it, wherever these stand."""
-    rows = [{"name": "A", "pocket_impact_shares": None}, {"name": "B", "pocket_impact_shares": [0.25, 0.75]}]
-    data = results.dataset({"verb": "rank", "overall": rows})
-    shares = data["overall_pocket_impact_shares"]
-    assert shares.dims == ("material", "ball")
-    assert np.array_equal(shares.values, [[np.nan, np.nan], [0.25, 0.75]], equal_nan=True)
+def test_an_answer_is_a_table():
+    """A row a ball, a case, or a candidate in an environment; columns are the arrays along them."""
+    state = solve(STUDY).bearing
+    balls = to_dataframe(state)
+    assert (balls.index.name, len(balls)) == ("ball", 13)
+    assert balls["load_inner"].to_numpy() == pytest.approx(state.equilibrium.load_inner, rel=0)
+    assert "ball_spin_2" in balls
+    cases = to_dataframe(sweep.sweep(STUDY, [{"film.thickness": h} for h in (2e-7, 5e-7)]))
+    assert cases["film.thickness"].tolist() == [2e-7, 5e-7]
+    rows = to_dataframe(Places(0.3, (Place("x", ROWS), Place("y", ROWS))))
+    assert rows.loc["x", "A"]["friction"] == 0.1
+
+
+def test_every_answer_of_a_verb_is_arranged():
+    """Each record of `answers` is a shape of its own: none is shown field by field by accident."""
+    from separatrix.present.shapes import shape
+
+    records = {one for one in vars(answers).values() if getattr(one, "__name__", "").endswith("Answer")}
+    assert len(records) == 8
+    assert records <= set(shape.registry)

@@ -18,13 +18,13 @@ import numpy as np
 import pytest
 
 from separatrix.cage import Ensemble, run_ensemble
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
+from separatrix.limits import stability_curve
 from separatrix.ranking import rank
 from separatrix.runner import PART, Interrupted, Runner
-from separatrix.stability import stability_curve
 from separatrix.study_file import read_study
 
 FOUND = solve(read_study("momentum-wheel"))

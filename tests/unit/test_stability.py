@@ -6,14 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from separatrix.report.stability import curve
 
 from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.runner import Runner
-from separatrix.stability import (
+from separatrix.limits import (
     Count,
     CriticalFriction,
     GrowthCounter,
@@ -26,10 +24,12 @@ from separatrix.stability import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.stability.curve import Tracer, bends
-from separatrix.stability.point import own_restitution_factor
-from separatrix.stability.response import LADDER, Crossing, cell_of
-from separatrix.stability.tracing import COARSE, FINEST, finer
+from separatrix.limits.curve import Tracer, bends
+from separatrix.limits.point import own_restitution_factor
+from separatrix.limits.response import LADDER, Crossing, cell_of
+from separatrix.limits.tracing import COARSE, FINEST, finer
+from separatrix.present.text.stability import curve
+from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -393,29 +393,23 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
 
 def test_the_report_says_between_which_frictions_the_kick_decides():
     """The band at the bearing's own restitution factor in words; what is missing has its reason."""
-    here = {
-        "restitution_factor": 0.27, "critical_friction_low": None, "critical_friction_high": 0.258,
-        "kick_critical_friction": [0.19, None], "reason": "so it is",
-    }  # fmt: skip
-    point = {
-        "restitution_factor": 0.5, "critical_friction": None, "scatter_low": None, "scatter_high": None,
-        "critical_friction_low": 0.1, "critical_friction_high": 0.2,
-    }  # fmt: skip
-    limit = {"restitution_factor": 0.5, "critical_friction": 0.07}
-    document = {
-        "curve": [point],
-        "linear_limit": [limit],
-        "hard_limit": [limit],
-        "here": here,
-        "kicks": [0.1, 2],
-        "drifts": False,
-    }
-    text = "\n".join(curve(document))
+    here = CriticalFriction(
+        restitution_factor=0.27,
+        critical_friction_high=0.258,
+        kick_critical_friction=(0.19, None),
+        reason="so",
+    )
+    point = CriticalFriction(restitution_factor=0.5, critical_friction_low=0.1, critical_friction_high=0.2)
+    limit = SimpleNamespace(restitution_factor=0.5, critical_friction=0.07)
+    found = SimpleNamespace(
+        curve=[point], linear_limit=[limit], hard_limit=[limit], here=here, kicks=(0.1, 2.0), drifts=False
+    )
+    text = "\n".join(curve(found))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())
     assert "Every kick settles below  none" in text
     assert "Every kick whirls above   a friction of 0.258" in text
     assert "0.190 from 0.1 m/s, - from 2 m/s" in text
-    assert "so it is" in text
+    assert "Reason                    so" in text
 
 
 @pytest.mark.parametrize("kick", [2.0**-6, 64.0])

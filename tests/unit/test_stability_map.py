@@ -9,23 +9,22 @@ import pytest
 
 from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble, wilson_interval
 from separatrix.cage.verdict import drifts
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
-from separatrix.runner import Interrupted, Runner
-from separatrix.stability import cage_at
-from separatrix.stability.map import (
+from separatrix.limits import cage_at
+from separatrix.limits.map import (
     AGREED,
     PointFinder,
     decided_ensemble,
     inference,
     stability_map,
 )
-from separatrix.stability.map_fill import CHECK_EVERY, Filled, fill
-from separatrix.stability.map_grid import near_a_change, rounds
-from separatrix.stability.map_parameters import parameters, varied
-from separatrix.stability.map_records import MapAxis, MapPoint, MapQuestion
-from separatrix.stability.map_rule import (
+from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill
+from separatrix.limits.map_grid import near_a_change, rounds
+from separatrix.limits.map_parameters import parameters, varied
+from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion
+from separatrix.limits.map_rule import (
     AGREEING,
     Tally,
     changes,
@@ -37,6 +36,7 @@ from separatrix.stability.map_rule import (
     side,
     wrong_side_probability,
 )
+from separatrix.runner import Interrupted, Runner
 from separatrix.study import Guidance, PocketShape
 from separatrix.study_file import read_study
 

@@ -547,7 +547,7 @@ def test_the_page_on_study_files_names_every_key_and_every_unit():
 
     from separatrix.study_file.sections import READERS
 
-    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     for section, readers in READERS.items():
         assert f"## [{section}]" in page
         for key in readers:
@@ -564,7 +564,7 @@ def test_the_toml_on_the_page_is_right(read):
     """Both examples can be read."""
     from pathlib import Path
 
-    page = (Path(__file__).parents[2] / "docs" / "study-file.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     variant, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
     assert read(variant).operation.axial_load == 1500.0
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"

@@ -8,7 +8,7 @@ import pytest
 from separatrix.cage import ending
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.report.study import room, shown
+from separatrix.present.text.study import clearances, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
 from separatrix.study_file import read_study, resolved
 from separatrix.study_file.cautions import LONGEST
@@ -81,7 +81,7 @@ def test_pocket_angles_are_one_for_each_ball(read):
     """A list of angles; their unit is shown with them."""
     study = read(cage=f"pocket_angles = [{EVEN}]")
     assert study.cage.pocket_angles[1] == pytest.approx(2 * math.pi / 13, rel=1e-7)  # six decimals of 27 deg
-    assert shown(resolved(study)["cage"]["pocket_angles"]) == "0 ... 332.308 deg (13)"
+    assert shown(study.cage.pocket_angles, "rad") == "0 ... 332.308 deg (13)"
 
 
 def test_everything_new_is_off_by_default(read):
@@ -260,18 +260,18 @@ def test_uneven_pockets_fit_up_to_their_bars(read):
 def test_a_land_tighter_than_the_pockets_is_a_land_guided_cage(read):
     """No fault: its pockets touch by turning, and as balls lead and lag; the report says what is met."""
     tight = read(cage='guidance = "outer"\nland_clearance = "0.3 mm"\nland_out_of_round = "10 um"')
-    rows = dict(room(resolved(tight)["cage"]))
+    rows = dict(clearances(tight.cage))
     assert rows["Land clearance"] == "140 um radial, reached before the pockets"
     wide = read(cage='guidance = "outer"\nland_clearance = "1 mm"')
-    assert dict(room(resolved(wide)["cage"]))["Land clearance"] == "500 um radial, reached after the pockets"
-    landless = dict(room(resolved(read(cage='guidance = "ball"'))["cage"]))
+    assert dict(clearances(wide.cage))["Land clearance"] == "500 um radial, reached after the pockets"
+    landless = dict(clearances(read(cage='guidance = "ball"').cage))
     assert landless["Land clearance"] == "no land: the balls guide the cage"
 
 
 def test_the_report_shows_what_shape_and_offset_leave(read):
     """Half play and lean of an elongated pocket: 0.3 - 0.2 + sqrt(0.2^2 - 0.1^2) mm, asin(0.1/0.2)."""
     cage = 'pocket_shape = "elongated"\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "0.1 mm"'
-    rows = dict(room(resolved(read(cage=cage))["cage"]))
+    rows = dict(clearances(read(cage=cage).cage))
     assert rows["Pocket clearance"] == "273.2 um each way, along the circumference"
     assert rows["Lean of its contact"] == "30 deg, towards the bearing axis"
 

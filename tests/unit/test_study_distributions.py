@@ -9,14 +9,13 @@ from types import SimpleNamespace
 
 import pytest
 from scipy.stats import lognorm
-from separatrix.report import report
-from separatrix.results import document
 
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
+from separatrix.limits.map_parameters import varied
+from separatrix.present import report
 from separatrix.ranking.friction import measured
-from separatrix.stability.map_parameters import varied
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (
     MOST_DISTRIBUTIONS,
@@ -76,7 +75,7 @@ def test_every_form_is_read(text, study_of):
 
 def test_the_page_on_uncertain_inputs_is_right():
     """The study on the page is read, and so is every form of its table."""
-    page = (Path(__file__).parents[2] / "docs" / "uncertainty.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "distributions.md").read_text(encoding="utf-8")
     page = page.partition("## How to write them")[2].partition("\n## ")[0]
     block = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
     with tempfile.TemporaryDirectory() as folder:
@@ -226,14 +225,14 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = report("check", document("check", SimpleNamespace(static=None, static_reason=""), study, []))
+    shown = report("check", SimpleNamespace(static=None, static_reason=""), study, [])
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-    from separatrix.chain import solve
+    from separatrix.chain.solution import solve
 
-    told = report("bearing", document("bearing", solve(study).bearing, study, []))
-    assert "An uncertain input stands at its mean: film.thickness." in told
+    told = report("bearing", solve(study).bearing, study, [])
+    assert "An uncertain input is at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = report("bearing", document("bearing", solve(certain).bearing, certain, []))
+    told = report("bearing", solve(certain).bearing, certain, [])
     assert "uncertain" not in told
 
 

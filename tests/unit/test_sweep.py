@@ -11,7 +11,7 @@ import openpyxl
 import pytest
 
 from separatrix.cage import judge
-from separatrix.chain import solve
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.sweep import MOST_CASES, sweep

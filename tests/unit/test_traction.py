@@ -7,11 +7,9 @@ import pickle
 import numpy as np
 import pytest
 
-from separatrix.creep import Creep
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
-from separatrix.hertz import contact_ellipse
-from separatrix.study import BallBearing, Film, Material
-from separatrix.traction import (
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.traction import (
     bonded_layer,
     film_compliance,
     shear_field,
@@ -19,7 +17,9 @@ from separatrix.traction import (
     traction_curve,
     traction_slope,
 )
-from separatrix.traction import strip as strip_module
+from separatrix.chain.traction import strip as strip_module
+from separatrix.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.study import BallBearing, Film, Material
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 CREEP = Creep(spin=5.0, curvature=-2e4)

@@ -9,16 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from separatrix.report import report
-from separatrix.results import document
 
 from separatrix.answers import SimulationAnswer
 from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, simulate
-from separatrix.chain import solve
+from separatrix.chain.restitution import damping_for
+from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.restitution import damping_for
-from separatrix.stability.growth import race_damping_at
+from separatrix.limits.growth import race_damping_at
+from separatrix.present import document, report
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 
@@ -189,7 +188,7 @@ def test_an_unresolved_run_says_so():
     history = replace(history, outcome=RunOutcome.UNRESOLVED, cause=Cause.IMPACTS)
     answer = SimulationAnswer(solution=solve(asked), cage=solve(asked).cage, history=history, kick=0.5, run=0)
     found = document("simulate", answer, asked, [])
-    said = " ".join(report("simulate", found).split())
+    said = " ".join(report("simulate", answer, asked, []).split())
     assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "IMPACTS")
     assert "UNRESOLVED" in said
     assert "The run does not show where the motion ends." in said

@@ -8,12 +8,12 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from separatrix.results import container, load
 
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.figures import draw
 from separatrix.figures.style import heading, literal_texts
+from separatrix.present import container, load
 
 STUDY = {"cage": {"mass": {"value": 0.025, "unit": "kg"}}}
 HEAD = {"verb": "simulate", "title": "A run", "seed": 1, "study": json.dumps(STUDY)}

@@ -1,6 +1,1 @@
-"""From a study to its cage: equilibrium, contacts, traction, restitution, pocket, cage."""
-
-from separatrix.chain.contacts import BearingState, RaceContact, RaceTraction
-from separatrix.chain.solution import Solution, solve
-
-__all__ = ["BearingState", "RaceContact", "RaceTraction", "Solution", "solve"]
+"""The chain of the paper, a module a stage; `solution` goes through them from a study to its cage."""

@@ -11,14 +11,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from separatrix.contact_limits import beyond_contacts
-from separatrix.creep import Creep, contact_creep
-from separatrix.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.chain.contact_limits import beyond_contacts
+from separatrix.chain.creep import Creep, contact_creep
+from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.orbit import mean_speed
+from separatrix.chain.traction import TractionCurve, film_compliance, traction_curve
 from separatrix.errors import InputError
-from separatrix.hertz import ContactEllipse
-from separatrix.orbit import mean_speed
 from separatrix.study import BallBearing, Film, KinematicModel, Operation, Race, Study
-from separatrix.traction import TractionCurve, film_compliance, traction_curve
 from separatrix.units import MetrePerSecond, Newton, Radian, RadianPerSecond, Ratio
 
 REMEMBERED = 1024

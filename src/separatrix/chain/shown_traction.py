@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from separatrix.chain.contacts import RaceContact
+from separatrix.chain.traction import ShearField, TractionCurve, film_compliance, shear_field, traction_curve
 from separatrix.study import Film
-from separatrix.traction import ShearField, TractionCurve, film_compliance, shear_field, traction_curve
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""

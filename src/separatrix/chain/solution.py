@@ -22,18 +22,18 @@ from separatrix.chain.contacts import (
     race_traction,
     require_rolling,
 )
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.lubrication import LubricationCurve, lubrication_curve
-from separatrix.orbit import OrbitalWaves, orbital_waves
-from separatrix.pocket_contact import PocketConditions, pocket_conditions
-from separatrix.pocket_friction import friction_in_pocket, names_of_fluid
-from separatrix.restitution import (
+from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
+from separatrix.chain.orbit import OrbitalWaves, orbital_waves
+from separatrix.chain.pocket_contact import PocketConditions, pocket_conditions
+from separatrix.chain.pocket_friction import friction_in_pocket, names_of_fluid
+from separatrix.chain.restitution import (
     Restitution,
     ball_pocket_stiffness,
     contact_damping,
     hertz_coefficient_for,
     restitution,
 )
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import (
     CageDesign,
     Candidate,

@@ -12,14 +12,14 @@ from dataclasses import replace
 import numpy as np
 
 from separatrix.cage import PlanarCage, RunOutcome
+from separatrix.chain.lubrication import LubricationCurve
 from separatrix.distribution import LogNormal
 from separatrix.draws import Case
 from separatrix.explore.records import AllowedFilm, AllowedFriction
-from separatrix.lubrication import LubricationCurve
+from separatrix.limits.growth import Count, race_damping_at
+from separatrix.limits.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner
-from separatrix.stability.growth import Count, race_damping_at
-from separatrix.stability.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.units import MetrePerSecond, Ratio
 
 PROBABILITY: Ratio = 0.95

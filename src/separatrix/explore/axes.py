@@ -9,8 +9,8 @@ from separatrix.errors import InputError
 from separatrix.units import parse, shown
 
 if TYPE_CHECKING:
-    from separatrix.stability.map_parameters import Parameter
-    from separatrix.stability.map_records import MapAxis
+    from separatrix.limits.map_parameters import Parameter
+    from separatrix.limits.map_records import MapAxis
 
 FEWEST, MOST = 2, 1000
 """Points of an axis."""
@@ -42,7 +42,7 @@ def read_axis(text: str, option: str, points: int) -> MapAxis:
     InputError
         Not such a text, no such parameter, or no rising range in its unit.
     """
-    from separatrix.stability.map_records import MapAxis
+    from separatrix.limits.map_records import MapAxis
 
     name, found, rest = text.partition("=")
     if not found:
@@ -66,7 +66,7 @@ def find_parameter(name: str, option: str) -> Parameter:
     InputError
         There is none, or it is no number.
     """
-    from separatrix.stability.map_parameters import SHORT, other_keys, parameters
+    from separatrix.limits.map_parameters import SHORT, other_keys, parameters
     from separatrix.toml_values import nearest
 
     known = parameters()

@@ -11,7 +11,7 @@ from pathlib import Path
 from separatrix.errors import InputError, together
 from separatrix.explore.axes import find_parameter, plain_number, read_axis
 from separatrix.explore.sweep import MOST_CASES, Case
-from separatrix.stability.map_parameters import Parameter
+from separatrix.limits.map_parameters import Parameter
 from separatrix.toml_text import Kind, path_text, read_text
 from separatrix.units import parse, shown
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.cage import PlanarCage
-    from separatrix.stability.map_records import MapQuestion
+    from separatrix.limits.map_records import MapQuestion
     from separatrix.study import StabilitySettings, Study
     from separatrix.units import Ratio, Second
 
@@ -39,8 +39,8 @@ it bends more, its points take longer, too."""
 
 def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
     """Time of a stability curve, with its band at every point or only at the cage's own damping."""
-    from separatrix.stability.growth import GrowthCounter
-    from separatrix.stability.point import linear_guess
+    from separatrix.limits.growth import GrowthCounter
+    from separatrix.limits.point import linear_guess
 
     counts = GrowthCounter(cage, settings)
     some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
@@ -68,7 +68,7 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
-    from separatrix.chain import solve
+    from separatrix.chain.solution import solve
     from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
@@ -89,7 +89,7 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    from separatrix.chain import solve
+    from separatrix.chain.solution import solve
     from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
@@ -113,8 +113,8 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
     Those of its first row and column are not timed: with them the links of the chain are made that others
     share.
     """
+    from separatrix.limits.map import PointFinder, require_cage_friction
     from separatrix.runner import Runner
-    from separatrix.stability.map import PointFinder, require_cage_friction
 
     require_cage_friction(question)
     xs, ys = (_some(axis.values) for axis in (question.x, question.y))

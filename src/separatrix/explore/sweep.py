@@ -8,11 +8,12 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cage import Judgement, judge
-from separatrix.chain import BearingState, Solution, solve
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.restitution import Restitution
+from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.restitution import Restitution
+from separatrix.limits.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.runner import Runner
-from separatrix.stability.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.study import Study
 from separatrix.units import (
     Metre,

@@ -12,7 +12,8 @@ import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
 from separatrix.cage_choice import reference_candidate, required_environment
-from separatrix.chain import solve
+from separatrix.chain.pocket_friction import with_scatter
+from separatrix.chain.solution import solve
 from separatrix.distribution import described
 from separatrix.draws import Case, UncertainInput
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
@@ -34,7 +35,6 @@ from separatrix.explore.records import (
     UncertainStudy,
 )
 from separatrix.explore.shares import sobol_shares
-from separatrix.pocket_friction import with_scatter
 from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, overall

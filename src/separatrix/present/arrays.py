@@ -12,7 +12,7 @@ import xarray as xr
 
 from separatrix.present.container import DAMAGE, check_container, damaged
 from separatrix.present.json import null_if_not_finite, plain
-from separatrix.present.shapes import arranged
+from separatrix.present.shapes import all_notes, arranged
 from separatrix.present.walk import Group, Leaf, Node, Table
 from separatrix.units import Rows
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 RACES = ("inner", "outer")
-
-ATTRIBUTES = ("warnings", "complete")
-"""Fields of an answer that are attributes of its dataset."""
 
 RENAMED = {"restitution_factor": "chain_restitution_factor"}
 """Single numbers that have the name of a dimension."""
@@ -42,25 +39,21 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
 
     Parameters
     ----------
-    verb, answer, study
+    verb, answer, study, notes
         As for `document`.
-    notes : sequence of str
-        All warnings: ``document(...)["warnings"]``.
     """
     from separatrix import __version__
     from separatrix.study_file import resolved
 
     data = to_xarray(answer)
-    complete = {} if "complete" not in data.attrs else {"complete": data.attrs["complete"]}
-    data.attrs = {
+    data.attrs |= {
         "separatrix_version": __version__,
         "verb": verb,
         "title": study.title,
         "name": study.name,
         "study": json.dumps(plain(resolved(study), "study")),
         "seed": study.stability.seed,
-        "warnings": json.dumps(list(notes)),
-        **complete,
+        "warnings": json.dumps(all_notes(answer, notes)),
     }
     return data
 
@@ -68,13 +61,13 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
 def to_xarray(answer: object) -> xr.Dataset:
     """Return the labelled arrays of an answer, with their units, without the study behind it."""
     node = arranged(answer)
-    apart = {name: node.pop(name) for name in ATTRIBUTES if name in node}
+    complete = {"complete": json.dumps(plain(node.pop("complete")))} if "complete" in node else {}
     for name, other in RENAMED.items():
         if isinstance(item := node.get(name), Leaf) and item.axes is None:
             node[other] = node.pop(name)
     with null_if_not_finite():
         variables = {name: _variable(leaf) for name, leaf in _flat(node).items()}
-    return xr.Dataset(variables, attrs={name: json.dumps(plain(item)) for name, item in apart.items()})
+    return xr.Dataset(variables, attrs=complete)
 
 
 def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
@@ -103,7 +96,7 @@ def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
             columns[str(name).removeprefix(f"{wanted[-1]}_")] = variable
         elif len(wanted) == 1 and variable.dims[:1] == wanted and variable.ndim == 2:
             columns |= {f"{name}_{i}": variable[:, i] for i in range(variable.shape[1])}
-    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe()
+    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
 
 
 MAIN = (

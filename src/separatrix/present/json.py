@@ -44,15 +44,15 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
     study : Study
         What was asked; its resolved inputs go into the answer with their sources.
     notes : sequence of str
-        Warnings about validity.
+        Warnings about validity; those in the answer are added.
     """
     from separatrix import __version__
-    from separatrix.present.shapes import shape
+    from separatrix.present.shapes import all_notes, shape
     from separatrix.study_file import resolved
 
     with null_if_not_finite() as left_out:
         body = plain(Group(shape(answer)), verb)
-    warnings = list(notes)
+    warnings = all_notes(answer, notes)
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
         warnings.append(
@@ -67,7 +67,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         "study": plain(resolved(study), "study"),
         "seed": study.stability.seed,
         **body,
-        "warnings": [*warnings, *body.get("warnings", [])],
+        "warnings": warnings,
     }
 
 

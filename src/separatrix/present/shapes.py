@@ -23,14 +23,15 @@ from separatrix.cage import History, Judgement
 from separatrix.cage.drive import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
-from separatrix.chain import BearingState, RaceContact, Solution
-from separatrix.equilibrium import Equilibrium
+from separatrix.chain.contacts import BearingState, RaceContact
+from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
 from separatrix.present.walk import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.walk import shape as shape
 from separatrix.ranking import NotFinished, NotMeasured, Ranked
-from separatrix.traction import ShearField, TractionCurve
 from separatrix.units import Rows
 
 Key = TypeVar("Key")
@@ -124,6 +125,7 @@ def _(found: RestitutionAnswer) -> Node:
 # The cage.
 
 
+@shape.register
 def _cage(found: OfCage) -> Node:
     """The cage and the chain before it, with the leads of the balls beside their clearance."""
     orbits: Node = {
@@ -185,12 +187,13 @@ def _(row: Ranked | NotFinished | NotMeasured) -> Node:
 @shape.register
 def _(found: RankingAnswer) -> Node:
     node = shape(found.ranking)
-    return node | {"warnings": node.pop("notes")} | _cage(found)
+    del node["notes"]
+    return node | _cage(found)
 
 
 @shape.register
 def _(found: SensitivityAnswer) -> Node:
-    return shape(found.uncertain) | {"warnings": Leaf(found.uncertain.notes)} | _cage(found)
+    return shape(found.uncertain) | _cage(found)
 
 
 @shape.register
@@ -206,6 +209,16 @@ def _(found: Sweep) -> Node:
         cases.append({"case": case.pop("case")} | values | case)
     rest: Node = {"verdicts": Leaf(found.verdicts), "complete": Leaf(found.complete)}
     return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
+
+
+def all_notes(answer: object, notes: Iterable[str]) -> list[str]:
+    """Return warnings with those that an answer has itself, each once."""
+    own: tuple[str, ...] = ()
+    if isinstance(answer, RankingAnswer):
+        own = answer.ranking.notes
+    elif isinstance(answer, SensitivityAnswer):
+        own = answer.uncertain.notes
+    return list(dict.fromkeys([*notes, *own]))
 
 
 # Datasets of answers whose arrays are not those of their records one by one.

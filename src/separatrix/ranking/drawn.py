@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
-from separatrix.chain import Solution, solve
+from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction.fit import TestedFriction

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import hypot, sqrt
 
-from separatrix.pocket_friction import standard_error, with_scatter
+from separatrix.chain.pocket_friction import standard_error, with_scatter
 from separatrix.study import Friction
 from separatrix.units import Ratio
 

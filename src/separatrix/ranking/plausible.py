@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from separatrix.cage import KickCount
-from separatrix.chain import Solution
-from separatrix.pocket_contact import contact_radius
-from separatrix.restitution import hertz_coefficient
+from separatrix.chain.pocket_contact import contact_radius
+from separatrix.chain.restitution import hertz_coefficient
+from separatrix.chain.solution import Solution
 from separatrix.study import BallBearing, Material, Study
 from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
 

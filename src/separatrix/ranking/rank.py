@@ -10,9 +10,22 @@ import numpy as np
 
 from separatrix.cage import Judgement, judge
 from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
-from separatrix.chain import Solution, solve
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case
 from separatrix.errors import InputError
+from separatrix.limits import (
+    CriticalFriction,
+    GrowthCounter,
+    RestitutionThreshold,
+    StabilityCurve,
+    Tracer,
+    curve_of_points,
+    restitution_threshold,
+    threshold_factors,
+)
+from separatrix.limits.curve import HERE, Node, height
+from separatrix.limits.threshold import rising
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.friction import MeanFriction, measured, overall
 from separatrix.ranking.lowest import lowest_among
@@ -28,20 +41,7 @@ from separatrix.ranking.records import (
     Ranking,
     Row,
 )
-from separatrix.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.runner import Runner
-from separatrix.stability import (
-    CriticalFriction,
-    GrowthCounter,
-    RestitutionThreshold,
-    StabilityCurve,
-    Tracer,
-    curve_of_points,
-    restitution_threshold,
-    threshold_factors,
-)
-from separatrix.stability.curve import HERE, Node, height
-from separatrix.stability.threshold import rising
 from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
 

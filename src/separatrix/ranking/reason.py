@@ -6,8 +6,8 @@ from dataclasses import fields
 from math import isfinite
 
 from separatrix.cage import Judgement, Verdict
-from separatrix.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.stability import RestitutionThreshold
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
+from separatrix.limits import RestitutionThreshold
 from separatrix.units import Ratio
 
 PAPER_STATEMENT = (

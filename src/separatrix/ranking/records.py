@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from separatrix.cage import Judgement
-from separatrix.pocket_contact import PocketConditions
-from separatrix.stability import StabilityCurve
+from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.limits import StabilityCurve
 from separatrix.units import MetrePerSecond, NewtonPerMetre, Ratio, Rows, Second
 
 

@@ -221,6 +221,8 @@ def _cell(
         return InputError(where, "must be a finite number", shown(value))
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         return InputError(where, f"is longer than {LONGEST_TEXT} characters")
+    if isinstance(value, str):
+        value = value.replace("_x005F_", "_")  # an underscore that would begin the code of a character
     return Cell(value, where, "%" in saved.number_format, formula)
 
 

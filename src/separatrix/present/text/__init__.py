@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
 from separatrix.present.text.chain import bearing, restitution, traction
 from separatrix.present.text.ranking import every_environment, only_table, rank
@@ -50,10 +51,8 @@ def report(
 
     Parameters
     ----------
-    verb, answer, study
+    verb, answer, study, notes
         As for `document`.
-    notes : sequence of str
-        All warnings: ``document(...)["warnings"]``.
     full : bool
         Everything, where the answer is longer than a screen.
     quiet : bool
@@ -64,7 +63,7 @@ def report(
     parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
     blocks = [heading(study.title), *parts(answer, study)]
     means = [at_their_means([*study.distributions])] if study.distributions and verb not in DRAWS else []
-    lines = [paragraph(note, first="Note: ", indent="      ") for note in (*means, *notes)]
+    lines = [paragraph(note, first="Note: ", indent="      ") for note in (*means, *all_notes(answer, notes))]
     return "\n\n".join([*blocks, *(["\n".join(lines)] if lines else [])]) + "\n"
 
 

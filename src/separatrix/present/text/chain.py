@@ -10,8 +10,9 @@ from separatrix.present.text.tables import facts, number, quantity, section, sig
 
 if TYPE_CHECKING:
     from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
-    from separatrix.chain import BearingState, Solution
-    from separatrix.equilibrium import Equilibrium
+    from separatrix.chain.contacts import BearingState
+    from separatrix.chain.equilibrium import Equilibrium
+    from separatrix.chain.solution import Solution
     from separatrix.study import Study
 
 BALL_HEADERS = (

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from separatrix.cage_choice import cage_candidate
+from separatrix.limits.map_records import NOT_RUN
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import ABSENT, facts, number, paragraph, quantity, section, table
-from separatrix.stability.map_records import NOT_RUN
 
 if TYPE_CHECKING:
     from separatrix.answers import MapAnswer, StabilityAnswer
-    from separatrix.stability import CriticalFriction, StabilityCurve
-    from separatrix.stability.map_records import (
+    from separatrix.limits import CriticalFriction, StabilityCurve
+    from separatrix.limits.map_records import (
         Inference,
         MapAxis,
         MapChange,

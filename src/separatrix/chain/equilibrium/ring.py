@@ -1,0 +1,204 @@
+"""Equilibrium of the inner ring in five degrees of freedom, over balls that are each in balance.
+
+Ring displacement q = (x, y, z) [m] and small turns about y and z [rad]; y lies along the radial load, ball j
+at azimuth psi_j from y towards z. Loads are conjugate to q.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.chain.equilibrium.continuation import SMOOTHING, slopes_with_ring, solve_free
+from separatrix.chain.equilibrium.controlled import solve_controlled
+from separatrix.chain.equilibrium.groove import static_split
+from separatrix.chain.equilibrium.problem import Method, Problem, Work, solve_linear, work
+from separatrix.compiled import kernel
+from separatrix.units import Array
+
+STATIC, CONTROLLED, FREE = 3, 2, 6
+"""Length of the state of a ball, which names its model; of the three numbers of STATIC two are used."""
+
+IntArray = NDArray[np.int64]
+
+
+class Balls(NamedTuple):
+    """Loads on the ring, its degrees of freedom, and the balls to solve, each standing for `weight` balls."""
+
+    loads: Array
+    dofs: IntArray
+    azimuths: Array
+    weight: float
+
+
+@kernel
+def groove_vector(p: Problem, q: Array, azimuth: float, A: Array) -> None:
+    """A, from the outer to the inner groove centre in the plane of a ball, shape (2,) [m]."""
+    span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
+    s, c, arm = math.sin(azimuth), math.cos(azimuth), 0.5 * p.pitch_diameter
+    A[0] = span * p.free_sine + q[0] + arm * (q[3] * s - q[4] * c)
+    A[1] = span * p.free_cosine + q[1] * c + q[2] * s
+
+
+@kernel
+def push_on_ring(p: Problem, azimuth: float, push: Array, out: Array) -> None:
+    """Turn forces and couples in ball axes into the five loads they make, shape (5, columns)."""
+    s, c, arm = math.sin(azimuth), math.cos(azimuth), 0.5 * p.pitch_diameter
+    for k in range(push.shape[1]):
+        out[0, k] = push[0, k]
+        out[1, k] = push[1, k] * c - push[2, k] * s
+        out[2, k] = push[1, k] * s + push[2, k] * c
+        out[3, k] = arm * push[0, k] * s + push[3, k] * c - push[4, k] * s
+        out[4, k] = -arm * push[0, k] * c + push[3, k] * s + push[4, k] * c
+
+
+@kernel
+def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array) -> None:
+    """Ball without inertia: both contacts on one line; `by_ring` (5, 2) are the slopes of `push` with A."""
+    state[0], state[1], load = static_split(p, A[0], A[1])
+    at_wall = A[1] < 0.0
+    length = abs(A[0]) if at_wall else math.hypot(A[0], A[1])
+    s, c = (A[0] / length, 0.0 if at_wall else A[1] / length) if load > 0.0 else (0.0, 1.0)
+    approach = length - (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
+    slope, side = (1.5 * load / approach, 0.0 if at_wall else load / length) if load > 0.0 else (0.0, 0.0)
+    push[:], by_ring[:, :] = 0.0, 0.0
+    push[0], push[1] = load * s, load * c
+    by_ring[0, 0] = slope * s * s + side * c * c
+    by_ring[0, 1] = by_ring[1, 0] = (slope - side) * s * c
+    by_ring[1, 1] = slope * c * c + side * s * s
+
+
+@kernel
+def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, by_ring: Array) -> float:
+    """Ball with inertia, solved; returns 0, or how far the smoothing of friction came (inf: nowhere)."""
+    if state.shape[0] == CONTROLLED:
+        if not solve_controlled(p, A, state, method, out):
+            return math.inf
+    else:
+        reached = solve_free(p, A, state, method, out)
+        if reached > SMOOTHING:
+            return reached
+    return 0.0 if slopes_with_ring(out, by_ring) else math.inf
+
+
+@kernel
+def ring_balance(
+    p: Problem, q: Array, setup: Balls, states: Array, method: Method, balance: Array, slopes: Array
+) -> tuple[float, int]:
+    """Loads less what the balls carry, shape (5,), and slopes with q, (5, 5).
+
+    Returns 0, or the smoothing reached by the ball that failed, and its number.
+    """
+    balance[:] = setup.loads
+    slopes[:, :] = 0.0
+    A, by_ring, out = np.empty(2), np.zeros((5, 2)), work(states.shape[1])
+    total, total_by, weight, arm = np.empty((5, 1)), np.empty((5, 2)), setup.weight, 0.5 * p.pitch_diameter
+    for j in range(setup.azimuths.size):
+        azimuth = setup.azimuths[j]
+        groove_vector(p, q, azimuth, A)
+        if states.shape[1] == STATIC:
+            static_ball(p, A, states[j], out.push, by_ring)
+        else:
+            reached = moving_ball(p, A, states[j], method, out, by_ring)
+            if reached > 0.0:
+                return reached, j
+        push_on_ring(p, azimuth, out.push.reshape((5, 1)), total)
+        push_on_ring(p, azimuth, by_ring, total_by)
+        s, c = math.sin(azimuth), math.cos(azimuth)
+        for row in range(5):
+            balance[row] -= weight * total[row, 0]
+            x, r = weight * total_by[row, 0], weight * total_by[row, 1]
+            slopes[row, 0] -= x
+            slopes[row, 1] -= r * c
+            slopes[row, 2] -= r * s
+            slopes[row, 3] -= x * arm * s
+            slopes[row, 4] += x * arm * c
+    return 0.0, -1
+
+
+@kernel
+def unbalance(balance: Array, dofs: IntArray, arm: float) -> float:
+    """Root of the sum of squares of the unbalanced loads in `dofs`, moments over the arm [N]."""
+    total = 0.0
+    for d in dofs:
+        total += (balance[d] / (arm if d > 2 else 1.0)) ** 2
+    return math.sqrt(total)
+
+
+@kernel
+def _ring_step(
+    balance: Array, slopes: Array, dofs: IntArray, arm: float, damping: float, step: Array
+) -> bool:
+    """Newton step over `dofs`, turns times the arm [m], shape (n, 1); `damping` [N/m] shortens it."""
+    n = dofs.size
+    matrix = np.empty((n, n))
+    for i in range(n):
+        unit = arm if dofs[i] > 2 else 1.0
+        step[i, 0] = -balance[dofs[i]] / unit
+        for k in range(n):
+            matrix[i, k] = slopes[dofs[i], dofs[k]] / (unit * (arm if dofs[k] > 2 else 1.0))
+        matrix[i, i] -= damping
+    return solve_linear(matrix, step)
+
+
+@kernel
+def _stiffest(slopes: Array, dofs: IntArray, arm: float) -> float:
+    worst = 0.0
+    for d in dofs:
+        worst = max(worst, abs(slopes[d, d]) / (arm * arm if d > 2 else 1.0))
+    return worst
+
+
+@kernel
+def solve_ring(
+    p: Problem,
+    q: Array,
+    setup: Balls,
+    states: Array,
+    method: Method,
+    tolerance: float,
+    limit: int,
+    boldness: float,
+) -> tuple[float, int, float, int]:
+    """Damped Newton (Levenberg) on the ring from `q` and `states`, both in place.
+
+    A step may raise the unbalance by the factor `boldness`: along a curved valley that is faster.
+
+    Returns the unbalance [N], iterations, the smoothing at which a ball failed (0: none) and its number.
+    """
+    dofs, arm, n = setup.dofs, 0.5 * p.pitch_diameter, setup.dofs.size
+    balance, slopes, step = np.empty(5), np.empty((5, 5)), np.empty((n, 1))
+    span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
+    failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
+    if failed > 0.0:
+        return math.inf, 0, failed, ball
+    rest, good_q, good_states = unbalance(balance, dofs, arm), q.copy(), states.copy()
+    good_balance, good_slopes, damping, lost = balance.copy(), slopes.copy(), 0.0, 0
+    for iteration in range(limit):
+        if rest <= tolerance:
+            return rest, iteration, 0.0, -1
+        floor = max(_stiffest(good_slopes, dofs, arm), method.force / span)
+        solved = _ring_step(good_balance, good_slopes, dofs, arm, (1e-14 + damping) * floor, step)
+        now = math.inf
+        if solved:
+            stride = min(1.0, 0.2 * span / max(np.max(np.abs(step)), 1e-300))
+            for i in range(n):
+                q[dofs[i]] = good_q[dofs[i]] + stride * step[i, 0] / (arm if dofs[i] > 2 else 1.0)
+            states[:] = good_states
+            failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
+            now = unbalance(balance, dofs, arm) if failed == 0.0 else math.inf
+        lost = 0 if now < math.inf else lost + 1
+        if now < boldness * rest:
+            rest = now
+            good_q[:], good_states[:] = q, states
+            good_balance[:], good_slopes[:] = balance, slopes
+            damping = 0.1 * damping if damping > 1e-9 else 0.0
+        elif damping > 1e4 or lost > 6:
+            break
+        else:
+            damping = max((6.0 if now < math.inf else 100.0) * damping, 1e-5)
+    q[:], states[:] = good_q, good_states
+    return rest, limit, failed if rest > 1e3 * tolerance else 0.0, ball

@@ -1,0 +1,129 @@
+"""What rubs where a ball touches its pocket: sliding speed and contact pressure, asked of friction tests."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, acosh, exp, pi, sqrt
+
+import numpy as np
+
+from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.restitution import hertz_coefficient_for
+from separatrix.units import (
+    Array,
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    NewtonPerMetre1_5,
+    Pascal,
+    Ratio,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PocketConditions:
+    """Conditions of the rubbing contact of ball and pocket.
+
+    `slip_speed` is the mean over the balls, between `slip_speed_low` and `slip_speed_high`. The pressures are
+    those of the strongest moment of an impact of the whole cage at the impact speed; `pressure` is the mean
+    over the contact, two thirds of `max_pressure`.
+    """
+
+    slip_speed: MetrePerSecond
+    slip_speed_low: MetrePerSecond
+    slip_speed_high: MetrePerSecond
+    impact_force: Newton
+    pressure: Pascal
+    max_pressure: Pascal
+    contact_radius: Metre
+
+
+def pocket_conditions(
+    equilibrium: Equilibrium,
+    *,
+    ball_diameter: Metre,
+    ball_cage_stiffness: NewtonPerMetre,
+    cage_mass: Kilogram,
+    damping_ratio: Ratio,
+    impact_speed: MetrePerSecond,
+) -> PocketConditions:
+    """Sliding speed and pressure of ball on pocket.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+        For the spin of each ball.
+    ball_cage_stiffness : float
+        Linear stiffness of the pocket; Hertz's contact behind it gives the pressure [N/m].
+    damping_ratio : float
+        Of the impact, from the chain: the races yield and take force from it [-].
+    impact_speed : float
+        Of the cage [m/s].
+
+    Notes
+    -----
+    The sliding of the whirl itself is left out: it points across the ball's
+    sliding and changes it little.
+    """
+    speeds = sliding_speed(equilibrium.ball_spin, ball_diameter)
+    K = hertz_coefficient_for(ball_cage_stiffness, cage_mass, impact_speed)
+    force = impact_force(cage_mass, ball_cage_stiffness, damping_ratio, impact_speed)
+    radius = contact_radius(force, K, ball_diameter)
+    mean = force / (pi * radius**2)
+    return PocketConditions(
+        slip_speed=float(speeds.mean()),
+        slip_speed_low=float(speeds.min()),
+        slip_speed_high=float(speeds.max()),
+        impact_force=force,
+        pressure=mean,
+        max_pressure=1.5 * mean,
+        contact_radius=radius,
+    )
+
+
+def sliding_speed(ball_spin: Array, ball_diameter: Metre) -> Array:
+    """Speed of each ball's surface over the pocket at its front and rear pole, shape (ball,) [m/s].
+
+    In the frame that turns with the orbit the cage rests. The pocket is met at D/2 along the orbit, so the
+    spin about that direction moves nothing there: v = (D/2) sqrt(Omega_x^2 + Omega_r^2).
+
+    Parameters
+    ----------
+    ball_spin : array
+        Spin in that frame: along the bearing axis, outward, along the orbit; shape (ball, 3) [rad/s].
+    ball_diameter : float
+        D [m].
+    """
+    speed: Array = 0.5 * ball_diameter * np.hypot(ball_spin[:, 0], ball_spin[:, 1])
+    return speed
+
+
+def impact_force(
+    mass: Kilogram, stiffness: NewtonPerMetre, damping_ratio: Ratio, speed: MetrePerSecond
+) -> Newton:
+    r"""Largest force of a mass that runs into a spring and a damper in series.
+
+    The force obeys :math:`F'' + 2 \zeta \omega F' + \omega^2 F = 0`, :math:`F(0) = 0`,
+    :math:`F'(0) = k v`, with :math:`\omega^2 = k/M`, :math:`\zeta = \sqrt{kM}/(2C)`. Its first maximum is
+    :math:`v \sqrt{kM} \exp(-\zeta \arccos\zeta / \sqrt{1-\zeta^2})`; arcosh and
+    :math:`\sqrt{\zeta^2-1}` above 1 (docs/theory/friction.md).
+    """
+    zeta = damping_ratio
+    if abs(zeta - 1.0) < 1e-6:
+        decay = 1.0
+    elif zeta < 1.0:
+        decay = zeta * acos(zeta) / sqrt(1.0 - zeta**2)
+    else:
+        decay = zeta * acosh(zeta) / sqrt(zeta**2 - 1.0)
+    return speed * sqrt(stiffness * mass) * exp(-decay)
+
+
+def contact_radius(force: Newton, hertz_coefficient: NewtonPerMetre1_5, ball_diameter: Metre) -> Metre:
+    r"""Radius of a ball's contact with a flat wall: :math:`a^2 = R \delta`, :math:`F = K \delta^{3/2}`.
+
+    Hertz; Johnson, Contact Mechanics (1985), Eqs 4.22 and 4.23. The mean pressure is :math:`F/(\pi a^2)`.
+    """
+    approach: float = (force / hertz_coefficient) ** (2.0 / 3.0)
+    return sqrt(0.5 * ball_diameter * approach)

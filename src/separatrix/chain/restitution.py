@@ -1,0 +1,303 @@
+r"""Restitution factor of a ball/cage impact, from the damping that the races give the ball (Eqs 17-18).
+
+The cage, of mass :math:`M_C`, meets a massless ball through the spring :math:`k_{BC}`; the races hold
+the ball through the damper :math:`C_\mu`, in series with the spring. docs/theory/restitution.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, hypot, log, pi, sqrt
+
+import numpy as np
+
+from separatrix.chain.hertz import contact_modulus
+from separatrix.compiled import kernel
+from separatrix.errors import InputError
+from separatrix.study import Material
+from separatrix.units import (
+    Array,
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    NewtonPerMetre1_5,
+    NewtonSecondPerMetre,
+    Ratio,
+)
+
+SOLID_LUBRICATION_LIMIT: Ratio = 0.6
+"""The paper, section 5: "a fairly low restitution factor (eta < 0.6). This threshold value is too low to
+be reached using solid lubrication"."""
+
+EQUAL_ENERGY = 0.8 * 1.25**0.2
+r"""k of the linear spring of equal energy and depth, over :math:`K^{4/5} (M v^2)^{1/5}` [-]."""
+
+FORGOTTEN = 6.0
+"""Damping group of a Hertzian impact from which its end forgets its start: what is left of the difference is
+below 1e-38 (docs/theory/restitution.md)."""
+
+ORDER = 24
+"""Of the Taylor series of an impact; from 16 to 32 it makes no difference above 2e-14."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Restitution:
+    """Restitution factor of the cage's impact on a ball, and what it is made of.
+
+    The plain names follow the paper's Eq. 18 (damping of both races added); the ones ending in
+    `_free_spin` let the ball change its spin within the impact. `restitution_factor_hertz` has the pocket's
+    contact as Hertz's, of the same energy at the same depth in an impact at the speed to which
+    `ball_cage_stiffness` belongs.
+    """
+
+    ball_cage_stiffness: NewtonPerMetre
+    cage_mass: Kilogram
+    inner_damping: NewtonSecondPerMetre
+    outer_damping: NewtonSecondPerMetre
+    race_damping: NewtonSecondPerMetre
+    damping_ratio: Ratio
+    restitution_factor: Ratio
+    restitution_factor_hertz: Ratio
+    race_damping_free_spin: NewtonSecondPerMetre
+    damping_ratio_free_spin: Ratio
+    restitution_factor_free_spin: Ratio
+
+    @property
+    def least_damping(self) -> NewtonSecondPerMetre:
+        """C_mu from which an impact returns anything, sqrt(k M)/2; below it the impact is overdamped."""
+        return 0.5 * sqrt(self.ball_cage_stiffness * self.cage_mass)
+
+
+def contact_damping(slope: Ratio, load: Newton, rolling_speed: MetrePerSecond) -> NewtonSecondPerMetre:
+    """One race's share of C_mu, alpha N / V (Eq. 18)."""
+    return slope * load / rolling_speed
+
+
+def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
+    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the impact."""
+    return inner + outer
+
+
+def race_damping_free_spin(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
+    """C_mu of a ball whose spin follows the impact, 4 C_I C_E / (C_I + C_E): both contacts carry half."""
+    return 4.0 * inner * outer / (inner + outer)
+
+
+def damping_ratio(stiffness: NewtonPerMetre, mass: Kilogram, damping: NewtonSecondPerMetre) -> Ratio:
+    r"""Damping ratio of the impact, :math:`\zeta = \sqrt{k_{BC} M_C} / (2 C_\mu)`."""
+    if not damping > 0.0:
+        cure = "A race friction above 0 and a rolling bearing give one."
+        raise InputError("race_damping", "must be > 0 [N s/m]", f"{damping:.6g}", cure)
+    return sqrt(stiffness * mass) / (2.0 * damping)
+
+
+def restitution_factor(damping_ratio: Ratio) -> Ratio:
+    r"""Restitution factor :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})`; 0 from :math:`\zeta = 1`.
+
+    This stands for the paper's Eq. 17, which is lost in the text at hand (docs/deviations.md).
+    """
+    zeta = damping_ratio
+    return exp(-pi * zeta / sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0
+
+
+def damping_ratio_for(restitution_factor: Ratio) -> Ratio:
+    """Damping ratio that returns this share of the speed; 1 (the least that returns none) for 0.
+
+    Raises
+    ------
+    InputError
+        Outside 0 <= eta < 1: an impact that returns everything needs infinite damping.
+    """
+    eta = restitution_factor
+    if not 0.0 <= eta < 1.0:
+        cure = "An impact that returns all its speed would need races that grip without any creep."
+        raise InputError("restitution_factor", "must lie in 0 <= eta < 1 [-]", f"{eta:.6g}", cure)
+    return -log(eta) / hypot(pi, log(eta)) if eta > 0.0 else 1.0
+
+
+def damping_for(restitution_factor: Ratio, stiffness: NewtonPerMetre, mass: Kilogram) -> NewtonSecondPerMetre:
+    """C_mu that gives this restitution factor; for 0, the largest one that does."""
+    return sqrt(stiffness * mass) / (2.0 * damping_ratio_for(restitution_factor))
+
+
+def free_ring_restitution_factor(nominal: Ratio, inertia_ratio: Ratio = 1.0) -> Ratio:
+    r"""Restitution factor felt by a ring that is free to turn, from the nominal one of the whole mass.
+
+    An impact at the pitch radius R moves the ring and turns it: it feels the mass
+    :math:`M / (1 + M R^2/I)`, half of M for a thin ring.
+
+    Parameters
+    ----------
+    nominal : float
+        Restitution factor of the whole cage mass; 0 stays 0, for its damping ratio is not known [-].
+    inertia_ratio : float
+        :math:`I / (M R^2)`, 1 for a thin ring at the pitch radius [-].
+    """
+    share = inertia_ratio / (1.0 + inertia_ratio)
+    return restitution_factor(damping_ratio_for(nominal) * sqrt(share)) if nominal > 0.0 else 0.0
+
+
+def ball_pocket_stiffness(
+    ball_diameter: Metre,
+    ball_material: Material,
+    cage_material: Material,
+    *,
+    cage_mass: Kilogram,
+    impact_speed: MetrePerSecond,
+) -> NewtonPerMetre:
+    r"""Linear stiffness of a ball on a flat pocket wall that stores the same energy at the same depth.
+
+    Hertz: :math:`F = K \delta^{3/2}`, :math:`K = \frac43 E^* \sqrt{D/2}`. The cage's kinetic energy
+    :math:`\frac12 M_C v^2 = \frac25 K \delta_m^{5/2}` sets the depth :math:`\delta_m`, and
+    :math:`k = \frac45 K \delta_m^{1/2}` stores it there too.
+
+    Parameters
+    ----------
+    ball_diameter : float
+        D [m].
+    ball_material, cage_material : Material
+        Ball, and pocket wall.
+    cage_mass : float
+        The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
+    impact_speed : float
+        Speed of the impact, [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
+
+    Notes
+    -----
+    A flat wall, because the conformity of a bored pocket to its ball wears and is rarely known; a
+    cylindrical bore with 5 % of play is stiffer by 2.1 (docs/theory/restitution.md).
+    """
+    K = hertz_coefficient(ball_diameter, ball_material, cage_material)
+    return equal_energy_stiffness(K, cage_mass, impact_speed)
+
+
+def hertz_coefficient(
+    ball_diameter: Metre, ball_material: Material, cage_material: Material
+) -> NewtonPerMetre1_5:
+    r"""K of :math:`F = K \delta^{3/2}` for a ball on a flat pocket wall, :math:`\frac43 E^*\sqrt{D/2}`."""
+    return 4.0 / 3.0 * contact_modulus(ball_material, cage_material) * sqrt(ball_diameter / 2.0)
+
+
+def equal_energy_stiffness(
+    hertz_coefficient: NewtonPerMetre1_5, mass: Kilogram, speed: MetrePerSecond
+) -> NewtonPerMetre:
+    r"""Linear spring that an impact of this mass and speed presses as deep as Hertz's, with the same energy.
+
+    :math:`k = \frac45 K \delta_m^{1/2}` with :math:`\frac12 M v^2 = \frac25 K \delta_m^{5/2}`.
+    """
+    k: float = EQUAL_ENERGY * hertz_coefficient**0.8 * (mass * speed**2) ** 0.2
+    return k
+
+
+def hertz_coefficient_for(
+    stiffness: NewtonPerMetre, mass: Kilogram, speed: MetrePerSecond
+) -> NewtonPerMetre1_5:
+    """K whose `equal_energy_stiffness` is this: Hertz's contact behind a linear stiffness that was given."""
+    K: float = (stiffness / (EQUAL_ENERGY * (mass * speed**2) ** 0.2)) ** 1.25
+    return K
+
+
+def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
+    r"""Restitution factor of a Hertzian contact in series with the races' damper; it is never quite 0.
+
+    Parameters
+    ----------
+    damping_ratio : float
+        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the impact
+        (`equal_energy_stiffness`). With Hertz it goes as the speed to the power 1/5 [-].
+
+    Notes
+    -----
+    The impact has one dimensionless group, and its equations become a polynomial system, which a Taylor
+    series of order `ORDER` solves to about 1e-13 (docs/theory/restitution.md).
+    """
+    beta = 2.0 * damping_ratio / sqrt(EQUAL_ENERGY)
+    start = min(beta, FORGOTTEN)
+    return float(_speed_returned(start)) * (start / beta) ** 5 if beta > 0.0 else 1.0
+
+
+@kernel
+def _speed_returned(beta: Ratio) -> Ratio:
+    """Follow h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the approach's root, is 0 again."""
+    h, u = 0.0, 1.0
+    a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)
+    while True:
+        _impact_series(h, u, beta, a, b, square)
+        step = exp(-2.0) / max(_growth(a), _growth(b))
+        if _value(a, step) <= 0.0:
+            return -_value(b, _root(a, step))
+        h, u = _value(a, step), _value(b, step)
+
+
+@kernel
+def _impact_series(h: float, u: float, beta: Ratio, a: Array, b: Array, square: Array) -> None:
+    """Taylor coefficients of h, u and h^2, shape (ORDER + 1,)."""
+    a[0], b[0] = h, u
+    for n in range(ORDER):
+        twice, cube, fourth = 0.0, 0.0, 0.0
+        for i in range(n + 1):
+            twice += a[i] * a[n - i]
+        square[n] = twice
+        for i in range(n + 1):
+            cube += square[i] * a[n - i]
+            fourth += square[i] * square[n - i]
+        a[n + 1] = (b[n] - beta * cube) / (n + 1)
+        b[n + 1] = -2.0 * fourth / (n + 1)
+
+
+@kernel
+def _value(coefficients: Array, at: float) -> float:
+    """Value of a power series, by Horner's rule."""
+    total = 0.0
+    for n in range(coefficients.size - 1, -1, -1):
+        total = coefficients[n] + at * total
+    return total
+
+
+@kernel
+def _growth(coefficients: Array) -> float:
+    """One over the radius of convergence; every fifth coefficient may be all that is not 0."""
+    largest = 0.0
+    for n in range(ORDER - 5, ORDER + 1):
+        largest = max(largest, abs(coefficients[n]) ** (1.0 / n))
+    return largest
+
+
+@kernel
+def _root(a: Array, beyond: float) -> float:
+    """Root of the series below a place where it is negative, by Newton's method."""
+    place = beyond
+    for _ in range(20):
+        slope = 0.0
+        for n in range(a.size - 1, 0, -1):
+            slope = n * a[n] + place * slope
+        place -= _value(a, place) / slope
+    return place
+
+
+def restitution(
+    inner: NewtonSecondPerMetre,
+    outer: NewtonSecondPerMetre,
+    *,
+    ball_cage_stiffness: NewtonPerMetre,
+    cage_mass: Kilogram,
+) -> Restitution:
+    """Restitution factors of an impact, from the damping of each race (`contact_damping`)."""
+    both, free = race_damping(inner, outer), race_damping_free_spin(inner, outer)
+    zeta = damping_ratio(ball_cage_stiffness, cage_mass, both)
+    zeta_free = damping_ratio(ball_cage_stiffness, cage_mass, free)
+    return Restitution(
+        ball_cage_stiffness=ball_cage_stiffness,
+        cage_mass=cage_mass,
+        inner_damping=inner,
+        outer_damping=outer,
+        race_damping=both,
+        damping_ratio=zeta,
+        restitution_factor=restitution_factor(zeta),
+        restitution_factor_hertz=hertzian_restitution_factor(zeta),
+        race_damping_free_spin=free,
+        damping_ratio_free_spin=zeta_free,
+        restitution_factor_free_spin=restitution_factor(zeta_free),
+    )

@@ -1,0 +1,22 @@
+"""Traction of a rolling ball/race contact: strips with film and friction; curve and slope at the origin."""
+
+from separatrix.chain.traction.curve import TractionCurve, film_compliance, traction_curve, traction_slope
+from separatrix.chain.traction.dissimilar import dundurs_coupling
+from separatrix.chain.traction.layer import BondedLayer, bonded_layer
+from separatrix.chain.traction.shear import ShearField, direct_traction, shear_field
+from separatrix.chain.traction.strip import StripSolution, solve_strip
+
+__all__ = [
+    "BondedLayer",
+    "ShearField",
+    "StripSolution",
+    "TractionCurve",
+    "bonded_layer",
+    "direct_traction",
+    "dundurs_coupling",
+    "film_compliance",
+    "shear_field",
+    "solve_strip",
+    "traction_curve",
+    "traction_slope",
+]

@@ -1,0 +1,176 @@
+r"""Ellipse of strips: their placement and resultant (paper, 4.3.1 and Eq. 15).
+
+In units of the contact: y = a sin(theta); creep X = xi/xi_s with xi_s = 2 mu p0/E*, X = d + sigma sin + eta
+sin^2; the strip at theta has c = X/cos(theta) and lam = lam0/cos(theta), and carries (3/4) cos^3(theta)
+d(theta) of mu N. Strips are Gauss points of panels that end where |X| passes 0 and a geometric series of
+levels, so that they crowd at the zero-creep lines however strong the spin.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from separatrix.chain.traction.master import master_traction
+from separatrix.compiled import kernel
+from separatrix.units import Array
+
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
+SECTORS = np.pi * np.array([-0.5, -0.4, -0.25, 0.0, 0.25, 0.4, 0.5])
+LEVELS = np.array([0.0, 0.6, 1.5, 4.0, 16.0, 100.0])
+Table = tuple[Array, Array, tuple[float, float, float, float, float]]
+
+
+@kernel
+def creep_at(theta: float, d: float, sigma: float, eta: float) -> float:
+    """Creep X = d + sigma y + eta y^2 at y = sin(theta) [-]."""
+    y = math.sin(theta)
+    return d + (sigma + eta * y) * y
+
+
+@kernel
+def _roots(d: float, sigma: float, eta: float) -> tuple[float, float]:
+    """Places y where d + sigma y + eta y^2 = 0; 2 where there is none."""
+    if eta == 0.0:
+        return (-d / sigma if sigma != 0.0 else 2.0), 2.0
+    discriminant = sigma * sigma - 4.0 * eta * d
+    if discriminant < 0.0:
+        return 2.0, 2.0
+    q = -0.5 * (sigma + math.copysign(math.sqrt(discriminant), sigma))
+    return q / eta, (d / q if q != 0.0 else 2.0)
+
+
+@kernel
+def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) -> Array:
+    """Edges in theta of the panels, in order, shape (edge,) [rad]."""
+    edges = np.empty(4 * levels.size + SECTORS.size + 1)
+    edges[: SECTORS.size] = SECTORS
+    count = SECTORS.size
+    if eta != 0.0 and abs(sigma) < 2.0 * abs(eta):
+        edges[count] = math.asin(-0.5 * sigma / eta)
+        count += 1
+    for k in range(levels.size):
+        for side in (-1.0, 1.0):
+            for y in _roots(d + side * levels[k], sigma, eta):
+                if abs(y) < 1.0:
+                    edges[count] = math.asin(y)
+                    count += 1
+    ordered = np.sort(edges[:count])
+    return _split(_with_saturation(ordered, d, sigma, eta), splits)
+
+
+@kernel
+def _with_saturation(edges: Array, d: float, sigma: float, eta: float) -> Array:
+    """Edges, and between them the places where a bare strip starts to slip throughout: |X| = cos(theta)."""
+    refined = np.empty(2 * edges.size)
+    refined[0], count = edges[0], 1
+    for k in range(edges.size - 1):
+        low, high = edges[k], edges[k + 1]
+        slips = abs(creep_at(low, d, sigma, eta)) > math.cos(low)
+        if slips != (abs(creep_at(high, d, sigma, eta)) > math.cos(high)):
+            for _ in range(45):
+                middle = 0.5 * (low + high)
+                if slips == (abs(creep_at(middle, d, sigma, eta)) > math.cos(middle)):
+                    low = middle
+                else:
+                    high = middle
+            refined[count] = 0.5 * (low + high)
+            count += 1
+        refined[count] = edges[k + 1]
+        count += 1
+    return refined[:count]
+
+
+@kernel
+def _split(edges: Array, splits: int) -> Array:
+    """Edges with every panel cut into `splits` equal parts."""
+    fine = np.empty((edges.size - 1) * splits + 1)
+    for k in range(edges.size - 1):
+        for i in range(splits):
+            fine[k * splits + i] = edges[k] + (edges[k + 1] - edges[k]) * i / splits
+    fine[-1] = edges[-1]
+    return fine
+
+
+@kernel
+def strip_places(edges: Array, nodes: Array, weights: Array) -> tuple[Array, Array]:
+    """Strips of all panels: theta and their share of mu N, shape (strip,) [rad, -]."""
+    count = nodes.size
+    theta, share = np.empty((edges.size - 1) * count), np.empty((edges.size - 1) * count)
+    for k in range(edges.size - 1):
+        half = 0.5 * (edges[k + 1] - edges[k])
+        for i in range(count):
+            place = edges[k] + half * (1.0 + nodes[i])
+            theta[k * count + i] = place
+            share[k * count + i] = 0.75 * math.cos(place) ** 3 * half * weights[i]
+    return theta, share
+
+
+@kernel
+def resultant(
+    d: float,
+    sigma: float,
+    eta: float,
+    lam0: float,
+    levels: Array,
+    splits: int,
+    gauss: tuple[Array, Array],
+    table: Table,
+) -> tuple[float, float]:
+    """Traction over mu N and its derivative with d, of the ellipse of strips [-]."""
+    values, log_scale, axis = table
+    edges = panel_edges(d, sigma, eta, levels, splits)
+    nodes, weights = gauss
+    force, slope = 0.0, 0.0
+    for k in range(edges.size - 1):
+        half = 0.5 * (edges[k + 1] - edges[k])
+        if half <= 0.0:
+            continue
+        for i in range(nodes.size):
+            theta = edges[k] + half * (1.0 + nodes[i])
+            cosine = math.cos(theta)
+            F, dF = master_traction(
+                creep_at(theta, d, sigma, eta) / cosine, lam0 / cosine, values, log_scale, axis
+            )
+            share = 0.75 * cosine * cosine * half * weights[i]
+            force += share * cosine * F
+            slope += share * dF
+    return min(max(force, -1.0), 1.0), slope  # the shares of the strips sum to 1 but for 1e-9
+
+
+@kernel
+def highest(sigma: float, eta: float) -> float:
+    """Largest value of sigma y + eta y^2 on the ellipse, |y| <= 1 [-]."""
+    return -0.25 * sigma * sigma / eta if abs(sigma) < -2.0 * eta else abs(sigma) + eta
+
+
+@kernel
+def free_rolling(
+    sigma: float,
+    eta: float,
+    lam0: float,
+    levels: Array,
+    splits: int,
+    gauss: tuple[Array, Array],
+    table: Table,
+) -> float:
+    """Offset d without net traction: Newton's steps inside a shrinking bracket [-]."""
+    if eta == 0.0:
+        return 0.0  # spin alone is odd in y
+    low, high = -highest(sigma, eta), highest(sigma, -eta)
+    d = 0.5 * (low + high)
+    for _ in range(80):
+        force, slope = resultant(d, sigma, eta, lam0, levels, splits, gauss, table)
+        if force > 0.0:
+            high = d
+        else:
+            low = d
+        step = force / slope if slope > 0.0 else math.inf
+        trial = d - step
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        if abs(trial - d) <= 1e-13 * (abs(sigma) + abs(eta)) or high - low <= 1e-14 * (abs(sigma) + abs(eta)):
+            return trial
+        d = trial
+    return d

@@ -1,0 +1,156 @@
+"""Shear over the ellipse and along one strip, with stick and slip: direct solutions (paper, Figs 5 and 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, strip_places
+from separatrix.chain.traction.influence import strip_influence
+from separatrix.chain.traction.layer import BondedLayer, strip_layer
+from separatrix.chain.traction.scaled import ScaledContact, scaled_contact
+from separatrix.chain.traction.strip import StripSolution, solve_strip, stick_solution
+from separatrix.units import Array, Ratio
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShearField:
+    """Traction over the ellipse from direct strips; arrays of shape (strip, node) unless said.
+
+    across : y of the strips, shape (strip,) [m]; along : x of the elements, leading edge first [m];
+    creep_ratio : xi of the strips, shape (strip,) [-]; pressure, shear, shear_without_slip [Pa]; slip : 0 in
+    stick, else its sign; sweeps : solutions of each strip's stick zone, shape (strip,).
+    """
+
+    across: Annotated[Array, "m", ("strip",)]
+    along: Annotated[
+        Array,
+        "m",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    creep_ratio: Annotated[Array, "-", ("strip",)]
+    pressure: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    shear: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    shear_without_slip: Annotated[
+        Array,
+        "Pa",
+        (
+            "strip",
+            "node",
+        ),
+    ]
+    slip: Annotated[Array, ("strip", "node")]
+    sweeps: Annotated[Array, ("strip",)]
+
+
+def shear_field(
+    ellipse: ContactEllipse,
+    creep: Creep,
+    *,
+    race_friction: Ratio,
+    film_compliance: float,
+    creep_increment: Ratio = 0.0,
+    strips: int = 41,
+    nodes: int = 100,
+    layer: BondedLayer | None = None,
+) -> ShearField:
+    """Shear over the ellipse at one creep increment; with ``strips=1`` the middle strip.
+
+    Parameters
+    ----------
+    ellipse, creep, race_friction, film_compliance, layer
+        As for `traction_curve`; race_friction must exceed 0.
+    creep_increment : float
+        Increment from free rolling, positive where the ball is faster [-].
+    strips, nodes : int
+        Strips of equal width across the ellipse, and elements along each.
+
+    Returns
+    -------
+    ShearField
+        Traction with slip and without, pressure, stick and slip.
+    """
+    case = scaled_contact(ellipse, creep, race_friction, film_compliance, layer)
+    y = 2.0 * (np.arange(strips) + 0.5) / strips - 1.0
+    xi = creep.ratio(
+        y * ellipse.semi_major, case.offset(case.tables(200)[0]) * case.saturation + creep_increment
+    )
+    half = np.sqrt(1.0 - y * y)  # b(y)/b, and p0(y)/p0
+    ratios = np.zeros(strips) if case.idle else xi / (case.saturation * half)
+    influences = [strip_toeplitz(case, c, nodes, layer) for c in half]
+    solved = [solve_strip(c, influence=t) for c, t in zip(ratios, influences, strict=True)]
+    stuck = [_stuck(c, t, nodes) for c, t in zip(ratios, influences, strict=True)]
+    pressure = ellipse.max_pressure * half[:, None]
+    return ShearField(
+        across=y * ellipse.semi_major,
+        along=ellipse.semi_minor * half[:, None] * solved[0].along,
+        creep_ratio=xi,
+        pressure=pressure * solved[0].pressure,
+        shear=race_friction * pressure * np.array([s.shear for s in solved]),
+        shear_without_slip=race_friction * pressure * np.array(stuck),
+        slip=np.array([s.slip for s in solved]),
+        sweeps=np.array([s.sweeps for s in solved]),
+    )
+
+
+def _stuck(creep: Ratio, influence: Array, nodes: int) -> Array:
+    """Traction of a strip that sticks throughout, in units of mu p0(y), shape (node,) [-]."""
+    return stick_solution(influence, np.zeros(nodes), np.full(nodes, 4.0 * creep / nodes), np.zeros(nodes))
+
+
+def strip_toeplitz(case: ScaledContact, half: Ratio, nodes: int, layer: BondedLayer | None) -> Array:
+    """Influences of the strip whose half length is `half` of the semi-minor axis, shape (2 node - 1,) [-]."""
+    film = case.lam / half
+    return strip_influence(nodes, film) if layer is None else strip_layer(layer, film, nodes)
+
+
+def direct_traction(
+    ellipse: ContactEllipse,
+    creep: Creep,
+    *,
+    race_friction: Ratio,
+    film_compliance: float,
+    centre_creep: Ratio,
+    nodes: int = 100,
+    layer: BondedLayer | None = None,
+) -> tuple[Ratio, Ratio]:
+    """Traction coefficient and slope from strips solved one by one: the reference of the master curves [-].
+
+    `centre_creep` is the whole creep on the centre line, free-rolling offset included.
+    """
+    case = scaled_contact(ellipse, creep, race_friction, film_compliance, layer)
+    d, levels = centre_creep / case.saturation, LEVELS * case.reach(case.tables(200)[0])
+    theta, share = strip_places(panel_edges(d, case.sigma, case.eta, levels, 1), GAUSS_NODES, GAUSS_WEIGHTS)
+    solved = [_direct_strip(case, d, place, nodes, layer) for place in theta]
+    force = sum(w * s.traction_ratio for w, s in zip(share, solved, strict=True))
+    slope = sum(w / np.cos(p) * s.slope for w, p, s in zip(share, theta, solved, strict=True))
+    return float(race_friction * force), float(case.steepness * slope)
+
+
+def _direct_strip(
+    case: ScaledContact, d: Ratio, theta: float, nodes: int, layer: BondedLayer | None
+) -> StripSolution:
+    half, y = np.cos(theta), np.sin(theta)
+    influence = strip_toeplitz(case, half, nodes, layer)
+    return solve_strip((d + (case.sigma + case.eta * y) * y) / half, influence=influence)

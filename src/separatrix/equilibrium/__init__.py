@@ -1,7 +1,0 @@
-"""Quasi-static equilibrium: loads, angles, spin and orbit of every ball (paper, 2.2, and its ref. 3)."""
-
-from separatrix.equilibrium.contacts import contact
-from separatrix.equilibrium.record import Equilibrium
-from separatrix.equilibrium.solve import equilibrium
-
-__all__ = ["Equilibrium", "contact", "equilibrium"]

@@ -1,0 +1,310 @@
+"""Where a cage is stable in the plane of any two parameters of a study: the stability map."""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, wilson_interval
+from separatrix.cage.verdict import decide
+from separatrix.cage_choice import require_friction
+from separatrix.chain.solution import Solution, solve
+from separatrix.errors import ConvergenceError, InputError
+from separatrix.limits.growth import cage_at
+from separatrix.limits.map_fill import Filled, fill
+from separatrix.limits.map_grid import Place
+from separatrix.limits.map_parameters import (
+    FRICTION,
+    KICK,
+    RESTITUTION,
+    value_in,
+    varied,
+)
+from separatrix.limits.map_records import (
+    NOT_RUN,
+    Inference,
+    MapChange,
+    MapPoint,
+    MapQuestion,
+    StabilityMap,
+    Stopping,
+)
+from separatrix.limits.map_rule import (
+    Tally,
+    changes,
+    first_look,
+    further,
+    margins,
+    other_decision_probability,
+    settled,
+    wrong_side_probability,
+)
+from separatrix.runner import Runner, joined, made_into
+from separatrix.study import StabilitySettings, Study
+from separatrix.units import MetrePerSecond, Ratio
+
+MOST_LINKS = 1024
+"""Links of the chain that are remembered."""
+
+OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)
+"""Parameters that change nothing before the cage itself."""
+
+INTERRUPTED = f"{NOT_RUN}: interrupted"
+AGREED = f"{NOT_RUN}: the points around it agree"
+
+Values = tuple[tuple[str, float], ...]
+
+
+def stability_map(
+    question: MapQuestion,
+    *,
+    runner: Runner | None = None,
+) -> StabilityMap:
+    """Decide every point of a map, coarse grid first, so that an interrupted map covers the whole plane.
+
+    Run number r begins alike at every point. A point whose study is refused, or whose chain does not settle,
+    is a point with that reason.
+
+    Parameters
+    ----------
+    question : MapQuestion
+        What is asked.
+    runner : Runner, optional
+        How the runs are made; the numbers do not depend on it.
+
+    Raises
+    ------
+    InputError
+        The study names no pocket friction and no axis is it, or no point at all could be run.
+    Interrupted
+        With the map of the points that were finished, if any was.
+    """
+    require_cage_friction(question)
+    runner = runner or Runner()
+
+    def assembled(filled: Filled) -> StabilityMap:
+        _refuse_if_nothing_ran(question, filled.found)
+        return _assembled(question, filled)
+
+    return made_into(assembled, lambda: fill(question, PointFinder(question, runner), runner))
+
+
+def require_cage_friction(question: MapQuestion) -> None:
+    """Refuse a map whose cage has no pocket friction."""
+    if FRICTION not in (question.x.parameter, question.y.parameter):
+        require_friction(question.study)
+
+
+def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint]) -> None:
+    """A map without a single run is no answer: say why the first point was refused."""
+    if any(point.runs for point in found.values()):
+        return
+    first = found[min(found)]
+    where = f"The map of {question.x.parameter} and {question.y.parameter}"
+    raise InputError(where, "has no point that could be run", cure=f"The first was refused: {first.reason}")
+
+
+class PointFinder:
+    """Runs the chain and the cage at points of a map; each link of the chain once for what changes it."""
+
+    def __init__(self, question: MapQuestion, runner: Runner) -> None:
+        self.question, self.runner = question, runner
+        self._names = (question.x.parameter, question.y.parameter)
+        self._state = functools.lru_cache(maxsize=MOST_LINKS)(self._find_state)
+
+    def __call__(self, at: tuple[float, float]) -> MapPoint:
+        """Point at (x, y), with the refusal as its reason if it cannot be run."""
+        x, y = at
+        try:
+            return self._run(x, y)
+        except (InputError, ConvergenceError) as error:
+            return MapPoint(x=x, y=y, reason=str(error))
+
+    def _run(self, x: float, y: float) -> MapPoint:
+        values = dict(zip(self._names, (x, y), strict=True))
+        of_the_chain = tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE)
+        solution, own = _found(self._state(of_the_chain))
+        cage, eta = _cage_of(solution, own, values)
+        kick = values.get(KICK, self.question.kick)
+        ensemble = decided_ensemble(cage, solution.stability, kick, self.question.runs, self.runner)
+        return _judged(x, y, cage, eta, ensemble)
+
+    def _varied(self, values: Values) -> Study:
+        """Study with these values; one without a pocket friction gets one, for it is an axis."""
+        pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
+        return varied(self.question.study, {**dict(values), **pocket})
+
+    def _find_state(self, values: Values) -> tuple[Solution, PlanarCage] | str:
+        """Chain and cage of a study, or why there is none: a refusal is worth remembering too."""
+        try:
+            return (solution := solve(self._varied(values))), solution.cage
+        except (InputError, ConvergenceError) as error:
+            return str(error)
+
+
+Link = TypeVar("Link")
+
+
+def _found(link: Link | str) -> Link:
+    """Return a link of the chain, or raise the refusal it was."""
+    if isinstance(link, str):
+        raise InputError(link.removesuffix("."), "")
+    return link
+
+
+def _cage_of(solution: Solution, cage: PlanarCage, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
+    """Cage with the friction and restitution factor of a point, and that restitution factor."""
+    friction = values.get(FRICTION, cage.ball_cage_friction)
+    eta = values.get(RESTITUTION)
+    if eta is not None:
+        return cage_at(cage, eta, friction), eta
+    return replace(cage, ball_cage_friction=friction), solution.restitution.restitution_factor
+
+
+def decided_ensemble(
+    cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int, runner: Runner
+) -> Ensemble:
+    """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
+
+    def run(first: int, count: int) -> Ensemble:
+        return runner.ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
+
+    ensemble = run(0, first_look(runs))
+    if _agree(ensemble):
+        return ensemble
+    while not settled(now := _tally(ensemble), runs) and now.runs < runs:
+        ensemble = joined([ensemble, run(now.runs, further(now.runs, runs))])
+    return ensemble
+
+
+def _agree(ensemble: Ensemble) -> bool:
+    """Whether all runs end alike."""
+    return bool((ensemble.outcome == ensemble.outcome[0, 0]).all())
+
+
+def _tally(ensemble: Ensemble) -> Tally:
+    whirls, settles = (int(ensemble.count(end)[0]) for end in (RunOutcome.WHIRLS, RunOutcome.SETTLES))
+    return Tally(runs=ensemble.outcome.shape[1], whirls=whirls, settles=settles)
+
+
+def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
+    decision, reason = decide(cage, ensemble)
+    whirling, runs = int(ensemble.count(RunOutcome.WHIRLS)[0]), ensemble.outcome.shape[1]
+    low, high = wilson_interval(whirling, runs)
+    return MapPoint(
+        x=x,
+        y=y,
+        decision=decision,
+        probability_whirl=whirling / runs,
+        probability_low=low,
+        probability_high=high,
+        runs=runs,
+        whirling=whirling,
+        growth_rate=growth_rate(ensemble),
+        largest_offset=float(ensemble.largest_offset.max()),
+        drift_rate=drift_rate(ensemble),
+        largest_contact_force=float(ensemble.largest_contact_force.max()),
+        restitution_factor=eta,
+        reason=reason,
+    )
+
+
+def growth_rate(ensemble: Ensemble) -> float:
+    """Median growth rate of the runs [1/s]."""
+    return float(np.median(ensemble.growth_rate))
+
+
+def drift_rate(ensemble: Ensemble) -> float:
+    """Median drift rate of the runs that do not whirl [1/s]; 0 where all do."""
+    calm = ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS]
+    return float(np.median(calm)) if calm.size else 0.0
+
+
+def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
+    """Map of the points found, with their margins; the others say why they were not run."""
+    points: list[MapPoint] = []
+    bands: list[MapChange] = []
+    heights = question.y.values
+    for i, x in enumerate(question.x.values):
+        column = [filled.found.get((i, j)) or _not_run(filled, (i, j), x, y) for j, y in enumerate(heights)]
+        sides = [point.side for point in column]
+        along = zip(column, margins(heights, sides), strict=True)
+        points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
+        bands += [
+            MapChange(x=x, y_low=heights[a], y_high=heights[b], whirls_above=sides[b] > 0)
+            for a, b in changes(sides)
+        ]
+    settings = question.study.stability
+    return StabilityMap(
+        x=question.x,
+        y=question.y,
+        points=tuple(points),
+        changes=tuple(bands),
+        counts=counts(points),
+        kick=question.kick,
+        stopping=stopping(question.runs),
+        inference=inference(filled) if question.adaptive else None,
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        adaptive=question.adaptive,
+        complete=filled.complete,
+    )
+
+
+def _not_run(filled: Filled, place: Place, x: float, y: float) -> MapPoint:
+    if place in filled.inferred:
+        return MapPoint(x=x, y=y, inferred_decision=filled.inferred[place], reason=AGREED)
+    return MapPoint(x=x, y=y, reason=INTERRUPTED)
+
+
+def inference(filled: Filled) -> Inference:
+    """How often the points around another one were wrong about it, where it was run as a check."""
+    otherwise = sum(filled.found[place].decision is not said for place, said in filled.checked.items())
+    total = len(filled.checked)
+    low, high = wilson_interval(otherwise, total) if total else (None, None)
+    return Inference(
+        points=len(filled.inferred),
+        checked=total,
+        decided_otherwise=otherwise,
+        error_low=low,
+        error_high=high,
+    )
+
+
+def counts(points: Iterable[MapPoint]) -> dict[str, int]:
+    """Points of each decision, of those refused, of those inferred, and of those not run."""
+    names = Counter(_kind(point) for point in points)
+    return {kind: names[kind] for kind in (*(v.name for v in Verdict), "refused", "inferred", "not_run")}
+
+
+def _kind(point: MapPoint) -> str:
+    if point.decision is not None:
+        return point.decision.name
+    if point.reason == AGREED:
+        return "inferred"
+    return "not_run" if point.reason.startswith(NOT_RUN) else "refused"
+
+
+def stopping(runs: int) -> Stopping:
+    """Rule by which points of so many runs are ended early."""
+    agreeing = first_look(runs)
+    return Stopping(
+        most_runs=runs,
+        agreeing_runs=agreeing,
+        wrong_side_probability=wrong_side_probability(runs, agreeing),
+        other_decision_probability=other_decision_probability(runs, agreeing),
+    )
+
+
+def value_here(solution: Solution, name: str) -> float | None:
+    """Value of a parameter in the study itself; None where it has none."""
+    if name == RESTITUTION:
+        return solution.restitution.restitution_factor
+    if name == FRICTION:
+        return solution.friction.mean if solution.friction else None
+    return solution.stability.middle_kick if name == KICK else value_in(solution.study, name)
