@@ -37,7 +37,7 @@ WRONG_FILES = {
     "no medium and counterface": (text_of(medium=None, counterface=None), ("lacks: counterface, medium",)),
     "no friction": (text_of(friction=None), ("lacks: friction",)),
     "unknown key": (text_of(speed='"1 m/s"'), ("line 6", "speed is not a key", "Did you mean")),
-    "friction is text": (text_of(friction='"0.08"'), ("line 5", "plain number", "Write 0.08 as a number, not as text")),
+    "friction is text": (text_of(friction='"0.08"'), ("line 5", "plain number", "as a number, not as text")),
     "friction 0": (text_of(friction="0"), ("line 5", "friction must be > 0", "logarithm")),
     "friction negative": (text_of(friction="-0.1"), ("friction must be > 0", "got -0.1")),
     "friction 3": (text_of(friction="3"), ("friction must be <= 2", "got 3")),
