@@ -23,6 +23,8 @@ _PUBLIC = {
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
+    "friction.logs": "read_log",
+    "friction.reduction": "reduce_log",
     "friction.tribometer": "ReducedLogs tribometer",
     "ledger": "Ledger",
     "runner": "Interrupted Runner",
@@ -32,8 +34,6 @@ _PUBLIC = {
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
-    "tribometer.reading": "read_log",
-    "tribometer.reduction": "reduce_log",
 }
 """Module -> the public names it holds."""
 
