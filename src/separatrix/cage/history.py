@@ -51,40 +51,12 @@ class History:
     """
 
     time: Annotated[Array, "s", ("time",)]
-    position: Annotated[
-        Array,
-        "m",
-        (
-            "time",
-            "axis",
-        ),
-    ]
-    velocity: Annotated[
-        Array,
-        "m/s",
-        (
-            "time",
-            "axis",
-        ),
-    ]
+    position: Annotated[Array, "m", ("time", "axis")]
+    velocity: Annotated[Array, "m/s", ("time", "axis")]
     rotation: Annotated[Array, "rad", ("time",)]
     rotation_rate: Annotated[Array, "rad/s", ("time",)]
-    ball_lead: Annotated[
-        Array,
-        "m",
-        (
-            "time",
-            "ball",
-        ),
-    ]
-    contact_force: Annotated[
-        Array,
-        "N",
-        (
-            "time",
-            "ball",
-        ),
-    ]
+    ball_lead: Annotated[Array, "m", ("time", "ball")]
+    contact_force: Annotated[Array, "N", ("time", "ball")]
     land_force: Annotated[Array, "N", ("time",)]
     kinetic_energy: Annotated[Array, "J", ("time",)]
     spring_energy: Annotated[Array, "J", ("time",)]
@@ -196,7 +168,7 @@ def follow(
     lead = np.asarray(ball_lead, dtype=np.float64)
     play = np.full(cage.ball_count, cage.half_play) if half_play is None else half_play
     if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= play):
-        rule = f"must be {cage.ball_count} numbers within the pockets' play [m]"
+        rule = f"must be {cage.ball_count} numbers within the pocket clearance [m]"
         raise InputError("ball_lead", rule, f"{lead.tolist()}")
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)

@@ -199,13 +199,13 @@ def _frictions(
 ) -> dict[Case, Array]:
     """Pocket friction of each case and made bearing; the mean over the environments as case ""."""
     found: dict[Case, Array] = {}
-    for case, friction in stated.items():
-        drawn = [_mean(one, case) for _, one, _ in made]
-        found[case] = np.array(drawn) * _moved(friction, case.candidate, central, made)
     for name in central:
-        own = [values for case, values in found.items() if case.candidate == name]
+        own = [case for case in stated if case.candidate == name]
+        for case in own:
+            drawn = [_mean(one, case) for _, one, _ in made]
+            found[case] = np.array(drawn) * _moved(stated[case], name, central, made)
         if own:
-            found[Case(name, "")] = np.mean(own, axis=0)
+            found[Case(name, "")] = np.mean([found[case] for case in own], axis=0)
     return found
 
 

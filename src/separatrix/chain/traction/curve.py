@@ -286,7 +286,7 @@ def _checked_case(
     if layer is None and thickness > THIN * ellipse.semi_minor > 0.0:
         warnings.warn(
             f"film of {thickness:g} m is {thickness / ellipse.semi_minor:.3g} of the semi-minor axis: "
-            f"a film in series with the half-planes holds up to {THIN:g} (docs/theory/traction.md).",
+            f"a film in series with the half-planes is valid up to {THIN:g} (docs/theory/traction.md).",
             ValidityWarning,
             stacklevel=3,
         )
