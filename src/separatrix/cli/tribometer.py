@@ -66,9 +66,9 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
             folders.enter_context(writable_folder(options.out.parent))
         if options.plots_folder is not None:
             folders.enter_context(writable_folder(options.plots_folder))
-        with progress_bar("tribometer", quiet=options.quiet) as progress:
-            from separatrix.friction.tribometer import tribometer as reduced
+        from separatrix.friction.tribometer import tribometer as reduced  # before the work is timed
 
+        with progress_bar("tribometer", quiet=options.quiet) as progress:
             found = reduced(
                 paths,
                 column_map=options.map,
