@@ -32,8 +32,6 @@ _PUBLIC = {
     "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
     "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
     "study_file": "read_study resolved shipped_studies template",
-    "tribometer.reading": "read_log",
-    "tribometer.reduction": "reduce_log",
 }
 """Module -> the public names it holds."""
 
