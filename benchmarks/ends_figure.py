@@ -15,7 +15,7 @@ import matplotlib as mpl
 import numpy as np
 
 from separatrix.cage import simulate
-from separatrix.cage.drive import drive_energy
+from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.solution import solve
 from separatrix.study_file import read_study
 

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
-from separatrix.cage.kicks import pocket_speed
+from separatrix.cage.ensemble import pocket_speed
 from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
 

@@ -23,6 +23,8 @@ _PUBLIC = {
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
+    "friction.logs": "read_log",
+    "friction.reduction": "reduce_log",
     "friction.tribometer": "ReducedLogs tribometer",
     "ledger": "Ledger",
     "runner": "Interrupted Runner",

@@ -2,26 +2,36 @@
 
 numba keeps compiled code until the file of the function changes. It does not see a change in another file,
 although a constant or a function of that file may be compiled in. So the code is cached in a folder that is
-named after the sources: every file from which a kernel can have taken anything, that is every file of the
+named after all that can be compiled in: the versions of Python, numpy and numba, and every file of the
 package that a module with kernels imports, directly or through others. A report or a figure is not one of
 them, so that an edit there compiles nothing again.
+
+Only kernels that Python calls are cached, with all that they call in one file. numba writes a file under
+another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
+same time write the same file, so that they can share a folder.
+
+Of numba this uses `njit` and `config.CACHE_DIR` (the variable NUMBA_CACHE_DIR), and one option that numba
+does not document, `_nrt`.
 """
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import re
 import shutil
+import sys
 import time
-import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 import numba
+import numpy as np
 
-CONFIG: Any = numba.config
+CONFIG = vars(numba.config)
+"""Settings of numba: CACHE_DIR is that of the variable NUMBA_CACHE_DIR."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -66,24 +76,25 @@ def _imported(source: bytes) -> Iterator[str]:
 
 
 def source_stamp(package: Path) -> str:
-    """Checksum of `kernel_sources` and of the compiler's version."""
-    stamp = zlib.crc32(numba.__version__.encode())
+    """Checksum of `kernel_sources` and of the versions of Python, numpy and numba."""
+    stamp = hashlib.sha256(f"{sys.version} {np.__version__} {numba.__version__}".encode())
     for path in kernel_sources(package):
-        stamp = zlib.crc32(path.read_bytes(), zlib.crc32(path.name.encode(), stamp))
-    return f"{stamp:08x}"
+        text = path.read_bytes()
+        stamp.update(f"{path.relative_to(package).as_posix()} {len(text)} ".encode() + text)
+    return stamp.hexdigest()[:12]
 
 
 def cache_folder(package: Path) -> Path | None:
     """Folder for code that is compiled from these sources; None if no folder can be written.
 
     It is in the folder that NUMBA_CACHE_DIR names; else beside the package's own compiled files; else,
-    where that cannot be written, in the user's cache. The names of the files in it tell versions of Python
-    apart. Folders of other sources that were not used for `UNUSED` are removed.
+    where that cannot be written, in the user's cache. Folders of other sources that were not used for
+    `UNUSED` are removed.
     """
     user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser(os.path.join("~", ".cache"))
     usual = [package / "__pycache__", Path(user) / package.name]
-    asked = CONFIG.CACHE_DIR
-    for place in [Path(asked)] if asked else usual:
+    chosen = CONFIG["CACHE_DIR"]
+    for place in [Path(chosen)] if chosen else usual:
         folder = place / f"{package.name}-kernels-{source_stamp(package)}"
         with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
@@ -97,40 +108,44 @@ def cache_folder(package: Path) -> Path | None:
 def _remove_unused(folder: Path) -> None:
     """Remove the caches beside this one that were not used for long."""
     for other in folder.parent.glob(f"{folder.name.rpartition('-')[0]}-*"):
-        if other.stat().st_mtime < time.time() - UNUSED:
-            shutil.rmtree(other, ignore_errors=True)
+        with contextlib.suppress(OSError):  # another process may remove it too
+            if other.stat().st_mtime < time.time() - UNUSED:
+                shutil.rmtree(other, ignore_errors=True)
 
 
 _FOLDER = cache_folder(Path(__file__).parent)
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile a kernel with numba; the signature stays visible to the type checker."""
-    return _cached(function)
+    """Compile a kernel that Python calls, always with arguments of the same types, and cache it."""
+    usual = CONFIG["CACHE_DIR"]
+    try:
+        CONFIG["CACHE_DIR"] = str(_FOLDER or "")
+        return _compiled(function, cache=_FOLDER is not None)
+    finally:
+        CONFIG["CACHE_DIR"] = usual
+
+
+def part(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a kernel that only kernels call."""
+    return _compiled(function)
 
 
 def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile a kernel that makes no array, so that it need not count references to those it is given.
+    """Compile a part that makes no array, so that it need not count references to those it is given.
 
     Called from a loop of a microsecond, the counting took a third of the time.
     """
-    return _cached(function, _nrt=False)
+    return _compiled(function, _nrt=False)
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile an inner kernel into those that call it."""
-    return _cached(function, _nrt=False, forceinline=True)
+    return _compiled(function, _nrt=False, forceinline=True)
 
 
-def _cached(function: Callable[P, R], **options: bool) -> Callable[P, R]:
-    """Compile with numba, and cache in the folder of these sources."""
-    compile_with: Any = numba.njit
-    usual = CONFIG.CACHE_DIR
-    try:
-        CONFIG.CACHE_DIR = str(_FOLDER or "")
-        compiled: Any = compile_with(nogil=True, error_model="numpy", cache=_FOLDER is not None, **options)(
-            function
-        )
-    finally:
-        CONFIG.CACHE_DIR = usual
-    return compiled  # type: ignore[no-any-return]
+def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
+    """Compile with numba; the signature stays visible to the type checker."""
+    jit = numba.njit(nogil=True, error_model="numpy", **options)  # type: ignore[call-overload]  # _nrt
+    compiled: Callable[P, R] = jit(function)
+    return compiled

@@ -134,7 +134,7 @@ def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
 class StabilitySettings:
     """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen.
 
-    Without kicks they scale with the bearing; `cage.kicks.settings_for` puts numbers in their place.
+    Without kicks they scale with the bearing; `cage.settings_for` puts numbers in their place.
     """
 
     kicks: tuple[MetrePerSecond, ...] = field(
@@ -158,7 +158,7 @@ class StabilitySettings:
 
     @property
     def middle_kick(self) -> MetrePerSecond:
-        """The reference kick of settings whose defaults have numbers (`cage.kicks.settings_for`)."""
+        """The reference kick of settings whose defaults have numbers (`cage.settings_for`)."""
         if self.reference_kick is None:
             raise InputError("StabilitySettings.reference_kick", "is not known before the cage's speed is")
         return self.reference_kick

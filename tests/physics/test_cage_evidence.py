@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from separatrix.cage import PlanarCage, run_ensemble, simulate
-from separatrix.cage.coefficients import time_unit
+from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.study import Guidance, StabilitySettings
 

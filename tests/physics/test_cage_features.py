@@ -14,7 +14,7 @@ import pytest
 import small_step
 
 from separatrix.cage import PlanarCage, RunOutcome, follow, run_ensemble, simulate
-from separatrix.cage.drive import drive_energy
+from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.ensemble import random_starts
 from separatrix.study import Guidance, PocketShape, StabilitySettings
 

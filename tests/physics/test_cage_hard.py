@@ -17,6 +17,7 @@ from separatrix.cage import (
     whirl_probability,
 )
 from separatrix.cage.hard import next_impact
+from separatrix.cage.records import records
 from separatrix.study import StabilitySettings
 
 M, K, R = 0.05, 3e6, 0.0325
@@ -123,18 +124,18 @@ def test_a_collapse_of_impacts_is_unresolved():
 def test_no_wall_is_passed_before_the_next_impact(turning, fastest, longest):
     """Flight up to the time of `next_impact` stays between the walls, bent by a fast frame or its speed."""
     cage = replace(CAGE, cage_speed=turning)
-    p, angles = hard._walls(cage, may_turn=True), np.array(cage.ball_angles)
+    p = hard.walls(cage, restitution=None, may_turn=True, duration=1.0)
+    angles = np.array(cage.ball_angles)
     cos, sin = np.cos(angles), np.sin(angles)
     generator = np.random.default_rng(1)
-    for _ in range(200):
-        s = np.zeros(6)
-        s[[hard.X, hard.Y]] = generator.uniform(-1e-4, 1e-4, 2)
-        s[[hard.VX, hard.VY]] = generator.uniform(-fastest, fastest, 2)
+    for s in records(hard.Flight, 200):
+        s["x"], s["y"] = generator.uniform(-1e-4, 1e-4, 2)
+        s["vx"], s["vy"] = generator.uniform(-fastest, fastest, 2)
         dt, _, _ = next_impact(p, cos, sin, np.zeros(11), s, longest)
         for _ in range(20):
             hard.fly(p, s, dt / 20)
             # rounding of the flight, relative to the play
-            assert np.abs(s[hard.Y] * cos - s[hard.X] * sin).max() <= cage.half_play * (1 + 1e-9)
+            assert np.abs(s["y"] * cos - s["x"] * sin).max() <= cage.half_play * (1 + 1e-9)
 
 
 def test_threads_change_no_bit_of_the_hard_form():

@@ -15,7 +15,7 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
-from separatrix.cage.land import rebound, rebound_damping
+from separatrix.cage.closed_forms import rebound, rebound_damping
 from separatrix.study import Guidance, StabilitySettings
 
 M, K, R = 0.05, 3e6, 0.0325

@@ -16,7 +16,7 @@ from separatrix.cage import (
     run_hard_ensemble,
     whirl_probability,
 )
-from separatrix.cage.coefficients import time_unit
+from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ending import BEAT, LONGEST
 from separatrix.limits import cage_at
 from separatrix.study import StabilitySettings

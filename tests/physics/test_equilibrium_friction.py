@@ -7,10 +7,9 @@ import pytest
 from scipy.special import ellipe
 
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.chain.equilibrium.free import contact_actions, contact_friction, slip_coefficients
-from separatrix.chain.equilibrium.groove import touch
+from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
+from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
 from separatrix.chain.equilibrium.problem import problem
-from separatrix.chain.equilibrium.slip import chebyshev_nodes, friction_resultants
 from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
 from separatrix.units import Array
 

@@ -14,6 +14,7 @@ from separatrix.chain.hertz import (
     elliptic_integrals,
     race_curvatures,
 )
+from separatrix.errors import InputError
 from separatrix.study import BallBearing, Material, Race
 
 STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
@@ -121,3 +122,15 @@ def test_pressure_carries_the_load() -> None:
     assert 2.0 / 3.0 * np.pi * e.semi_major * e.semi_minor * e.max_pressure == pytest.approx(
         321.0, rel=ROUNDING
     )
+
+
+def test_arrays_give_what_their_numbers_give() -> None:
+    """Loads beside curvatures, broadcast: every field to the last bit; a number off its range is refused."""
+    loads, curvatures = np.array([0.0, 30.0, 900.0]), np.array([[150.0], [400.0]])
+    grid = contact_ellipse(loads, curvatures, 120.0, 110e9)
+    for i, j in np.ndindex(2, 3):
+        one = contact_ellipse(float(loads[j]), float(curvatures[i, 0]), 120.0, 110e9)
+        for name in ("load", "semi_major", "semi_minor", "max_pressure", "approach", "stiffness"):
+            assert getattr(grid, name)[i, j] == getattr(one, name), name
+    with pytest.raises(InputError, match=r"load must be finite and >= 0 \[N\]; got -1"):
+        contact_ellipse(np.array([1.0, -1.0]), 200.0, 100.0, 110e9)

@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 from separatrix.chain.traction import dundurs_coupling, solve_strip
-from separatrix.chain.traction.influence import node_positions, node_pressure, strip_influence
 from separatrix.chain.traction.master import film_tables, master_traction, matched_knots, nested_sticks
+from separatrix.chain.traction.strip import node_positions, node_pressure, strip_influence
 from separatrix.study import Material
 
 

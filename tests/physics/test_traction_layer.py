@@ -8,9 +8,9 @@ import pytest
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.traction import BondedLayer, traction_slope
-from separatrix.chain.traction.influence import strip_influence
 from separatrix.chain.traction.layer import strip_layer, surface_compliance
 from separatrix.chain.traction.master import matched_knots
+from separatrix.chain.traction.strip import strip_influence
 
 STEEL = {"ring_modulus": 205e9, "ring_poisson": 0.285, "ball_modulus": 205e9, "ball_poisson": 0.285}
 BODY = 2.0 * (1.0 - 0.285**2) / 205e9  # 2 (1 - nu^2)/E of one body; the pair has 2/E* = 2 BODY

@@ -18,10 +18,9 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
-from separatrix.cage.drive import drive_energy
+from separatrix.cage.closed_forms import drive_energy, linear_roots
 from separatrix.cage.ending import LONGEST
-from separatrix.cage.linear import linear_roots
-from separatrix.cage.orbit import largest_room
+from separatrix.cage.reason import largest_room
 from separatrix.cage.verdict import kick_counts
 from separatrix.chain.solution import solve
 from separatrix.limits.growth import cage_at

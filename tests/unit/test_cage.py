@@ -13,8 +13,7 @@ from separatrix.cage import (
     run_hard_ensemble,
     simulate,
 )
-from separatrix.cage.coefficients import time_unit
-from separatrix.cage.drive import drive_energy
+from separatrix.cage.closed_forms import drive_energy, time_unit
 from separatrix.cage.ending import PLACE, run_limits
 from separatrix.cage.ensemble import random_starts
 from separatrix.cage.run import random_start

@@ -20,7 +20,7 @@ ONE_KERNEL = """
 import json
 import numpy as np
 from law import Law
-from separatrix.cage.step import push_of
+from separatrix.cage.motion import push_of
 
 law = Law(0.0, 0, 1.0)
 pockets, w = np.arange(40.0).reshape(20, 2), np.arange(200.0).reshape(2, 100) ** 2

@@ -18,7 +18,7 @@ from separatrix.cage import (
     whirl_probability,
     wilson_interval,
 )
-from separatrix.cage.drive import drifts, drive_energy, room
+from separatrix.cage.closed_forms import drifts, drive_energy, room
 from separatrix.study import Guidance
 
 CAGE = PlanarCage(

@@ -1,20 +1,19 @@
 """Cage motion in the bearing plane, and the verdict on it (the paper's 2.1; Kannel and Bupara's approach)."""
 
-from separatrix.cage.ensemble import Ensemble, run_ensemble
-from separatrix.cage.hard import impact_restitution, run_hard_ensemble
-from separatrix.cage.history import History, follow, simulate
-from separatrix.cage.interval import wilson_interval
-from separatrix.cage.kicks import settings_for
-from separatrix.cage.linear import (
+from separatrix.cage.closed_forms import (
     drift_law,
+    impact_restitution,
     linear_critical_friction,
     linear_roots,
     linear_whirl_frequency,
     turning_critical_friction,
 )
-from separatrix.cage.orbit import CageMotion
+from separatrix.cage.ensemble import Ensemble, run_ensemble, settings_for
+from separatrix.cage.hard import run_hard_ensemble
+from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
-from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability
+from separatrix.cage.reason import CageMotion
+from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability, wilson_interval
 
 __all__ = [
     "CageMotion",

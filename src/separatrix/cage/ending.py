@@ -8,23 +8,12 @@ frame, loads or friction on the land keep up is not (docs/theory/cage.md).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from separatrix.cage.coefficients import time_unit
-from separatrix.cage.drive import drifts, drive_energy, room
+from separatrix.cage.closed_forms import drifts, drive_energy, room, time_unit
 from separatrix.cage.planar import RunOutcome
-from separatrix.cage.slots import (
-    BALL_WORK,
-    FRAME_WORK,
-    GRAVITY_WORK,
-    KINETIC,
-    LAND_WORK,
-    OFFSET,
-    POCKET_WORK,
-)
-from separatrix.compiled import kernel
+from separatrix.compiled import part
 
 if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
@@ -90,9 +79,41 @@ UNKNOWN = -1
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 UNRESOLVED = int(RunOutcome.UNRESOLVED)
 
-# What is remembered from look to look.
-ABOVE, ALIKE, LEVEL, QUIET, HIGH, MET = range(6)
-MEMORY = 6
+
+class Look:
+    """Tally of a look: integrals over its time unless stated."""
+
+    kinetic: float
+    offset: float
+    offset_squared: float
+    swept: float  # r x v
+    turning: float  # |v|^2 times the turning rate of the velocity
+    speed_squared: float
+    mean_x: float
+    mean_y: float
+    offset_max: float  # largest squared offset
+    force_max: float  # largest forces of pockets and land
+    land_max: float
+    steps: float  # number
+    land_hits: float  # number
+    pressed: float  # force of the land, and that times the sliding
+    rubbed: float
+    pocket_work: float  # work of both frictions, of balls that lead and lag, of gravity
+    land_work: float
+    ball_work: float
+    gravity_work: float
+    frame_work: float  # on a cage without clearance or land
+
+
+class Memory:
+    """What is remembered from look to look: how many in a row were so."""
+
+    above: float  # high in energy
+    alike: float  # like the first of them, and with contact
+    level: float  # mean energy of that one
+    quiet: float  # at or below the drive energy
+    high: float  # far above it
+    met: float  # with contact
 
 
 class Limits(NamedTuple):
@@ -171,118 +192,131 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
     return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
 
 
-@kernel
-def mean_energy(tally, first, last, look):  # type: ignore[no-untyped-def]
-    """Mean kinetic energy of the looks from `first` to before `last`."""
-    return np.sum(tally[first:last, KINETIC]) / ((last - first) * look)
+@part
+def mean_energy(looks: Sequence[Look], first: int, last: int, length: float) -> float:
+    """Mean kinetic energy of the looks from `first` to before `last`, each of this length."""
+    total = 0.0
+    for i in range(first, last):
+        total += looks[i].kinetic
+    return total / ((last - first) * length)
 
 
-@kernel
-def mean_offset(tally, first, last, look):  # type: ignore[no-untyped-def]
+@part
+def mean_offset(looks: Sequence[Look], first: int, last: int, length: float) -> float:
     """Mean offset in the looks from `first` to before `last`."""
-    return np.sum(tally[first:last, OFFSET]) / ((last - first) * look)
+    total = 0.0
+    for i in range(first, last):
+        total += looks[i].offset
+    return total / ((last - first) * length)
 
 
-@kernel
-def fed(tally, first, last):  # type: ignore[no-untyped-def]
+@part
+def fed(looks: Sequence[Look], first: int, last: int) -> tuple[float, float, float]:
     """Work of pocket friction, and the shares of it and of the land's friction in what is put in."""
-    pocket, land = np.sum(tally[first:last, POCKET_WORK]), np.sum(tally[first:last, LAND_WORK])
-    balls, gravity = np.sum(tally[first:last, BALL_WORK]), np.sum(tally[first:last, GRAVITY_WORK])
-    frame = np.sum(tally[first:last, FRAME_WORK])
+    pocket = land = balls = gravity = frame = 0.0
+    for i in range(first, last):
+        pocket += looks[i].pocket_work
+        land += looks[i].land_work
+        balls += looks[i].ball_work
+        gravity += looks[i].gravity_work
+        frame += looks[i].frame_work
     put_in = max(0.0, pocket) + max(0.0, land) + max(0.0, balls) + max(0.0, gravity) + max(0.0, frame)
     if put_in == 0.0:
         return pocket, 0.0, 0.0
     return pocket, pocket / put_in, land / put_in
 
 
-@kernel
-def high_end(tally, end):  # type: ignore[no-untyped-def]
+@part
+def high_end(looks: Sequence[Look], end: int) -> int:
     """`WHIRLS` if pocket friction feeds a motion that grows without limit, else `SETTLES`."""
-    return WHIRLS if fed(tally, max(0, end - FED), end)[1] > HALF else SETTLES
+    return WHIRLS if fed(looks, max(0, end - FED), end)[1] > HALF else SETTLES
 
 
-@kernel
-def plain_end(tally, i, look, met, limits, memory):  # type: ignore[no-untyped-def]
+@part
+def plain_end(looks: Sequence[Look], i: int, length: float, met: bool, limits: Limits, memory: Memory) -> int:
     """Outcome that is plain after look i; `UNKNOWN` if none is."""
-    mean = tally[i, KINETIC] / look
-    memory[ABOVE] = memory[ABOVE] + 1 if mean > limits.grows_on else 0
-    if memory[ABOVE] >= LOOKS_ABOVE or mean > limits.grows_at_once:
-        return high_end(tally, i + 1)
-    if met and abs(mean - memory[LEVEL]) <= EVEN * memory[LEVEL]:
-        memory[ALIKE] += 1
+    mean = looks[i].kinetic / length
+    memory.above = memory.above + 1 if mean > limits.grows_on else 0
+    if memory.above >= LOOKS_ABOVE or mean > limits.grows_at_once:
+        return high_end(looks, i + 1)
+    if met and abs(mean - memory.level) <= EVEN * memory.level:
+        memory.alike += 1
     else:
-        memory[ALIKE], memory[LEVEL] = 1, mean
+        memory.alike, memory.level = 1, mean
     driven = mean <= limits.drive
-    if driven and tally[i, OFFSET] > limits.far * look:
+    if driven and looks[i].offset > limits.far * length:
         return SETTLES
-    memory[QUIET] = memory[QUIET] + 1 if driven else 0
+    memory.quiet = memory.quiet + 1 if driven else 0
     high = mean > FAR_ABOVE * limits.drive
-    memory[HIGH] = memory[HIGH] + 1 if high and limits.drive > 0.0 else 0
-    even = high and memory[ALIKE] >= LOOKS_EVEN and mean >= memory[LEVEL]
-    if even or (memory[HIGH] >= LOOKS_FAR and keeps_up(tally, i + 1, look)):
-        _, pockets, land = fed(tally, i + 1 - FED, i + 1)
+    memory.high = memory.high + 1 if high and limits.drive > 0.0 else 0
+    even = high and memory.alike >= LOOKS_EVEN and mean >= memory.level
+    if even or (memory.high >= LOOKS_FAR and keeps_up(looks, i + 1, length)):
+        _, pockets, land = fed(looks, i + 1 - FED, i + 1)
         if max(pockets, land) > HALF:
             return WHIRLS if pockets > HALF else SETTLES
-    memory[MET] = memory[MET] + 1 if met else 0
-    if memory[MET] >= limits.looks and kept_up(tally, i + 1, look, limits):
+    memory.met = memory.met + 1 if met else 0
+    if memory.met >= limits.looks and kept_up(looks, i + 1, length, limits):
         return WHIRLS
-    if memory[QUIET] >= limits.looks:
-        return at_rest(tally, i + 1, limits.looks, HALF, look, limits)
-    if memory[QUIET] < limits.window or not arrived(tally, i + 1, look, limits):
+    if memory.quiet >= limits.looks:
+        return at_rest(looks, i + 1, limits.looks, HALF, length, limits)
+    if memory.quiet < limits.window or not arrived(looks, i + 1, length, limits):
         return UNKNOWN
-    share = HALF if memory[QUIET] >= PATIENCE * limits.window else UNFED
-    return at_rest(tally, i + 1, limits.window, share, look, limits)
+    share = HALF if memory.quiet >= PATIENCE * limits.window else UNFED
+    return at_rest(looks, i + 1, limits.window, share, length, limits)
 
 
-@kernel
-def keeps_up(tally, end, look):  # type: ignore[no-untyped-def]
+@part
+def keeps_up(looks: Sequence[Look], end: int, length: float) -> bool:
     """Whether the last half of the last `LOOKS_FAR` looks has no less energy than the half before."""
     middle = end - LOOKS_FAR // 2
-    before = mean_energy(tally, end - LOOKS_FAR, middle, look)
-    return mean_energy(tally, middle, end, look) >= (1.0 - EVEN) * before
+    before = mean_energy(looks, end - LOOKS_FAR, middle, length)
+    return mean_energy(looks, middle, end, length) >= (1.0 - EVEN) * before
 
 
-@kernel
-def kept_up(tally, end, look, limits):  # type: ignore[no-untyped-def]
+@part
+def kept_up(looks: Sequence[Look], end: int, length: float, limits: Limits) -> bool:
     """Whether pocket friction kept up the motion in its place for a whole duration, in both its halves."""
     first, middle = end - limits.looks, end - limits.looks // 2
-    before, after = mean_energy(tally, first, middle, look), mean_energy(tally, middle, end, look)
+    before, after = mean_energy(looks, first, middle, length), mean_energy(looks, middle, end, length)
     if limits.drifts or after < (1.0 - EVEN) * before or after <= REST * limits.drive:
         return False
-    work, pockets, _ = fed(tally, first, middle)
-    more, still, _ = fed(tally, middle, end)
-    moved = abs(mean_offset(tally, middle, end, look) - mean_offset(tally, first, middle, look))
+    work, pockets, _ = fed(looks, first, middle)
+    more, still, _ = fed(looks, middle, end)
+    moved = abs(mean_offset(looks, middle, end, length) - mean_offset(looks, first, middle, length))
     return min(pockets, still) > HALF and work + more > TURNED_OVER * after and moved <= limits.held
 
 
-@kernel
-def at_rest(tally, end, quiet, share, look, limits):  # type: ignore[no-untyped-def]
+@part
+def at_rest(looks: Sequence[Look], end: int, quiet: int, share: float, length: float, limits: Limits) -> int:
     """`SETTLES` at rest, or where pocket friction put in at most this share over this many quiet looks."""
     first, half = end - limits.window, limits.window // 2
-    mean = mean_energy(tally, first, end, look)
+    mean = mean_energy(looks, first, end, length)
     if mean <= REST * limits.drive:
-        early, late = mean_energy(tally, first, first + half, look), mean_energy(tally, end - half, end, look)
+        early, late = (
+            mean_energy(looks, first, first + half, length),
+            mean_energy(looks, end - half, end, length),
+        )
         return SETTLES if late <= RISES * early or mean <= REST**3 * limits.drive else UNKNOWN
-    work, pockets, _ = fed(tally, end - quiet, end)
+    work, pockets, _ = fed(looks, end - quiet, end)
     return SETTLES if pockets <= share or work < mean else UNKNOWN
 
 
-@kernel
-def arrived(tally, end, look, limits):  # type: ignore[no-untyped-def]
+@part
+def arrived(looks: Sequence[Look], end: int, length: float, limits: Limits) -> bool:
     """Whether the cage is in its place: on its land if anything moves it, and no further than before."""
     half = limits.window // 2
-    late = mean_offset(tally, end - half, end, look)
-    early = mean_offset(tally, end - 2 * half, end - half, look)
+    late = mean_offset(looks, end - half, end, length)
+    early = mean_offset(looks, end - 2 * half, end - half, length)
     return late >= limits.reach and abs(late - early) <= limits.place
 
 
-@kernel
-def end_by_trend(tally, end, look, limits):  # type: ignore[no-untyped-def]
+@part
+def end_by_trend(looks: Sequence[Look], end: int, length: float, limits: Limits) -> int:
     """Outcome of the longest run, by its last fifth and the looks half way."""
     n, middle = end // FEWEST_LOOKS, end // 2
-    last = mean_energy(tally, end - n, end, look)
-    before = mean_energy(tally, middle - n // 2, middle - n // 2 + n, look)
-    work, pockets, land = fed(tally, end - n, end)
+    last = mean_energy(looks, end - n, end, length)
+    before = mean_energy(looks, middle - n // 2, middle - n // 2 + n, length)
+    work, pockets, land = fed(looks, end - n, end)
     if last <= limits.drive:
         return WHIRLS if pockets > HALF and work > last > REST * limits.drive else SETTLES
     if last >= FALLS * before:

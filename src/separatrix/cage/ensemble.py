@@ -4,45 +4,53 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 
-from separatrix.cage import slots
-from separatrix.cage.coefficients import (
-    as_record,
-    coefficients,
-    fastest_rate,
-    free_speeds,
-    series_columns,
-    time_unit,
-)
+from separatrix.cage.closed_forms import fastest_rate, time_unit
 from separatrix.cage.ending import run_limits
-from separatrix.cage.kicks import settings_for
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.run import random_start, run_chunk, series_of
+from separatrix.cage.records import Evidence, Samples, balls_of, coefficients, dtype_of, samples_for
+from separatrix.cage.run import books_for, random_start, run_chunk
 from separatrix.errors import InputError
-from separatrix.study import LEAST_KICK, NO_KICK
-from separatrix.units import Array, MetrePerSecond, Second
+from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
+from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from separatrix.study import StabilitySettings
 
 Scalar = TypeVar("Scalar", bound=np.generic)
+
+REFERENCE: Ratio = 2.5
+"""Reference kick over the pocket speed [-]."""
+
+SPAN: tuple[Ratio, ...] = (0.2, 1.0, 4.0)
+"""Kicks over the reference kick: 0.5, 2.5 and 10 times the pocket speed [-]."""
+
+LEAST_POCKET_SPEED: MetrePerSecond = 0.02
+"""Pocket speed of a ball set at rest or a pocket without clearance: the reference kick is then 0.05 m/s."""
+
+DIGITS = 3
+"""Significant digits of a default kick, so that a reader can repeat it."""
+
 
 CHUNK_RADIANS = 200_000.0
 """Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
 second of work."""
 
-PER_MASS = [
-    *(slots.FORCE, slots.LAND_FORCE, slots.RUBBING_FORCE),
-    *(slots.END_ENERGY, slots.POCKET_POWER, slots.LAND_POWER),
-]
+PER_MASS = (
+    "largest_contact_force",
+    "largest_land_force",
+    "rubbing_force",
+    "end_energy",
+    "pocket_power",
+    "land_power",
+)
 """Evidence that the kernels give over the mass."""
 
 MOST_RADIANS = 1e8
@@ -161,7 +169,7 @@ def run_ensemble(
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     check_length(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)
-    evidence = np.zeros((len(speeds), runs, slots.EVIDENCE))
+    evidence = np.zeros((len(speeds), runs), dtype_of(Evidence))
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
 
     def work(i: int, rows: slice) -> None:
@@ -177,22 +185,29 @@ def run_rows(
     duration: Second,
     kick: MetrePerSecond,
     starts: Array,
-    evidence: Array,
+    evidence: NDArray[np.void],
     hits: NDArray[np.int64],
     *,
-    rows: Array | None = None,
+    samples: Samples | None = None,
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
 
-    With rows of a history a run goes on to their last, whatever is plain before.
+    With samples of a history a run goes on to the last of them, whatever is plain before.
     """
-    unit, balls = time_unit(cage), cage.ball_count
-    p, drive = as_record(coefficients(cage, kick)), free_speeds(cage, np.array(cage.ball_angles))
-    history = np.zeros((0, slots.ROW_BALLS + 2 * balls)) if rows is None else rows
-    limits = run_limits(cage, kick, duration, least=rows is not None)
-    series = series_of(series_columns(cage))
-    run_chunk(p, drive, starts, kick * unit, series, limits, history, evidence, hits)
-    evidence[:, PER_MASS] *= cage.mass
+    balls, limits = cage.ball_count, run_limits(cage, kick, duration, least=samples is not None)
+    run_chunk(
+        coefficients(cage, kick),
+        balls_of(cage),
+        starts,
+        kick * time_unit(cage),
+        books_for(balls, cage.land_lobes, len(starts), limits.most),
+        limits,
+        samples or samples_for(0, balls),
+        cast("Sequence[Evidence]", evidence),
+        hits,
+    )
+    for name in PER_MASS:
+        evidence[name] *= cage.mass
 
 
 def check_length(cage: PlanarCage, duration: Second) -> None:
@@ -242,6 +257,39 @@ def free_leads(cage: PlanarCage, angles: Array) -> Array:
     return lead
 
 
+def pocket_speed(cage_speed: RadianPerSecond, pocket_clearance: Metre) -> MetrePerSecond:
+    """Cage speed times half the pocket clearance, but not below `LEAST_POCKET_SPEED`.
+
+    The cage centre has this speed in space where it is half a pocket clearance off the axis.
+    """
+    return max(abs(cage_speed) * 0.5 * pocket_clearance, LEAST_POCKET_SPEED)
+
+
+def settings_for(settings: StabilitySettings, cage: PlanarCage) -> StabilitySettings:
+    """Return the settings with the kicks and the reference kick of this cage; given ones stay."""
+    return with_kicks(settings, pocket_speed(cage.cage_speed, cage.pocket_clearance))
+
+
+def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilitySettings:
+    """Return the settings with numbers for kicks and reference kick, from the pocket speed [m/s].
+
+    The reference kick is 2.5 times the pocket speed unless it is given, whatever the kicks: thresholds and
+    margins belong to the bearing, not to the list. Without kicks they are 0.2, 1 and 4 times it.
+    """
+    reference = settings.reference_kick or _rounded(REFERENCE * speed)
+    spanned = tuple(reference if part == 1.0 else _rounded(part * reference) for part in SPAN)
+    return replace(settings, kicks=settings.kicks or spanned, reference_kick=reference)
+
+
+def with_reference(settings: StabilitySettings) -> StabilitySettings:
+    """Return the settings with the reference kick among the kicks; they must have numbers."""
+    return replace(settings, kicks=tuple(sorted({*settings.kicks, settings.middle_kick})))
+
+
+def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
+    return float(f"{speed:.{DIGITS}g}")
+
+
 def chosen(
     settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
 ) -> tuple[Array, int]:
@@ -278,35 +326,12 @@ def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int,
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def gathered(kicks: Array, evidence: Array, hits: NDArray[np.int64], duration: Second) -> Ensemble:
-    """Record of the evidence of all runs, shape (kick, run, evidence)."""
-
-    def column(slot: int) -> Array:
-        return np.ascontiguousarray(evidence[..., slot])
-
+def gathered(kicks: Array, evidence: NDArray[np.void], hits: NDArray[np.int64], duration: Second) -> Ensemble:
+    """Record of the evidence of all runs, shape (kick, run)."""
+    names = [field.name for field in fields(Ensemble) if field.name in Evidence.__annotations__]
     return Ensemble(
         kicks=kicks,
-        outcome=column(slots.OUTCOME).astype(np.int64),
-        cause=column(slots.CAUSE).astype(np.int64),
-        end_energy=column(slots.END_ENERGY),
-        growth_rate=column(slots.GROWTH_RATE),
-        largest_offset=column(slots.LARGEST_OFFSET),
-        mean_offset=column(slots.MEAN_OFFSET),
-        offset_spread=column(slots.OFFSET_SPREAD),
-        orbit_speed=column(slots.ORBIT_SPEED),
-        drift_rate=column(slots.DRIFT_RATE),
-        whirl_frequency=column(slots.WHIRL),
-        whirl_direction=column(slots.DIRECTION).astype(np.int64),
-        largest_contact_force=column(slots.FORCE),
-        largest_land_force=column(slots.LAND_FORCE),
         pocket_impacts=hits,
-        land_impacts=column(slots.LAND_IMPACTS).astype(np.int64),
-        energy_imbalance=column(slots.IMBALANCE),
-        pocket_power=column(slots.POCKET_POWER),
-        land_power=column(slots.LAND_POWER),
-        rubbing_force=column(slots.RUBBING_FORCE),
-        rubbing_speed=column(slots.RUBBING_SPEED),
-        followed=column(slots.FOLLOWED),
-        judged_from=column(slots.JUDGED),
         duration=duration,
+        **{name: np.ascontiguousarray(evidence[name]) for name in names},
     )

@@ -7,16 +7,15 @@ from typing import Annotated
 
 import numpy as np
 
-from separatrix.cage import slots
-from separatrix.cage.coefficients import time_unit
+from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ensemble import check_length, chosen, other_way_round, random_starts, run_rows
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
+from separatrix.cage.records import SOURCES, Evidence, Samples, dtype_of, samples_for
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
 from separatrix.units import Array, Joule, MetrePerSecond, Newton, PerSecond, Radian, Ratio, Second, Watt
 
 MOST_SAMPLES = 1_000_000
-SOURCES = slots.SOURCES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -204,47 +203,42 @@ def follow(
     check_length(cage, duration)
     angles = np.array(cage.ball_angles) if pocket_angle is None else pocket_angle
     starts = np.concatenate([[direction], lead, play, angles])[np.newaxis]
-    evidence = np.zeros((1, slots.EVIDENCE))
+    evidence = np.zeros(1, dtype_of(Evidence))
     hits = np.zeros((1, cage.ball_count), dtype=np.int64)
     run_rows(cage, duration, kick, starts, evidence, hits)
-    length = until or max(duration, float(evidence[0, slots.FOLLOWED]))
-    rows = np.zeros((samples, slots.ROW_BALLS + 2 * cage.ball_count))
-    rows[:, slots.CLOCK] = np.linspace(0.0, length / time_unit(cage), samples)
-    run_rows(cage, duration, kick, starts, evidence, hits, rows=rows)
-    return _history(cage, rows[: int(evidence[0, slots.ROWS])], evidence[0], play, angles)
+    length = until or max(duration, float(evidence["followed"][0]))
+    rows = samples_for(samples, cage.ball_count)
+    np.asarray(rows.row)["clock"] = np.linspace(0.0, length / time_unit(cage), samples)
+    run_rows(cage, duration, kick, starts, evidence, hits, samples=rows)
+    return _history(cage, rows, evidence[0], play, angles)
 
 
-def _history(cage: PlanarCage, rows: Array, evidence: Array, play: Array, angles: Array) -> History:
+def _history(cage: PlanarCage, samples: Samples, evidence: np.void, play: Array, angles: Array) -> History:
     """Record of the rows that the kernel filled, back in SI units."""
-    T, M, R, Z = time_unit(cage), cage.mass, cage.pitch_radius, cage.ball_count
-    velocity, rate = rows[:, [slots.VX, slots.VY]] / T, rows[:, slots.W] / (R * T)
+    T, M, R, filled = time_unit(cage), cage.mass, cage.pitch_radius, int(evidence["rows"])
+    row, work = np.asarray(samples.row)[:filled], np.asarray(samples.work)[:filled]
+    velocity, rate = np.stack([row["vx"], row["vy"]], axis=1) / T, row["vs"] / (R * T)
     energy, force = M / T**2, M / T**2
-    work = rows[:, slots.ROW_WORK : slots.ROW_POCKET_ENERGY] * energy
-    balls = rows[:, slots.ROW_BALLS :]
+    shared = ("end_energy", "growth_rate", "drift_rate", "pocket_power", "land_power", "rubbing_force")
     return History(
-        time=rows[:, slots.CLOCK] * T,
-        position=rows[:, [slots.X, slots.Y]].copy(),
+        time=row["clock"] * T,
+        position=np.stack([row["x"], row["y"]], axis=1),
         velocity=velocity,
-        rotation=rows[:, slots.S] / R,
+        rotation=row["s"] / R,
         rotation_rate=rate,
-        ball_lead=balls[:, :Z].copy(),
-        contact_force=balls[:, Z:] * force,
-        land_force=rows[:, slots.ROW_LAND_FORCE] * force,
+        ball_lead=samples.lead[:filled].copy(),
+        contact_force=samples.force[:filled] * force,
+        land_force=row["land_force"] * force,
         kinetic_energy=0.5 * (M * (velocity**2).sum(axis=1) + cage.moment_of_inertia * rate**2),
-        spring_energy=rows[:, slots.ROW_POCKET_ENERGY] * energy,
-        land_energy=rows[:, slots.ROW_LAND_ENERGY] * energy,
-        work={name: work[:, i].copy() for i, name in enumerate(slots.SOURCES)},
+        spring_energy=row["pocket_energy"] * energy,
+        land_energy=row["land_energy"] * energy,
+        work={name: work[name] * energy for name in SOURCES},
         pocket_angle=angles,
         half_play=play,
-        outcome=RunOutcome(int(evidence[slots.OUTCOME])),
-        cause=Cause(int(evidence[slots.CAUSE])),
-        judged_from=float(evidence[slots.JUDGED]),
-        judged_until=float(evidence[slots.FOLLOWED]),
-        end_energy=float(evidence[slots.END_ENERGY]),
-        growth_rate=float(evidence[slots.GROWTH_RATE]),
-        drift_rate=float(evidence[slots.DRIFT_RATE]),
-        pocket_power=float(evidence[slots.POCKET_POWER]),
-        land_power=float(evidence[slots.LAND_POWER]),
-        rubbing_force=float(evidence[slots.RUBBING_FORCE]),
-        rubbing_speed=float(evidence[slots.RUBBING_SPEED]),
+        outcome=RunOutcome(int(evidence["outcome"])),
+        cause=Cause(int(evidence["cause"])),
+        judged_from=float(evidence["judged_from"]),
+        judged_until=float(evidence["followed"]),
+        rubbing_speed=float(evidence["rubbing_speed"]),
+        **{name: float(evidence[name]) for name in shared},
     )

@@ -1,150 +1,214 @@
-"""The land that guides a cage: a one-sided spring and damper with dry friction, as power series."""
+r"""The land that guides a cage: a one-sided spring and damper with dry friction, as power series.
+
+With n the direction of the centre, :math:`r = |r|\,n`, and t across it:
+:math:`\delta = |r| - c_g + a\cos m\beta`, :math:`P = K\delta + c\,\dot\delta`,
+:math:`v_s = \dot r\cdot t + q\,[R\dot\theta - (\omega_\text{ring} - \Omega) R]`. The lobes, of amplitude a
+and number m, turn with the cage: :math:`\beta` is the angle of n against it.
+"""
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
-from typing import TYPE_CHECKING
 
-import numpy as np
-
-from separatrix.cage.series import product
-from separatrix.cage.slots import (
-    COS,
-    DEPTH,
-    DISTANCE,
-    FX,
-    FY,
-    LOBE_COS,
-    LOBE_SIN,
-    NORMAL,
-    NX,
-    NY,
-    PUSHED,
-    SIN,
-    TANGENT,
-    TILT,
-    TORQUE,
-    TURN_COS,
-    TURN_SIN,
-    W,
+from separatrix.cage.events import (
+    LAND_CLEAR,
+    LAND_LEAVE,
+    LAND_PRESS,
+    LAND_TOUCH,
+    SLIDE_START,
+    SLIDE_STOP,
+    larger,
 )
-from separatrix.compiled import inner_kernel
-
-if TYPE_CHECKING:
-    from separatrix.units import Ratio
-
-LOWEST_RESTITUTION = 1e-4
-
-
-def rebound(damping_ratio: Ratio) -> Ratio:
-    r"""Restitution of a mass on a spring and a parallel damper that can push but not pull [-].
-
-    The impact ends when the force is back at zero, before the spring is. With :math:`\beta = \zeta\omega` and
-    :math:`\Omega = \omega\sqrt{|1-\zeta^2|}` (Schwager and Poeschel 2007, with their :math:`\omega_0` as unit
-    of time).
-    """
-    zeta = damping_ratio
-    if zeta == 0.0:
-        return 1.0
-    if zeta < 1.0:
-        root = math.sqrt(1.0 - zeta * zeta)
-        turned = math.atan2(2.0 * zeta * root, 2.0 * zeta * zeta - 1.0)
-        return math.exp(-zeta / root * turned)
-    if zeta == 1.0:
-        return math.exp(-2.0)
-    root = math.sqrt(zeta * zeta - 1.0)
-    return math.exp(-zeta / root * 2.0 * math.log(zeta + root))
-
-
-@lru_cache(maxsize=64)
-def rebound_damping(restitution: Ratio) -> Ratio:
-    """Damping ratio of the land whose `rebound` is this [-]; below 1e-4 that of 1e-4, hardly other than 0."""
-    if restitution >= 1.0:
-        return 0.0
-    target = max(restitution, LOWEST_RESTITUTION)
-    low, high = 0.0, 100.0
-    while low < (middle := 0.5 * (low + high)) < high:  # down to neighbouring numbers
-        low, high = (middle, high) if rebound(middle) > target else (low, middle)
-    return low
+from separatrix.cage.records import CLEAR, FORWARD, ORDER, RELEASED, STICK, Coefficients, Pace, Room, Series
+from separatrix.cage.series import THIRD, Knots, centre, copy_column, first_zero, product
+from separatrix.compiled import inlined_kernel, inner_kernel
+from separatrix.units import Array
 
 
 @inner_kernel
-def land_geometry(p, w, gx, gy, n):  # type: ignore[no-untyped-def]
+def land_geometry(p: Coefficients, w: Series, lobes: Array, n: int) -> None:
     """Coefficient n of the centre's distance, its direction and the depth in the land."""
+    gx, gy = centre(p, w)
     if n == 0:
-        w[0, DISTANCE] = np.sqrt(w[0, gx] * w[0, gx] + w[0, gy] * w[0, gy])
-        w[0, NX], w[0, NY] = w[0, gx] / w[0, DISTANCE], w[0, gy] / w[0, DISTANCE]
+        w[0].distance = math.sqrt(gx[0] * gx[0] + gy[0] * gy[0])
+        w[0].nx, w[0].ny = gx[0] / w[0].distance, gy[0] / w[0].distance
     else:
-        square = product(w, gx, gx, n) + product(w, gy, gy, n)
+        # |r|^2 = x^2 + y^2, whence 2 |r|_0 |r|_n = (x^2 + y^2)_n - sum_(0<i<n) |r|_i |r|_(n-i)
+        square = product(gx, gx, n) + product(gy, gy, n)
         for i in range(1, n):
-            square -= w[i, DISTANCE] * w[n - i, DISTANCE]
-        w[n, DISTANCE] = square / (2.0 * w[0, DISTANCE])
-        along, across = w[n, gx], w[n, gy]
+            square -= w[i].distance * w[n - i].distance
+        w[n].distance = square / (2.0 * w[0].distance)
+        # r = |r| n, whence |r|_0 n_n = r_n - sum_(i>0) |r|_i n_(n-i)
+        along, across = gx[n], gy[n]
         for i in range(1, n + 1):
-            along -= w[i, DISTANCE] * w[n - i, NX]
-            across -= w[i, DISTANCE] * w[n - i, NY]
-        w[n, NX], w[n, NY] = along / w[0, DISTANCE], across / w[0, DISTANCE]
-    w[n, DEPTH] = w[n, DISTANCE]
+            along -= w[i].distance * w[n - i].nx
+            across -= w[i].distance * w[n - i].ny
+        w[n].nx, w[n].ny = along / w[0].distance, across / w[0].distance
+    # delta = |r| - c_g + a cos(m beta)
+    w[n].depth = w[n].distance
     if n == 0:
-        w[0, DEPTH] -= p.land_gap
+        w[0].depth -= p.land_gap
     if p.roundness != 0.0:
-        lobes(p, w, n)
-        w[n, DEPTH] += p.roundness * w[n, LOBE_COS]
+        turn_lobes(p, w, lobes, n)
+        w[n].depth += p.roundness * w[n].lobe_cos
 
 
 @inner_kernel
-def lobes(p, w, n):  # type: ignore[no-untyped-def]
-    """Coefficient n of cosine and sine of the lobes' angle, and of that sine over the distance."""
-    w[n, TURN_COS] = product(w, NX, COS, n) + product(w, NY, SIN, n)
-    w[n, TURN_SIN] = product(w, NY, COS, n) - product(w, NX, SIN, n)
-    last = p.lobe_rows + 2 * (p.lobes - 1)
-    w[n, p.lobe_rows], w[n, p.lobe_rows + 1] = w[n, TURN_COS], w[n, TURN_SIN]
-    for row in range(p.lobe_rows + 2, last + 2, 2):
-        w[n, row] = product(w, row - 2, TURN_COS, n) - product(w, row - 1, TURN_SIN, n)
-        w[n, row + 1] = product(w, row - 1, TURN_COS, n) + product(w, row - 2, TURN_SIN, n)
-    w[n, LOBE_COS], w[n, LOBE_SIN] = w[n, last], w[n, last + 1]
-    tilt = w[n, LOBE_SIN]
+def turn_lobes(p: Coefficients, w: Series, lobes: Array, n: int) -> None:
+    """Coefficient n of cosine and sine of the lobes' angle m beta, and of that sine over the distance."""
+    # cos beta = n . (cos theta, sin theta), sin beta = n x (cos theta, sin theta)
+    w[n].turn_cos = product(w.nx, w.cos, n) + product(w.ny, w.sin, n)
+    w[n].turn_sin = product(w.ny, w.cos, n) - product(w.nx, w.sin, n)
+    # cos k beta = cos((k-1) beta) cos beta - sin((k-1) beta) sin beta, and the sine likewise
+    last = 2 * (p.lobes - 1)
+    lobes[n, 0], lobes[n, 1] = w[n].turn_cos, w[n].turn_sin
+    for k in range(2, last + 2, 2):
+        cos, sin = lobes[:, k - 2], lobes[:, k - 1]
+        lobes[n, k] = product(cos, w.turn_cos, n) - product(sin, w.turn_sin, n)
+        lobes[n, k + 1] = product(sin, w.turn_cos, n) + product(cos, w.turn_sin, n)
+    w[n].lobe_cos, w[n].lobe_sin = lobes[n, last], lobes[n, last + 1]
+    # tilt = sin(m beta) / |r|
+    tilt = w[n].lobe_sin
     for i in range(1, n + 1):
-        tilt -= w[i, DISTANCE] * w[n - i, TILT]
-    w[n, TILT] = tilt / w[0, DISTANCE]
+        tilt -= w[i].distance * w[n - i].tilt
+    w[n].tilt = tilt / w[0].distance
 
 
 @inner_kernel
-def push_land(p, w, n):  # type: ignore[no-untyped-def]
+def push_land(p: Coefficients, w: Series, n: int) -> None:
     """Add coefficient n of the land's normal force to that of the forces and of the torque over M R."""
-    w[n, NORMAL] = p.land_stiffness * w[n, DEPTH] + p.land_damping * (n + 1) * w[n + 1, DEPTH]
-    w[n, FX] -= product(w, NORMAL, NX, n)
-    w[n, FY] -= product(w, NORMAL, NY, n)
+    # P = K delta + c d(delta)/dt; F = -P n
+    w[n].normal = p.land_stiffness * w[n].depth + p.land_damping * (n + 1) * w[n + 1].depth
+    w[n].fx -= product(w.normal, w.nx, n)
+    w[n].fy -= product(w.normal, w.ny, n)
     if p.roundness != 0.0:
-        lean(p, w, n)
+        # F = -P grad(delta) with grad(delta) = n - a m sin(m beta)/|r| t; its moment about the centre is
+        # -P d(delta)/d(theta)
+        a = p.roundness * p.lobes
+        w[n].pushed = product(w.normal, w.tilt, n)
+        w[n].fx -= a * product(w.pushed, w.ny, n)
+        w[n].fy += a * product(w.pushed, w.nx, n)
+        w[n].torque -= a * product(w.normal, w.lobe_sin, n) / p.radius
 
 
 @inner_kernel
-def lean(p, w, n):  # type: ignore[no-untyped-def]
-    """Turn the normal force by the slope of the lobes: it is along the gradient of the depth."""
-    a = p.roundness * p.lobes
-    w[n, PUSHED] = product(w, NORMAL, TILT, n)
-    w[n, FX] -= a * product(w, PUSHED, NY, n)
-    w[n, FY] += a * product(w, PUSHED, NX, n)
-    w[n, TORQUE] -= a * product(w, NORMAL, LOBE_SIN, n) / p.radius
-
-
-@inner_kernel
-def rub_land(p, w, n):  # type: ignore[no-untyped-def]
+def rub_land(p: Coefficients, w: Series, n: int) -> None:
     """Add coefficient n of the land's friction to that of the forces and of the torque over M R."""
-    w[n, FX] -= product(w, TANGENT, NY, n)
-    w[n, FY] += product(w, TANGENT, NX, n)
-    w[n, TORQUE] += p.land_side * w[n, TANGENT]
+    # F = F_t t with t = (-n_y, n_x); T / (M R) = q F_t
+    w[n].fx -= product(w.tangent, w.ny, n)
+    w[n].fy += product(w.tangent, w.nx, n)
+    w[n].torque += p.land_side * w[n].tangent
 
 
 @inner_kernel
-def slide_speed(p, w, gx, gy, now, n):  # type: ignore[no-untyped-def]
+def slide_speed(p: Coefficients, w: Series, now: Pace, n: int) -> float:
     """Coefficient n of the speed of the cage's surface on the ring's, from places up to n + 1."""
-    speed = p.land_side * w[n, W]
+    # v_s = n_x dy/dt - n_y dx/dt + q [ds/dt - (omega_ring - Omega) R]
+    gx, gy = centre(p, w)
+    speed = p.land_side * w[n].vs
     if n < 2:
         speed -= p.land_side * p.ring_slide * now[n]
     for i in range(n + 1):
         m = n - i + 1
-        speed += m * (w[i, NX] * w[m, gy] - w[i, NY] * w[m, gx])
+        speed += m * (w[i].nx * gy[m] - w[i].ny * gx[m])
     return speed
+
+
+@inner_kernel
+def land_change(
+    p: Coefficients,
+    w: Series,
+    land: int,
+    h: float,
+    end: float,
+    kind: int,
+    x: Knots,
+    y: Knots,
+    off: float,
+    room: Room,
+) -> tuple[float, int]:
+    """Earliest change up to a time, if the land's comes first, and what it is.
+
+    What ends a step at the land: it is met, left or pressed again, or its sliding stops or starts.
+    """
+    c = room.c
+    if land == CLEAR:
+        return meet_land(p, w, end, kind, x, y, off, room)
+    if land == RELEASED:
+        return return_land(p, w, h, end, kind, room)
+    # Left where P = 0
+    copy_column(w.normal, c)
+    t = first_zero(c, max(0.0, c[0]), 1.0, end, p.land_stiffness * p.land_gap)
+    if t < end:
+        end, kind = t, LAND_LEAVE
+    if land == STICK:
+        # Slides from mu P = |F_t|
+        sign = 1.0 if w[0].tangent >= 0.0 else -1.0
+        for n in range(ORDER + 1):
+            c[n] = p.land_friction * w[n].normal - sign * w[n].tangent
+        t = first_zero(c, max(0.0, c[0]), 1.0, end, p.land_stiffness * p.land_gap)
+        return (t, SLIDE_START) if t < end else (end, kind)
+    # Slides until v_s = 0
+    sign = 1.0 if land == FORWARD else -1.0
+    copy_column(w.sliding, c)
+    # The force is a difference of places of the size of the gap, and moves the sliding by as much rounding.
+    noise = abs(w[0].vx) + abs(w[0].vy) + abs(w[0].vs) + abs(p.ring_slide)
+    noise += h * p.land_stiffness * p.land_gap * (1.0 + p.swiftness)
+    t = first_zero(c, max(0.0, sign * c[0]), sign, end, noise)
+    return (t, SLIDE_STOP) if t < end else (end, kind)
+
+
+@inlined_kernel
+def farthest(x: Knots, y: Knots) -> float:
+    """Bound on the distance of the centre by its knots, without what lies off the cubics between them."""
+    u, v = x[0], y[0]
+    square = u * u + v * v
+    u, v = u + THIRD * x[1], v + THIRD * y[1]
+    square = larger(square, u * u + v * v)
+    for row, side in ((2, -THIRD), (2, THIRD), (4, -THIRD), (4, 0.0)):
+        u, v = x[row] + side * x[row + 1], y[row] + side * y[row + 1]
+        square = larger(square, u * u + v * v)
+    return math.sqrt(square)
+
+
+@inlined_kernel
+def meet_land(
+    p: Coefficients, w: Series, end: float, kind: int, x: Knots, y: Knots, off: float, room: Room
+) -> tuple[float, int]:
+    """Earliest change up to a time, if the cage meets its land before, and what it is."""
+    if farthest(x, y) < (p.land_gap - abs(p.roundness) - off / 384.0):
+        return end, kind
+    gx, gy = centre(p, w)
+    c = room.c
+    if p.roundness == 0.0:
+        # Met where |r|^2 = c_g^2
+        near = math.sqrt(gx[0] ** 2 + gy[0] ** 2)
+        for n in range(ORDER + 1):
+            c[n] = product(gx, gx, n) + product(gy, gy, n)
+        t = first_zero(c, (p.land_gap - near) * (p.land_gap + near), -1.0, end, p.land_gap**2)
+    else:
+        # Met where delta = 0
+        for n in range(ORDER + 1):
+            land_geometry(p, w, room.lobes, n)
+        copy_column(w.depth, c)
+        t = first_zero(c, -c[0], -1.0, end, p.land_gap)
+    return (t, LAND_TOUCH) if t < end else (end, kind)
+
+
+@inner_kernel
+def return_land(p: Coefficients, w: Series, h: float, end: float, kind: int, room: Room) -> tuple[float, int]:
+    """Earliest change up to a time, if a cage pushed off leaves its land, or is pressed again, before."""
+    c = room.c
+    for n in range(ORDER + 1):
+        land_geometry(p, w, room.lobes, n)
+    # Left where delta = 0
+    copy_column(w.depth, c)
+    t = first_zero(c, c[0], 1.0, end, p.land_gap)
+    if t < end:
+        end, kind = t, LAND_CLEAR
+    # Pressed again where K delta + c d(delta)/dt = 0; times are in steps, c is not
+    for n in range(ORDER):
+        c[n] = p.land_stiffness * w[n].depth + p.land_damping / h * (n + 1) * w[n + 1].depth
+    c[ORDER] = 0.0
+    t = first_zero(c, max(0.0, -c[0]), -1.0, end, p.land_stiffness * p.land_gap)
+    return (t, LAND_PRESS) if t < end else (end, kind)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
+from separatrix.cage.ending import Look
 from separatrix.cage.events import (
     LAND_CLEAR,
     LAND_LEAVE,
@@ -11,90 +12,75 @@ from separatrix.cage.events import (
     LAND_TOUCH,
     NOTHING,
     PART,
-    QUEUE,
     SLIDE_START,
     TOUCH,
-    fourths,
     pocket_change,
 )
 from separatrix.cage.evidence import enter_step, enter_work, record
 from separatrix.cage.expand import expand
-from separatrix.cage.land import land_geometry, slide_speed
-from separatrix.cage.land_events import land_change
-from separatrix.cage.series import (
-    KNOT_ROWS,
+from separatrix.cage.land import land_change, land_geometry, slide_speed
+from separatrix.cage.records import (
+    BACKWARD,
+    CLEAR,
+    FORWARD,
     ORDER,
+    RELEASED,
+    STICK,
+    Balls,
+    Coefficients,
+    Ledger,
+    Pace,
+    Room,
+    Samples,
+    Series,
+    State,
+    Whole,
+)
+from separatrix.cage.series import (
     ROUNDING,
+    Motion,
+    centre,
+    fourths,
     grip_at,
     knots,
     motion_at,
     slope,
-    stretch,
     value,
 )
-from separatrix.cage.slots import (
-    BACKWARD,
-    BALLS,
-    CLEAR,
-    CLOCK,
-    COS,
-    COSINE,
-    DEPTH,
-    DRIVE,
-    EX,
-    FELT,
-    FORWARD,
-    FRAME,
-    GONE,
-    GX,
-    GY,
-    HARMONICS,
-    KEPT,
-    LAND_HITS,
-    LEAD,
-    LIST,
-    NORMAL,
-    NX,
-    PENETRATION,
-    PLAY,
-    RELEASED,
-    SIDE,
-    SIN,
-    SINE,
-    SLIDING,
-    STEPS,
-    STICK,
-    TANGENT,
-    VX,
-    VY,
-    WORKS,
-    S,
-    W,
-    X,
-    Y,
-)
-from separatrix.cage.step import longest_step
-from separatrix.compiled import inlined_kernel, inner_kernel, kernel
+from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
-"""Share by which the friction asked of a sticking land may pass what it can hold, by rounding."""
+"""Share by which the friction that a sticking land needs may exceed what it can carry, by rounding."""
 
 MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
-"""Steps in the time of a radian of the fastest motion: a run that asks for more stands still in time."""
+"""Steps in the time of a radian of the fastest motion: a run that needs more makes no progress in time."""
+
+PRECISION, HERTZ_PRECISION = 2.0**-34, 2.0**-40
+"""Share of the speeds below which the last terms of a series lie. The force of a Hertz contact has no series
+about its beginning, so that near it the terms fall slowly."""
+
+LONGEST = 1e6
+
+RELAXED = 4.0
+"""Longest step with linear pockets in touch, in units of the time in which they yield."""
+
+SHORT = 0.2
+"""Share of the distance of the centre that a way may have: its series falls by that from term to term."""
 
 
 @inlined_kernel
-def speed_share(p, clock):  # type: ignore[no-untyped-def]
+def pace_at(p: Coefficients, clock: float) -> Pace:
     """Share of the full speed at a time, and its rate."""
     if clock >= p.ramp_time:
-        return 1.0, 0.0
+        return Pace(1.0, 0.0)
     rise = (1.0 - p.ramp_start) / p.ramp_time
-    return p.ramp_start + rise * clock, rise
+    return Pace(p.ramp_start + rise * clock, rise)
 
 
 @inner_kernel
-def frame_angle(p, clock):  # type: ignore[no-untyped-def]
+def frame_angle(p: Coefficients, clock: float) -> float:
     """Angle by which the frame has turned."""
+    # alpha = Omega (t - T) + Omega (lambda_0 T + lambda' T^2 / 2), with T = t within the ramp
     ramped = min(clock, p.ramp_time)
     angle = p.turning * (clock - ramped)
     if ramped > 0.0:
@@ -104,248 +90,311 @@ def frame_angle(p, clock):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def load_state(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
+def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
     """First coefficients of the series from the state."""
-    for i in range(6):
-        w[0, i] = s[i]
+    start = w[0]
+    start.x, start.y, start.vx, start.vy = state.x, state.y, state.vx, state.vy
+    start.s, start.vs = state.s, state.vs
     if p.needs_rotation:
-        theta = s[S] / p.radius
-        w[0, COS], w[0, SIN] = np.cos(theta), np.sin(theta)
+        theta = state.s / p.radius
+        start.cos, start.sin = math.cos(theta), math.sin(theta)
     if p.eccentricity != 0.0:
-        w[0, GX] = w[0, X] - p.eccentricity * w[0, COS]
-        w[0, GY] = w[0, Y] - p.eccentricity * w[0, SIN]
+        start.gx = start.x - p.eccentricity * start.cos
+        start.gy = start.y - p.eccentricity * start.sin
     if p.needs_frame:
-        angle = frame_angle(p, s[CLOCK])
+        angle = frame_angle(p, state.clock)
         for h in range(max(1, p.harmonics)):
-            w[0, FRAME + 2 * h] = np.cos((h + 1) * angle)
-            w[0, FRAME + 2 * h + 1] = np.sin((h + 1) * angle)
+            start.frame[2 * h] = math.cos((h + 1) * angle)
+            start.frame[2 * h + 1] = math.sin((h + 1) * angle)
     if p.hertz != 0.0:
-        for i in range(count):
-            w[0, BALLS + touch[LIST, i]] = pockets[PENETRATION, touch[LIST, i]]
+        for i in range(state.touching):
+            j = balls.touching[i]
+            balls.depth[0, j] = balls.penetration[j]
 
 
 @inlined_kernel
-def rescale(p, w, balls, count, h, pressed):  # type: ignore[no-untyped-def]
+def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
+    """Coefficient n of the force of a pocket in touch."""
+    if p.hertz != 0.0:
+        return float(balls.force[n, j])
+    depth: float = (
+        balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
+    )
+    for k in range(2 * p.harmonics):
+        depth -= balls.drive[k, j] * w[n].felt[k]
+    return p.stiffness * depth
+
+
+@inlined_kernel
+def step_length(p: Coefficients, balls: Balls, w: Series, count: int) -> float:
+    """Time for which the last terms of the series stay below `PRECISION` of the speeds.
+
+    Of the speeds themselves, and of those that each pocket alone would give: forces of several pockets may
+    balance, so that the cage does not feel that they relax.
+    """
+    start, at_end, one_before = w[0], w[ORDER], w[ORDER - 1]
+    scale = HERTZ_PRECISION if p.hertz != 0.0 else PRECISION
+    scale *= abs(start.vx) + abs(start.vy) + abs(start.vs) + p.slowest
+    last = max(abs(at_end.vx), abs(at_end.vy), abs(at_end.vs))
+    before = max(abs(one_before.vx), abs(one_before.vy), abs(one_before.vs))
+    for i in range(count):
+        j = balls.touching[i]
+        last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
+        before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
+    # |v_n| h^n = scale, for the last two terms
+    h = LONGEST
+    if last > 0.0:
+        h = min(h, (scale / last) ** (1.0 / ORDER))
+    if before > 0.0:
+        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
+    return h
+
+
+@inlined_kernel
+def distance_step(p: Coefficients, w: Series, share: float) -> float:
+    """Time for which the distance of the centre has a series: on ways in space shorter than itself."""
+    turning, start = p.turning * share, w[0]
+    x, y, vx, vy = start.x, start.y, start.vx, start.vy
+    swing = p.eccentricity * (abs(turning) + abs(start.vs) / p.radius)
+    # Velocity and acceleration in space: v + Omega x r, dv/dt + 2 Omega x v + Omega x (Omega x r)
+    speed = abs(vx - turning * y) + abs(vy + turning * x) + swing + p.slowest
+    pull = abs(w[1].vx - turning * (2.0 * vy + turning * x))
+    pull += abs(w[1].vy + turning * (2.0 * vx - turning * y))
+    h = SHORT * p.land_gap / speed
+    return h if pull == 0.0 else min(h, SHORT * math.sqrt(2.0 * p.land_gap / pull))
+
+
+@inlined_kernel
+def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
+    """Time for which the series may be used: their own, and up to the next time at which something is due."""
+    h = min(step_length(p, balls, w, state.touching), left)
+    if state.touching > 0 and p.hertz == 0.0:
+        # What is left of a penetration and what is new cancel: of more than this too little is left.
+        h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
+    if state.clock < p.ramp_time:
+        h = min(h, p.ramp_time - state.clock)
+    if state.land == RELEASED or (state.land == CLEAR and p.roundness != 0.0):
+        h = min(h, distance_step(p, w, now.share))
+    return h
+
+
+@inlined_kernel
+def rescale(p: Coefficients, balls: Balls, w: Series, count: int, h: float, pressed: bool) -> None:
     """Make the step the unit of time of all series that are looked at."""
-    stretch(w, X, W + 1, h)
-    if count > 0:
-        stretch(w, EX, KEPT + 1, h)
-    if p.eccentricity != 0.0:
-        stretch(w, GX, GY + 1, h)
-    if p.needs_rotation:
-        stretch(w, COS, SIN + 1, h)
-    if p.needs_frame:
-        stretch(w, FRAME, FRAME + 6 * HARMONICS, h)
-    if p.hertz != 0.0 and count > 0:
-        stretch(w, BALLS, BALLS + 2 * balls, h)
-    if pressed:
-        stretch(w, NX, SLIDING + 1, h)
+    power = h
+    for n in range(1, ORDER + 1):
+        t = w[n]
+        t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
+        t.s, t.vs = t.s * power, t.vs * power
+        if count > 0 and p.hertz == 0.0:
+            t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
+        elif count > 0:
+            for i in range(count):
+                balls.depth[n, balls.touching[i]] *= power
+                balls.force[n, balls.touching[i]] *= power
+        if p.needs_rotation:
+            t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
+        if p.needs_frame:
+            for k in range(max(2, 2 * p.harmonics)):
+                t.frame[k] *= power
+                t.felt[k] *= power
+                t.gone[k] *= power
+        if pressed:
+            t.nx, t.ny, t.depth = t.nx * power, t.ny * power, t.depth * power
+            t.normal, t.tangent, t.sliding = t.normal * power, t.tangent * power, t.sliding * power
+        power *= h
 
 
 @inner_kernel
-def settle_stick(p, pockets, touch, w, count, now, sums):  # type: ignore[no-untyped-def]
-    """Mode of a land on which nothing slides: it sticks if its friction can hold, else it starts to slide."""
-    expand(p, pockets, touch, w, count, STICK, now, sums)
-    if abs(w[0, TANGENT]) <= p.land_friction * max(0.0, w[0, NORMAL]) * (1.0 + HOLD):
-        return STICK
-    return BACKWARD if w[0, TANGENT] > 0.0 else FORWARD
-
-
-@inner_kernel
-def first_sliding(p, w, now):  # type: ignore[no-untyped-def]
+def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
     """Speed at which the cage's surface slides on the ring's, from the first coefficients."""
-    gx, gy, vx, vy = w[0, X], w[0, Y], w[0, VX], w[0, VY]
+    # v_s = t . dr_g/dt + q [ds/dt - (omega_ring - Omega) R], dr_g/dt = v + epsilon d(theta)/dt (sin, -cos)
+    start = w[0]
+    gx, gy, vx, vy = start.x, start.y, start.vx, start.vy
     if p.eccentricity != 0.0:
-        gx, gy = w[0, GX], w[0, GY]
-        rate = p.eccentricity * w[0, W] / p.radius
-        vx, vy = vx + rate * w[0, SIN], vy - rate * w[0, COS]
-    r = np.sqrt(gx * gx + gy * gy)
-    return (gx * vy - gy * vx) / r + p.land_side * (w[0, W] - p.ring_slide * now[0])
+        gx, gy = start.gx, start.gy
+        rate = p.eccentricity * start.vs / p.radius
+        vx, vy = vx + rate * start.sin, vy - rate * start.cos
+    r = math.sqrt(gx * gx + gy * gy)
+    return (gx * vy - gy * vx) / r + p.land_side * (start.vs - p.ring_slide * now.share)
 
 
 @inner_kernel
-def land_after(p, pockets, touch, w, count, now, kind, sums):  # type: ignore[no-untyped-def]
+def change_land(
+    p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, kind: int, room: Room
+) -> None:
     """Mode of the land after a change; the series' first coefficients hold the state."""
     if kind == LAND_CLEAR:
-        return CLEAR
+        state.land = CLEAR
+        return
     if kind == LAND_LEAVE:
-        gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
-        land_geometry(p, w, gx, gy, 0)
-        return RELEASED if w[0, DEPTH] > ROUNDING * p.land_gap else CLEAR
-    if kind == SLIDE_START:
-        return BACKWARD if w[0, TANGENT] > 0.0 else FORWARD
+        land_geometry(p, w, room.lobes, 0)
+        state.land = RELEASED if w[0].depth > ROUNDING * p.land_gap else CLEAR
+        return
     if kind in (LAND_TOUCH, LAND_PRESS):
         sliding = first_sliding(p, w, now)
-        if abs(sliding) > ROUNDING * (abs(w[0, W]) + abs(p.ring_slide)):
-            return FORWARD if sliding > 0.0 else BACKWARD
-    return settle_stick(p, pockets, touch, w, count, now, sums)
+        if abs(sliding) > ROUNDING * (abs(w[0].vs) + abs(p.ring_slide)):
+            state.land = FORWARD if sliding > 0.0 else BACKWARD
+            return
+    if kind != SLIDE_START:
+        # Nothing slides: it sticks if |F_t| <= mu P, else it starts to slide
+        state.land = STICK
+        expand(p, balls, w, state, now, room)
+        if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
+            return
+    state.land = BACKWARD if w[0].tangent > 0.0 else FORWARD
 
 
 @inlined_kernel
-def kinetic(p, s):  # type: ignore[no-untyped-def]
+def kinetic(p: Coefficients, state: State) -> float:
     """Kinetic energy of the cage in the turning frame, over its mass."""
-    return 0.5 * (s[VX] * s[VX] + s[VY] * s[VY] + p.inertia * s[W] * s[W])
+    return 0.5 * (state.vx * state.vx + state.vy * state.vy + p.inertia * state.vs * state.vs)
 
 
 @inner_kernel
-def land_energy(p, pockets, touch, s, w, count):  # type: ignore[no-untyped-def]
+def land_energy(p: Coefficients, balls: Balls, state: State, w: Series, room: Room) -> float:
     """Energy in the land's spring, over the mass."""
-    load_state(p, pockets, touch, s, w, count)
-    gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
-    land_geometry(p, w, gx, gy, 0)
-    return 0.5 * p.land_stiffness * w[0, DEPTH] ** 2
+    load_state(p, balls, state, w)
+    land_geometry(p, w, room.lobes, 0)
+    return 0.5 * p.land_stiffness * w[0].depth ** 2
 
 
 @inner_kernel
-def place_of(p, pockets, s, j):  # type: ignore[no-untyped-def]
+def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
     """Place of pocket j along the circumference, against a ball without lead."""
-    x, y = s[X], s[Y]
+    x, y = state.x, state.y
     if p.eccentricity != 0.0:
-        x -= p.eccentricity * np.cos(s[S] / p.radius)
-        y -= p.eccentricity * np.sin(s[S] / p.radius)
-    return y * pockets[COSINE, j] - x * pockets[SINE, j] + s[S]
+        x -= p.eccentricity * math.cos(state.s / p.radius)
+        y -= p.eccentricity * math.sin(state.s / p.radius)
+    return float(y * balls.cosine[j] - x * balls.sine[j] + state.s)
 
 
 @inlined_kernel
-def finish_step(p, pockets, touch, w, s, count, h, end, after):  # type: ignore[no-untyped-def]
+def finish_step(
+    p: Coefficients, balls: Balls, w: Series, state: State, h: float, end: float, after: Motion
+) -> None:
     """State at the end of a step, from its series."""
-    s[X], s[Y], s[VX], s[VY], s[S], s[W] = after
-    s[CLOCK] += end * h
-    if count > 0 and p.hertz == 0.0:
+    state.x, state.y, state.vx, state.vy, state.s, state.vs = after
+    state.clock += end * h
+    if p.hertz != 0.0:
+        for i in range(state.touching):
+            j = balls.touching[i]
+            balls.penetration[j] = value(balls.depth[:, j], end)
+    elif state.touching > 0:
         ex, ey, es, kept = grip_at(w, end)
-    for i in range(count):
-        j = touch[LIST, i]
-        if p.hertz != 0.0:
-            pockets[PENETRATION, j] = value(w, BALLS + j, end)
-        else:
-            pockets[PENETRATION, j] = (
-                pockets[PENETRATION, j] * kept + ey * pockets[COSINE, j] - ex * pockets[SINE, j] + es
-            )
+        for i in range(state.touching):
+            j = balls.touching[i]
+            q = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
             for k in range(2 * p.harmonics):
-                pockets[PENETRATION, j] -= pockets[DRIVE + k, j] * value(w, FELT + k, end)
+                q -= balls.drive[k, j] * value(w.felt[:, k], end)
+            balls.penetration[j] = q
     for k in range(2 * p.harmonics):
-        gone = value(w, GONE + k, end)
-        for j in range(pockets.shape[1]):
-            if touch[SIDE, j] == 0:
-                pockets[LEAD, j] += pockets[DRIVE + k, j] * gone
+        gone = value(w.gone[:, k], end)
+        for j in range(balls.play.size):
+            if balls.side[j] == 0:
+                balls.lead[j] += balls.drive[k, j] * gone
 
 
 @inner_kernel
-def change_pocket(p, pockets, touch, w, s, mode, hits, kind, ball, h, end):  # type: ignore[no-untyped-def]
-    """Put a ball on the list of those in touch (beyond the balls: on the negative side), or take it off."""
-    if kind == TOUCH:
-        j = ball % pockets.shape[1]
-        touch[SIDE, j] = 1 if ball < pockets.shape[1] else -1
-        pockets[PENETRATION, j] = (
-            place_of(p, pockets, s, j) - pockets[LEAD, j] - touch[SIDE, j] * pockets[PLAY, j]
-        )
-        if p.hertz != 0.0:
-            pockets[PENETRATION, j] = touch[SIDE, j] * p.onset
-        touch[LIST, mode[0]] = j
-        mode[0] += 1
-        hits[j] += 1
-        return
-    pockets[LEAD, ball] = (
-        place_of(p, pockets, s, ball) - touch[SIDE, ball] * pockets[PLAY, ball] - pockets[PENETRATION, ball]
-    )
+def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whole) -> None:
+    """Put a ball on the list of those in touch; beyond the number of balls: on the negative side."""
+    j = ball % balls.play.size
+    side = 1 if ball < balls.play.size else -1
+    balls.side[j] = side
+    balls.penetration[j] = place_of(p, balls, state, j) - balls.lead[j] - side * balls.play[j]
     if p.hertz != 0.0:
-        follows = s[VY] * pockets[COSINE, ball] - s[VX] * pockets[SINE, ball] + s[W]
+        balls.penetration[j] = side * p.onset
+    balls.touching[state.touching] = j
+    state.touching += 1
+    hits[j] += 1
+
+
+@inner_kernel
+def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h: float, end: float) -> None:
+    """Take a ball off the list of those in touch: it stays where it was left."""
+    side = balls.side[j]
+    balls.lead[j] = place_of(p, balls, state, j) - side * balls.play[j] - balls.penetration[j]
+    if p.hertz != 0.0:
+        follows = state.vy * balls.cosine[j] - state.vx * balls.sine[j] + state.vs
         for k in range(2 * p.harmonics):
-            follows -= pockets[DRIVE + k, ball] * slope(w, GONE + k, end) / h
-        if touch[SIDE, ball] * follows > 0.0:
+            follows -= balls.drive[k, j] * slope(w.gone[:, k], end) / h
+        if side * follows > 0.0:
             # The pocket follows more slowly than the force at the onset drives the ball: without a distance
             # between the two it would meet the ball at once, and again without end.
-            pockets[LEAD, ball] += 0.5 * touch[SIDE, ball] * p.onset
-    touch[SIDE, ball] = 0
+            balls.lead[j] += 0.5 * side * p.onset
+    balls.side[j] = 0
     kept = 0
-    for i in range(mode[0]):
-        if touch[LIST, i] != ball:
-            touch[LIST, kept] = touch[LIST, i]
+    for i in range(state.touching):
+        if balls.touching[i] != j:
+            balls.touching[kept] = balls.touching[i]
             kept += 1
-    mode[0] = kept
-
-
-@kernel
-def make_room(balls):  # type: ignore[no-untyped-def]
-    """Arrays that `advance` works in."""
-    return (
-        np.zeros(8 + 6 * HARMONICS),
-        np.zeros(ORDER + 1),
-        np.zeros(WORKS),
-        np.zeros((KNOT_ROWS, BALLS)),
-        np.zeros(balls),
-        np.zeros((2 * balls, QUEUE)),
-    )
+    state.touching = kept
 
 
 @inner_kernel
-def advance(  # type: ignore[no-untyped-def]
-    p, pockets, touch, s, w, mode, ledger, tally, hits, length, ceiling, rows, room
-):
-    """Advance the cage by a time, in place.
+def advance(
+    p: Coefficients,
+    balls: Balls,
+    state: State,
+    w: Series,
+    ledger: Ledger,
+    look: Look,
+    hits: Whole,
+    length: float,
+    ceiling: float,
+    samples: Samples,
+    room: Room,
+) -> bool:
+    """Advance the cage by a time, in place; False if more events came than any motion has.
 
     Parameters
     ----------
-    p, pockets, touch
-        The cage, and numbers by ball as in `slots`.
-    s, w : ndarray
-        State as in `slots`, and series.
-    mode : ndarray
-        How many pockets touch their balls, mode of the land, and rows of history filled.
-    ledger, tally, hits : ndarray
-        Work since the start, integrals of this look, and impacts of every pocket.
+    p, balls, state, w
+        The cage, its balls, its state, and series of a step.
+    ledger, look, hits
+        Work since the start, tally of this look, and impacts of every pocket.
     length, ceiling : float
         Time to advance, and the kinetic energy above which to stop.
-    rows : ndarray
-        History; the slot of the time of an unfilled row holds the time from which it is due.
-
-    Returns
-    -------
-    bool
-        False if more events came than any motion has: the run cannot go on.
+    samples : Samples
+        History.
+    room : Room
+        Room for a step.
     """
     done, taken = 0.0, 0
     most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if p.hertz != 0.0 else 1.0)
-    sums, c, work, knot, beyond, queue = room
-    gx, gy = (GX, GY) if p.eccentricity != 0.0 else (X, Y)
-    while done < length and kinetic(p, s) < ceiling:
+    gx, gy = centre(p, w)
+    while done < length and kinetic(p, state) < ceiling:
         taken += 1
         if taken > most:
             return False
-        now = speed_share(p, s[CLOCK])
-        count, land = mode[0], mode[1]
+        now, land = pace_at(p, state.clock), state.land
         pressed = land != CLEAR and land != RELEASED
-        load_state(p, pockets, touch, s, w, count)
-        expand(p, pockets, touch, w, count, land, now, sums)
+        load_state(p, balls, state, w)
+        expand(p, balls, w, state, now, room)
         if pressed and land != STICK:
             for n in range(ORDER + 1):
-                w[n, SLIDING] = slide_speed(p, w, gx, gy, now, n)
-        h = longest_step(p, pockets, touch, w, s, count, land, now, length - done)
-        rescale(p, w, pockets.shape[1], count, h, pressed)
-        knots(w, X, Y + 1, knot)
-        knots(w, S, S + 1, knot)
-        if p.eccentricity != 0.0:
-            knots(w, GX, GY + 1, knot)
-        off, late_off = fourths(w, gx, gy, S, 0.0)
-        end, kind, ball, deepest = pocket_change(
-            p, pockets, touch, w, h, count, knot, off, late_off, beyond, queue, c
-        )
+                w[n].sliding = slide_speed(p, w, now, n)
+        h = longest_step(p, balls, w, state, now, length - done)
+        rescale(p, balls, w, state.touching, h, pressed)
+        x, y, s = knots(gx), knots(gy), knots(w.s)
+        off, late_off = fourths(gx, gy, w.s, w.kept, 0.0)
+        end, kind, ball, deepest = pocket_change(p, balls, w, state, h, x, y, s, off, late_off, room)
         if p.land_side != 0.0:
-            end, kind = land_change(p, w, land, h, end, kind, knot, max(off, late_off), c)
-        if rows.shape[0] > mode[2]:
-            mode[2] = record(
-                p, pockets, touch, w, s, count, land, now, h, end, sums, ledger, rows, mode[2], work
-            )
-        enter_work(p, pockets, touch, w, count, land, now, h, end, sums, ledger, work)
+            end, kind = land_change(p, w, land, h, end, kind, x, y, max(off, late_off), room)
+        if len(samples.row) > state.rows:
+            record(p, balls, w, state, now, h, end, ledger, samples, room)
+        enter_work(p, balls, w, state, now, h, end, ledger, room)
         after = motion_at(w, end)
-        enter_step(p, pockets, touch, w, count, land, deepest, h, end, after, tally, c)
-        finish_step(p, pockets, touch, w, s, count, h, end, after)
+        enter_step(p, balls, w, state, deepest, h, end, after, look, room)
+        finish_step(p, balls, w, state, h, end, after)
         done = length if kind == NOTHING and h == length - done else done + end * h
-        if kind in (PART, TOUCH):
-            change_pocket(p, pockets, touch, w, s, mode, hits, kind, ball, h, end)
+        if kind == TOUCH:
+            meet_ball(p, balls, state, ball, hits)
+        elif kind == PART:
+            leave_ball(p, balls, w, state, ball, h, end)
         elif kind != NOTHING:
-            load_state(p, pockets, touch, s, w, count)
-            mode[1] = land_after(p, pockets, touch, w, count, now, kind, sums)
-            tally[LAND_HITS] += kind == LAND_TOUCH
-    tally[STEPS] += taken
+            load_state(p, balls, state, w)
+            change_land(p, balls, w, state, now, kind, room)
+            look.land_hits += kind == LAND_TOUCH
+    look.steps += taken
     return True

@@ -178,11 +178,6 @@ class PlanarCage:
         return pocket_shape.half_play(self)
 
     @property
-    def half_play_effective(self) -> Metre:
-        """The same as `half_play` [m]."""
-        return self.half_play
-
-    @property
     def pocket_tilt(self) -> tuple[Ratio, Ratio]:
         """Cosine and sine of psi, the lean of a contact from the circumference to the axis [-]."""
         return pocket_shape.tilt(self)

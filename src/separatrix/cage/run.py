@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator, Philox
@@ -13,89 +14,38 @@ from separatrix.cage.ending import (
     FED,
     FEWEST_LOOKS,
     HALF,
-    MEMORY,
     SETTLES,
     UNKNOWN,
     UNRESOLVED,
+    Limits,
+    Look,
+    Memory,
     end_by_trend,
     fed,
     high_end,
     mean_energy,
     plain_end,
 )
-from separatrix.cage.evidence import pocket_energy
-from separatrix.cage.motion import advance, kinetic, land_energy, make_room
+from separatrix.cage.evidence import pocket_energy, total_work
+from separatrix.cage.motion import advance, kinetic, land_energy
 from separatrix.cage.planar import Cause, RunOutcome
-from separatrix.cage.series import POWERS
-from separatrix.cage.slots import (
-    BALL_DRIVE,
-    BALL_WORK,
-    CAUSE,
+from separatrix.cage.records import (
     CLEAR,
-    CLOCK,
-    COSINE,
-    DIRECTION,
-    DRIFT_RATE,
-    DRIVE,
-    END_ENERGY,
-    FOLLOWED,
-    FORCE,
-    FORCE_MAX,
-    FRAME_WORK,
-    GRAVITY,
-    GRAVITY_WORK,
-    GROSS,
-    GROWTH_RATE,
-    IMBALANCE,
-    JUDGED,
-    KINETIC,
-    LAND_FORCE,
-    LAND_FRICTION,
-    LAND_HITS,
-    LAND_IMPACTS,
-    LAND_MAX,
-    LAND_WORK,
-    LARGEST_OFFSET,
-    LEAD,
-    LEDGER,
-    LIST,
-    MEAN_OFFSET,
-    MEAN_X,
-    MEAN_Y,
-    MOVING_FRAME,
-    OFFSET,
-    OFFSET_MAX,
-    OFFSET_SPREAD,
-    OFFSET_SQUARED,
-    ORBIT_SPEED,
-    OUTCOME,
-    PENETRATION,
-    PLAY,
-    POCKET_FRICTION,
-    POCKET_POWER,
-    POCKET_WORK,
-    PRESSED,
-    ROWS,
-    RUBBED,
-    RUBBING_FORCE,
-    RUBBING_SPEED,
-    SIDE,
-    SINE,
-    SPEED_SQUARED,
-    STATE,
-    SWEPT,
-    TALLY,
-    TURNING,
-    VX,
-    VY,
-    WHIRL,
-    WORKS,
-    X,
+    Balls,
+    Coefficients,
+    Evidence,
+    Ledger,
+    Room,
+    Samples,
+    Series,
+    State,
+    Whole,
+    records,
+    room_for,
+    series,
 )
-from separatrix.compiled import kernel
-
-if TYPE_CHECKING:
-    from separatrix.units import Array
+from separatrix.compiled import kernel, part
+from separatrix.units import Array
 
 DRIFTS = int(RunOutcome.DRIFTS)
 NONE, IMPACTS, NO_CONTACT, FALLING, NOT_FINITE, BY_LAND = (int(cause) for cause in Cause)
@@ -103,19 +53,52 @@ NOTHING_LEFT = 2.0**-104
 """Share of the kick's energy below which speeds are rounding: growth rates count no further."""
 
 
-@kernel
-def held_energy(p, pockets, touch, count):  # type: ignore[no-untyped-def]
+class Books(NamedTuple):
+    """What a chunk of runs keeps while it runs: a row a run, but for the looks and the room of a step."""
+
+    state: Sequence[State]
+    ledger: Sequence[Ledger]
+    memory: Sequence[Memory]
+    looks: Sequence[Look]  # as many as a run may have, and one more that stays zero
+    series: Series
+    room: Room
+
+
+def books_for(balls: int, lobes: int, runs: int, most: int) -> Books:
+    """Books of so many runs of at most so many looks each."""
+    return Books(
+        state=records(State, runs),
+        ledger=records(Ledger, runs),
+        memory=records(Memory, runs),
+        looks=records(Look, most + 1),
+        series=series(),
+        room=room_for(balls, lobes),
+    )
+
+
+@part
+def held_energy(p: Coefficients, balls: Balls, count: int) -> float:
     """Energy in the pockets' springs, over the mass."""
     held = 0.0
     for i in range(count):
-        held += pocket_energy(p, pockets[PENETRATION, touch[LIST, i]])
+        held += pocket_energy(p, balls.penetration[balls.touching[i]])
     return held
 
 
-@kernel
-def watch(  # type: ignore[no-untyped-def]
-    p, pockets, touch, s, w, mode, ledger, tally, hits, limits, rows, room
-):
+@part
+def watch(
+    p: Coefficients,
+    balls: Balls,
+    state: State,
+    ledger: Ledger,
+    memory: Memory,
+    looks: Sequence[Look],
+    w: Series,
+    hits: Whole,
+    limits: Limits,
+    samples: Samples,
+    room: Room,
+) -> tuple[int, int, int]:
     """Run, look by look, until the end of the motion is plain.
 
     Returns
@@ -123,54 +106,64 @@ def watch(  # type: ignore[no-untyped-def]
     tuple
         Outcome, the looks up to which it was judged, and the cause.
     """
-    memory, look = np.zeros(MEMORY), limits.beats * limits.beat
-    outcome, judged, touches, touched = UNKNOWN, 0, 0, mode[0] > 0
+    length = limits.beats * limits.beat
+    outcome, judged, touches, touched = UNKNOWN, 0, 0, state.touching > 0
     for i in range(limits.most):
-        tally[i] = 0.0
-        pocket, land = ledger[POCKET_FRICTION], ledger[LAND_FRICTION]
-        ball, gravity, frame = ledger[BALL_DRIVE], ledger[GRAVITY], ledger[MOVING_FRAME]
+        looks[i] = looks[limits.most]  # type: ignore[index]
+        look = looks[i]
+        pocket, land, ball = ledger.pocket_friction, ledger.land_friction, ledger.ball_drive
+        gravity, frame = ledger.gravity, ledger.moving_frame
         going, beat = True, 0
-        while going and beat < limits.beats and kinetic(p, s) < limits.grown:
-            going = advance(
-                p, pockets, touch, s, w, mode, ledger, tally[i], hits, limits.beat, limits.grown, rows, room
-            )
+        while going and beat < limits.beats and kinetic(p, state) < limits.grown:
+            going = advance(p, balls, state, w, ledger, look, hits, limits.beat, limits.grown, samples, room)
             beat += 1
-        tally[i, POCKET_WORK] = ledger[POCKET_FRICTION] - pocket
-        tally[i, LAND_WORK] = ledger[LAND_FRICTION] - land
-        tally[i, BALL_WORK], tally[i, GRAVITY_WORK] = ledger[BALL_DRIVE] - ball, ledger[GRAVITY] - gravity
+        look.pocket_work = ledger.pocket_friction - pocket
+        look.land_work = ledger.land_friction - land
+        look.ball_work, look.gravity_work = ledger.ball_drive - ball, ledger.gravity - gravity
         if limits.drifts and limits.drive == 0.0:
-            tally[i, FRAME_WORK] = ledger[MOVING_FRAME] - frame
-        energy = kinetic(p, s)
-        held = held_energy(p, pockets, touch, mode[0])
-        if not (going and np.isfinite(energy + tally[i, KINETIC])):
+            look.frame_work = ledger.moving_frame - frame
+        energy = kinetic(p, state)
+        held = held_energy(p, balls, state.touching)
+        if not (going and np.isfinite(energy + look.kinetic)):
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
-        hit = np.sum(hits)
-        met = mode[0] > 0 or hit > touches
+        hit = int(np.sum(hits))
+        met = bool(state.touching > 0 or hit > touches)
         touches = hit
-        touched = touched or met or tally[i, LAND_HITS] > 0.0
+        touched = touched or met or look.land_hits > 0.0
         if outcome == UNKNOWN:
             judged = i + 1
             if energy + held > limits.grown:
-                outcome = high_end(tally, judged)
+                outcome = high_end(looks, judged)
             elif touched and energy + held < limits.still:
                 outcome = SETTLES
-            elif touched and s[CLOCK] >= p.ramp_time:
-                outcome = plain_end(tally, i, look, met, limits, memory)
+            elif touched and state.clock >= p.ramp_time:
+                outcome = plain_end(looks, i, length, met, limits, memory)
             if outcome == UNKNOWN and judged == limits.most:
-                outcome = end_by_trend(tally, judged, look, limits)
+                outcome = end_by_trend(looks, judged, length, limits)
         if outcome != UNKNOWN and (i + 1 >= limits.least or energy + held > limits.grown):
             break
     if not touched:
         return UNRESOLVED, judged, NO_CONTACT
     if outcome == UNRESOLVED:
         return outcome, judged, FALLING
-    lively = outcome == SETTLES and mean_energy(tally, max(0, judged - FED), judged, look) > limits.drive
-    return outcome, judged, BY_LAND if lively and fed(tally, max(0, judged - FED), judged)[2] > HALF else NONE
+    first = max(0, judged - FED)
+    lively = outcome == SETTLES and mean_energy(looks, first, judged, length) > limits.drive
+    return outcome, judged, BY_LAND if lively and fed(looks, first, judged)[2] > HALF else NONE
 
 
-@kernel
-def drift_rate(tally, end, window):  # type: ignore[no-untyped-def]
+@part
+def offset_of(looks: Sequence[Look], first: int, last: int) -> float:
+    """Distance of the mean place in some looks from the axis, times their time."""
+    x = y = 0.0
+    for i in range(first, last):
+        x += looks[i].mean_x
+        y += looks[i].mean_y
+    return float(np.hypot(x, y))
+
+
+@part
+def drift_rate(looks: Sequence[Look], end: int, window: int) -> float:
     """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset.
 
     Between the halves of the window by which a short run was judged: before it the kick still had its effect.
@@ -178,118 +171,147 @@ def drift_rate(tally, end, window):  # type: ignore[no-untyped-def]
     n = max(end // FEWEST_LOOKS, min(end, window) // 2)
     if n == 0:
         return 0.0
-    last = np.hypot(np.sum(tally[end - n : end, MEAN_X]), np.sum(tally[end - n : end, MEAN_Y]))
-    before = np.hypot(
-        np.sum(tally[end - 2 * n : end - n, MEAN_X]), np.sum(tally[end - 2 * n : end - n, MEAN_Y])
-    )
-    return np.log(last / before) / n if last > 0.0 and before > 0.0 else 0.0
+    last, before = offset_of(looks, end - n, end), offset_of(looks, end - 2 * n, end - n)
+    return float(np.log(last / before) / n) if last > 0.0 and before > 0.0 else 0.0
 
 
-@kernel
-def growth(tally, end, look, start):  # type: ignore[no-untyped-def]
+@part
+def growth(looks: Sequence[Look], end: int, length: float, start: float) -> float:
     """Half the logarithmic rate of the mean energy from half way to the last fifth.
 
     From the kick's energy, `start`, in a run that ends within five looks.
     """
     n = max(1, end // FEWEST_LOOKS)
-    last = mean_energy(tally, end - n, end, look)
+    last = mean_energy(looks, end - n, end, length)
     if end < FEWEST_LOOKS:
         before, span = start, end - 0.5 * n
     else:
         first = end // 2 - n // 2
-        before, span = mean_energy(tally, first, first + n, look), end - n - first
+        before, span = mean_energy(looks, first, first + n, length), float(end - n - first)
     least = NOTHING_LEFT * start
-    return 0.5 * np.log(max(last, least) / max(before, least)) / (span * look)
+    return float(0.5 * np.log(max(last, least) / max(before, least)) / (span * length))
 
 
-@kernel
-def imbalance(p, pockets, touch, s, w, mode, ledger, start):  # type: ignore[no-untyped-def]
+@part
+def imbalance(
+    p: Coefficients, balls: Balls, state: State, w: Series, ledger: Ledger, start: float, room: Room
+) -> float:
     """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
-    held = held_energy(p, pockets, touch, mode[0])
-    if mode[1] != CLEAR:
-        held += land_energy(p, pockets, touch, s, w, mode[0])
-    unexplained = kinetic(p, s) + held - start - np.sum(ledger[:WORKS])
-    return abs(unexplained) / (ledger[GROSS] + start)
+    held = held_energy(p, balls, state.touching)
+    if state.land != CLEAR:
+        held += land_energy(p, balls, state, w, room)
+    unexplained = kinetic(p, state) + held - start - total_work(ledger)
+    return abs(unexplained) / (ledger.gross + start)
 
 
-@kernel
-def run_one(p, pockets, direction, kick, w, limits, tally, rows, out, hits):  # type: ignore[no-untyped-def]
+@part
+def run_one(
+    p: Coefficients,
+    balls: Balls,
+    direction: float,
+    kick: float,
+    books: Books,
+    run: int,
+    limits: Limits,
+    samples: Samples,
+    out: Evidence,
+    hits: Whole,
+) -> None:
     """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
 
-    `kick` is in units of the engine; `tally` is room for the looks.
+    `kick` is in units of the engine; the state and the ledger of this run in the `books` are zero.
     """
-    balls, look = pockets.shape[1], limits.beats * limits.beat
-    s, ledger = np.zeros(STATE), np.zeros(LEDGER)
-    touch, mode = np.zeros((2, balls), np.int64), np.zeros(3, np.int64)
+    state, ledger, looks, w = books.state[run], books.ledger[run], books.looks, books.series
+    length = limits.beats * limits.beat
+    balls.side[:], balls.touching[:] = 0, 0
     if p.gripped:
-        touch[SIDE] = 2
-        pockets[PENETRATION] = -pockets[LEAD]
-        touch[LIST] = np.arange(balls)
-        mode[0] = balls
-    s[X], s[VX], s[VY] = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
-    start = kinetic(p, s)
+        balls.side[:] = 2
+        balls.penetration[:] = -balls.lead
+        balls.touching[:] = np.arange(balls.play.size)
+        state.touching = balls.play.size
+    state.x, state.vx, state.vy = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
+    start = kinetic(p, state)
     outcome, end, cause = watch(
-        p, pockets, touch, s, w, mode, ledger, tally, hits, limits, rows, make_room(balls)
+        p, balls, state, ledger, books.memory[run], looks, w, hits, limits, samples, books.room
     )
-    out[LARGEST_OFFSET] = np.sqrt(np.max(tally[:end, OFFSET_MAX]))
-    if limits.drifts and outcome == SETTLES:
-        outcome = DRIFTS
-    out[OUTCOME], out[CAUSE] = outcome, cause
-    out[IMBALANCE] = imbalance(p, pockets, touch, s, w, mode, ledger, start)
-    out[ROWS] = mode[2]
+    farthest, force, land_force, land_hits = 0.0, 0.0, 0.0, 0.0
+    for i in range(end):
+        farthest, force = max(farthest, looks[i].offset_max), max(force, looks[i].force_max)
+        land_force = max(land_force, looks[i].land_max)
+        land_hits += looks[i].land_hits
+    out.outcome, out.cause = DRIFTS if limits.drifts and outcome == SETTLES else outcome, cause
+    out.energy_imbalance = imbalance(p, balls, state, w, ledger, start, books.room)
+    out.rows = state.rows
     if cause == NOT_FINITE:
-        out[LARGEST_OFFSET] = 0.0
         return
-    out[FOLLOWED] = end * look * p.unit
-    out[GROWTH_RATE] = growth(tally, end, look, start) / p.unit
-    out[DRIFT_RATE] = drift_rate(tally, end, limits.window) / (look * p.unit)
-    force = 1.0 / p.unit**2
-    out[FORCE] = np.max(tally[:end, FORCE_MAX]) * force
-    out[LAND_FORCE] = np.max(tally[:end, LAND_MAX]) * force
-    out[LAND_IMPACTS] = np.sum(tally[:end, LAND_HITS])
-    enter_end(p, tally, end, look, limits, out)
+    out.largest_offset, out.land_impacts = np.sqrt(farthest), int(land_hits)
+    out.followed = end * length * p.unit
+    out.growth_rate = growth(looks, end, length, start) / p.unit
+    out.drift_rate = drift_rate(looks, end, limits.window) / (length * p.unit)
+    unit_force = 1.0 / p.unit**2
+    out.largest_contact_force, out.largest_land_force = force * unit_force, land_force * unit_force
+    enter_end(p, looks, end, length, limits, out)
 
 
-@kernel
-def enter_end(p, tally, end, look, limits, out):  # type: ignore[no-untyped-def]
+@part
+def enter_end(
+    p: Coefficients, looks: Sequence[Look], end: int, length: float, limits: Limits, out: Evidence
+) -> None:
     """Write what the motion is in the looks by which it was judged: the last fifth, or the last window."""
     n = max(1, end // FEWEST_LOOKS, min(end, limits.window))
-    first, length = end - n, n * look
-    last = np.zeros(TALLY)
+    first, time = end - n, n * length
+    kinetic_, turning, squared, offset, offset_squared, swept = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    pocket, land, pressed, rubbed = 0.0, 0.0, 0.0, 0.0
     for i in range(first, end):
-        last += tally[i]
-    out[JUDGED] = first * look * p.unit
-    out[END_ENERGY] = last[KINETIC] / length / p.unit**2
-    whirl = last[TURNING] / last[SPEED_SQUARED] / p.unit if last[SPEED_SQUARED] > 0.0 else 0.0
-    out[WHIRL] = abs(whirl) / (2.0 * np.pi)
-    out[DIRECTION] = np.sign(whirl)
-    out[MEAN_OFFSET] = last[OFFSET] / length
-    out[OFFSET_SPREAD] = np.sqrt(max(0.0, last[OFFSET_SQUARED] / length - out[MEAN_OFFSET] ** 2))
-    orbit = last[SWEPT] / last[OFFSET_SQUARED] if last[OFFSET_SQUARED] > 0.0 else 0.0
-    out[ORBIT_SPEED] = (orbit + p.turning) / p.unit
-    for k in range(2):
-        out[POCKET_POWER + k] = last[POCKET_WORK + k] / length / p.unit**3
-    out[RUBBING_FORCE] = last[PRESSED] / length / p.unit**2
-    out[RUBBING_SPEED] = last[RUBBED] / last[PRESSED] / p.unit if last[PRESSED] > 0.0 else 0.0
+        look = looks[i]
+        kinetic_ += look.kinetic
+        turning += look.turning
+        squared += look.speed_squared
+        offset += look.offset
+        offset_squared += look.offset_squared
+        swept += look.swept
+        pocket += look.pocket_work
+        land += look.land_work
+        pressed += look.pressed
+        rubbed += look.rubbed
+    out.judged_from = first * length * p.unit
+    out.end_energy = kinetic_ / time / p.unit**2
+    whirl = turning / squared / p.unit if squared > 0.0 else 0.0
+    out.whirl_frequency = abs(whirl) / (2.0 * np.pi)
+    out.whirl_direction = int(np.sign(whirl))
+    out.mean_offset = offset / time
+    out.offset_spread = np.sqrt(max(0.0, offset_squared / time - out.mean_offset**2))
+    orbit = swept / offset_squared if offset_squared > 0.0 else 0.0
+    out.orbit_speed = (orbit + p.turning) / p.unit
+    out.pocket_power, out.land_power = pocket / time / p.unit**3, land / time / p.unit**3
+    out.rubbing_force = pressed / time / p.unit**2
+    out.rubbing_speed = rubbed / pressed / p.unit if pressed > 0.0 else 0.0
 
 
 @kernel
-def run_chunk(p, drive, starts, kick, w, limits, rows, out, hits):  # type: ignore[no-untyped-def]
+def run_chunk(
+    p: Coefficients,
+    balls: Balls,
+    starts: Array,
+    kick: float,
+    books: Books,
+    limits: Limits,
+    samples: Samples,
+    out: Sequence[Evidence],
+    hits: Whole,
+) -> None:
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
     [m], its half play [m] and its angle [rad].
     """
-    balls = hits.shape[1]
-    pockets = np.zeros((DRIVE + drive.shape[0], balls))
-    pockets[DRIVE:] = drive
-    tally = np.zeros((limits.most, TALLY))
+    count = hits.shape[1]
     for i in range(starts.shape[0]):
         start = starts[i]
-        angle = start[1 + 2 * balls :]
-        pockets[COSINE], pockets[SINE], pockets[PENETRATION] = np.cos(angle), np.sin(angle), 0.0
-        pockets[LEAD], pockets[PLAY] = start[1 : 1 + balls], start[1 + balls : 1 + 2 * balls]
-        run_one(p, pockets, start[0], kick, w, limits, tally, rows, out[i], hits[i])
+        angle = start[1 + 2 * count :]
+        balls.cosine[:], balls.sine[:], balls.penetration[:] = np.cos(angle), np.sin(angle), 0.0
+        balls.lead[:], balls.play[:] = start[1 : 1 + count], start[1 + count : 1 + 2 * count]
+        run_one(p, balls, start[0], kick, books, i, limits, samples, out[i], hits[i])
 
 
 @lru_cache(maxsize=512)
@@ -319,8 +341,3 @@ def _cut_normal(stream: Generator, count: int) -> Array:
     while (far := np.abs(drawn) > 3.0).any():
         drawn[far] = stream.standard_normal(int(far.sum()))
     return drawn
-
-
-def series_of(columns: int) -> Array:
-    """Room for the series of a step."""
-    return np.zeros((POWERS, columns))

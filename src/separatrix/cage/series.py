@@ -1,28 +1,26 @@
-"""Power series in time, as columns of coefficients: products, values, and when one first falls to zero."""
+"""Power series in time: products, values, and when one first falls to zero.
+
+A series is the array of its coefficients, shape (power,); a step lasts from 0 to 1.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.slots import ES, EX, EY, KEPT, VX, VY, S, W, X, Y
+from separatrix.cage.records import ORDER, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
-
-ORDER = 14
-"""Terms of a series beyond the first; the step is so long that the last ones are small beside the speeds."""
-
-POWERS = ORDER + 3
-"""Rows of a series: the first, its terms, and two that a mode in between needs."""
+from separatrix.units import Array
 
 NEVER = 2.0
-"""Time of what does not happen within a step; a step lasts from 0 to 1."""
+"""Time of what does not happen within a step."""
 
 ROUNDING = 4.0 * 2.0**-52
 MOST_MARCHES = 500
 NEAR = 1e-8
-"""Last step of Newton's in units of a step in time: what is left is of its square."""
+"""Last step of Newton's method, in steps: the error left is of its square."""
 
 LAST_TURN = 1e-2
-"""Last step towards a peak in units of a step in time: what is left of its height is of the cube."""
+"""Last step towards a peak, in steps: the error of its height is of the cube."""
 
 MOST_ZEROS = 3
 
@@ -35,70 +33,73 @@ _POWER = np.arange(ORDER + 1.0)
 _FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
 HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER
 EARLY, LATE = _FOURTH * 0.5**_POWER, _FOURTH * 0.5**4
-KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 8, 5, 6, 7
-"""Rows of what is known of columns: five of their knots (`knots`), bounds of the fourth derivative in each
-half of the step, and the value at an event."""
+
+Knots = tuple[float, float, float, float, float, float]
+"""Value and slope of a series at the start, in the middle and at the end of a step.
+
+Slopes are times half the step.
+"""
+
+Motion = tuple[float, float, float, float, float, float]
+"""Centre of mass (x, y), its velocity, slip of rotation and its rate."""
 
 
 @inner_kernel
-def product(w, a, b, n):  # type: ignore[no-untyped-def]
-    """Coefficient n of the product of columns a and b."""
+def product(a: Array, b: Array, n: int) -> float:
+    r"""Coefficient n of the product of two series."""
+    # (a b)_n = sum_i a_i b_(n-i)
     total = 0.0
     for i in range(n + 1):
-        total += w[i, a] * w[n - i, b]
+        total += a[i] * b[n - i]
     return total
 
 
 @inlined_kernel
-def value(w, column, t):  # type: ignore[no-untyped-def]
-    """Value of a column at a time."""
-    total = w[ORDER, column]
+def value(c: Array, t: float) -> float:
+    """Value of a series at a time."""
+    total: float = c[ORDER]
     for n in range(ORDER - 1, -1, -1):
-        total = total * t + w[n, column]
+        total = total * t + c[n]
     return total
 
 
 @inner_kernel
-def slope(w, column, t):  # type: ignore[no-untyped-def]
-    """Derivative of a column at a time."""
-    total = ORDER * w[ORDER, column]
+def slope(c: Array, t: float) -> float:
+    """Derivative of a series at a time."""
+    total: float = ORDER * c[ORDER]
     for n in range(ORDER - 1, 0, -1):
-        total = total * t + n * w[n, column]
+        total = total * t + n * c[n]
     return total
 
 
 @inlined_kernel
-def motion_at(w, t):  # type: ignore[no-untyped-def]
-    """Centre of mass and its velocity, rotation slip and its rate at a time."""
-    x = y = vx = vy = s = spin = 0.0
-    for n in range(ORDER, -1, -1):
-        x, y, vx = x * t + w[n, X], y * t + w[n, Y], vx * t + w[n, VX]
-        vy, s, spin = vy * t + w[n, VY], s * t + w[n, S], spin * t + w[n, W]
-    return x, y, vx, vy, s, spin
+def centre(p: Coefficients, w: Series) -> tuple[Array, Array]:
+    """Series of the geometric centre."""
+    return (w.gx, w.gy) if p.eccentricity != 0.0 else (w.x, w.y)
 
 
 @inlined_kernel
-def grip_at(w, t):  # type: ignore[no-untyped-def]
-    """What linear pockets in touch follow, at a time: see `expand`."""
+def motion_at(w: Series, t: float) -> Motion:
+    """Motion of the cage at a time."""
+    x = y = vx = vy = s = vs = 0.0
+    for n in range(ORDER, -1, -1):
+        x, y, vx = x * t + w[n].x, y * t + w[n].y, vx * t + w[n].vx
+        vy, s, vs = vy * t + w[n].vy, s * t + w[n].s, vs * t + w[n].vs
+    return x, y, vx, vy, s, vs
+
+
+@inlined_kernel
+def grip_at(w: Series, t: float) -> tuple[float, float, float, float]:
+    """What linear pockets in touch follow, at a time: E_x, E_y, E_s and e, see `expand`."""
     ex = ey = es = kept = 0.0
     for n in range(ORDER, -1, -1):
-        ex, ey = ex * t + w[n, EX], ey * t + w[n, EY]
-        es, kept = es * t + w[n, ES], kept * t + w[n, KEPT]
+        ex, ey = ex * t + w[n].ex, ey * t + w[n].ey
+        es, kept = es * t + w[n].es, kept * t + w[n].kept
     return ex, ey, es, kept
 
 
 @inlined_kernel
-def stretch(w, first, last, factor):  # type: ignore[no-untyped-def]
-    """Change the unit of time of some columns: one new unit is `factor` old ones."""
-    power = factor
-    for n in range(1, ORDER + 1):
-        for k in range(first, last):
-            w[n, k] *= power
-        power *= factor
-
-
-@inlined_kernel
-def tail_at(c, first, t):  # type: ignore[no-untyped-def]
+def tail_at(c: Array, first: int, t: float) -> tuple[float, float]:
     r"""Value and slope at a time of :math:`\sum_m c_{first + m} t^m`; even and odd powers side by side."""
     m = ORDER - first
     square = t * t
@@ -116,7 +117,7 @@ def tail_at(c, first, t):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
+def first_zero(c: Array, start: float, sign: float, end: float, noise: float) -> float:
     r"""First time up to `end` at which :math:`g = start + sign \sum_{n \ge 1} c_n t^n` has fallen to zero.
 
     From any time, :math:`g` lies above the parabola with its value, its slope and minus a bound of its
@@ -179,24 +180,36 @@ def first_zero(c, start, sign, end, noise):  # type: ignore[no-untyped-def]
 
 
 @inlined_kernel
-def knots(w, first, last, knot):  # type: ignore[no-untyped-def]
-    """Slope of columns at the start; value and slope in the middle; both at the end: into their columns.
-
-    The slopes are times half the step.
-    """
-    for k in range(first, last):
-        middle = end = w[0, k]
-        middle_slope = end_slope = 0.0
-        for n in range(1, ORDER + 1):
-            c = w[n, k]
-            middle, end = middle + HALVES[n] * c, end + c
-            middle_slope, end_slope = middle_slope + HALF_SLOPES[n] * c, end_slope + 0.5 * n * c
-        knot[0, k], knot[1, k], knot[2, k] = 0.5 * w[1, k], middle, middle_slope
-        knot[3, k], knot[4, k] = end, end_slope
+def knots(c: Array) -> Knots:
+    """Knots of a series."""
+    middle = last = c[0]
+    turn = fall = 0.0
+    for n in range(1, ORDER + 1):
+        middle, last = middle + HALVES[n] * c[n], last + c[n]
+        turn, fall = turn + HALF_SLOPES[n] * c[n], fall + 0.5 * n * c[n]
+    return c[0], 0.5 * c[1], middle, turn, last, fall
 
 
 @inlined_kernel
-def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore[no-untyped-def]
+def fourths(a: Array, b: Array, c: Array, kept: Array, most: float) -> tuple[float, float]:
+    """Bound, in each half of the step, of the fourth derivative of what any pocket makes of three series.
+
+    With `most` times what is kept of a penetration.
+    """
+    early = late = 0.0
+    for n in range(4, ORDER + 1):
+        size = abs(a[n]) + abs(b[n]) + abs(c[n])
+        if most > 0.0:
+            size += most * abs(kept[n])
+        early += EARLY[n] * size
+        late += LATE[n] * size
+    return early, late
+
+
+@inlined_kernel
+def falling(
+    start: float, start_slope: float, last: float, last_slope: float, fourth: float, tiny: float
+) -> int:
     """What a function does between two knots, from its values and its slopes times their distance there.
 
     Values up to `tiny` are no more than rounding.
@@ -220,13 +233,13 @@ def falling(start, start_slope, last, last_slope, fourth, tiny):  # type: ignore
 
 
 @inlined_kernel
-def top(start, start_slope, last, last_slope, fourth):  # type: ignore[no-untyped-def]
+def top(start: float, start_slope: float, last: float, last_slope: float, fourth: float) -> float:
     """Bound from above of a function between two knots, as in `falling`."""
     return max(start, last, start + THIRD * start_slope, last - THIRD * last_slope) + fourth * (1.0 / 384.0)
 
 
 @inlined_kernel
-def cubic_zero(start, start_slope, last, last_slope):  # type: ignore[no-untyped-def]
+def cubic_zero(start: float, start_slope: float, last: float, last_slope: float) -> float:
     """Share of the way between two knots at which the cubic through them last is about zero.
 
     A function that rises first may begin within rounding of zero: its zero is looked for from behind.
@@ -242,9 +255,9 @@ def cubic_zero(start, start_slope, last, last_slope):  # type: ignore[no-untyped
 
 
 @inlined_kernel
-def earliest_zero(c, knots, sign, early, late, end, noise):  # type: ignore[no-untyped-def]
+def earliest_zero(c: Array, at: Knots, sign: float, early: int, late: int, end: float, noise: float) -> float:
     """First zero as by `first_zero`, where it is known what each half of the step does, and the knots."""
-    start, rise, middle, turn, last, fall = knots
+    start, rise, middle, turn, last, fall = at
     if early == FALLS:
         guess = 0.5 * cubic_zero(start, rise, middle, turn)
         return single_zero(c, start, sign, 0.0, min(0.5, end), guess, noise)
@@ -261,7 +274,9 @@ def earliest_zero(c, knots, sign, early, late, end, noise):  # type: ignore[no-u
 
 
 @inner_kernel
-def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-untyped-def]
+def single_zero(
+    c: Array, start: float, sign: float, low: float, high: float, guess: float, noise: float
+) -> float:
     r"""Zero of :math:`start + sign \sum_{n \ge 1} c_n t^n` up to `high`, if its only one is before."""
     tiny = ROUNDING * (abs(start) + noise)
     for n in range(1, ORDER + 1):
@@ -293,14 +308,14 @@ def single_zero(c, start, sign, low, high, guess, noise):  # type: ignore[no-unt
 
 
 @inner_kernel
-def copy_column(w, column, c):  # type: ignore[no-untyped-def]
-    """Copy a column into one series."""
+def copy_column(column: Array, c: Array) -> None:
+    """Copy a column of `Series` into a series of its own."""
     for n in range(ORDER + 1):
-        c[n] = w[n, column]
+        c[n] = column[n]
 
 
 @inner_kernel
-def peak(c, sign, end):  # type: ignore[no-untyped-def]
+def peak(c: Array, sign: float, end: float) -> float:
     """Largest value of a series times `sign` up to a time: at its ends, or where it turns once between.
 
     Where it turns is found by Newton's steps, the last of which is followed by its parabola.
@@ -309,7 +324,7 @@ def peak(c, sign, end):  # type: ignore[no-untyped-def]
     for n in range(ORDER - 1, -1, -1):
         last_slope = last_slope * end + last
         last = last * end + c[n]
-    largest = max(sign * c[0], sign * last)
+    largest: float = max(sign * c[0], sign * last)
     if sign * c[1] <= 0.0 or sign * last_slope >= 0.0:
         return largest
     low, high, step = 0.0, end, 0.0
@@ -331,4 +346,4 @@ def peak(c, sign, end):  # type: ignore[no-untyped-def]
         if abs(step) < LAST_TURN:
             break
         t += step
-    return max(largest, sign * (g + 0.5 * d * step))
+    return max(largest, float(sign * (g + 0.5 * d * step)))

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+from scipy.special import stdtrit
 
 from separatrix.cage import reason
-from separatrix.cage.drive import drift_rate_law, drifts, drive_energy
-from separatrix.cage.interval import mean_half_width, wilson_interval
-from separatrix.cage.orbit import CageMotion, cage_motion, largest_room, left_pockets
+from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
+from separatrix.cage.reason import CageMotion, cage_motion, largest_room, left_pockets
 from separatrix.units import (
     Array,
     Hertz,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 CLEAR = 0.9
 FEW = 0.5
+NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -257,6 +259,25 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         longest_run=float(ensemble.followed.max()),
         runs=ensemble.outcome.shape[1],
     )
+
+
+def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
+    """Wilson's interval of a share, 95 % or that of another normal quantile [-]; 0 to 1 without a trial."""
+    if count == 0:
+        return 0.0, 1.0
+    p, z2 = successes / count, normal**2
+    middle = (p + z2 / (2 * count)) / (1 + z2 / count)
+    half = normal / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
+    low, high = max(0.0, middle - half), min(1.0, middle + half)
+    return min(low, p), max(high, p)  # rounding would leave none and all just outside
+
+
+def mean_half_width(values: Array) -> float | None:
+    """Half the width of Student's 95 % interval of the mean; None where fewer than two values tell none."""
+    count = values.size
+    if count < 2:
+        return None
+    return float(stdtrit(count - 1, 0.975) * np.std(values, ddof=1) / math.sqrt(count))
 
 
 def _growth(rates: Array) -> tuple[float, float | None, float | None]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.equilibrium.free import LEAST_SHARE
+from separatrix.chain.equilibrium.balance import LEAST_SHARE
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.study import BallBearing, KinematicModel, Race
 from separatrix.units import Pascal, Radian, Ratio, format_quantity

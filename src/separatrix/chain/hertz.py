@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import cast
 
-from separatrix.compiled import kernel
+import numpy as np
+
+from separatrix.compiled import kernel, part
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Material, Race
-from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
+from separatrix.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactEllipse:
-    """One Hertz contact: `semi_major` lies across the groove, `semi_minor` along rolling (paper, 4.1)."""
+    """One Hertz contact: `semi_major` lies across the groove, `semi_minor` along rolling (paper, 4.1).
+
+    Of `contact_ellipse` on arrays every field is an array of their shape.
+    """
 
     load: Newton
     semi_major: Metre
@@ -27,6 +33,9 @@ class ContactEllipse:
     @property
     def stiffness(self) -> NewtonPerMetre:
         """Slope of load against approach, 3 Q / (2 approach); 0 without load."""
+        if isinstance(self.load, np.ndarray):
+            loaded = self.load > 0.0
+            return np.where(loaded, 1.5 * self.load / np.where(loaded, self.approach, 1.0), 0.0)
         return 1.5 * self.load / self.approach if self.load > 0.0 else 0.0
 
 
@@ -63,18 +72,21 @@ def race_curvatures(bearing: BallBearing, race: Race, contact_angle: Radian) -> 
 
 
 def contact_ellipse(
-    load: Newton, curvature_rolling: PerMetre, curvature_transverse: PerMetre, contact_modulus: Pascal
+    load: Newton | Array,
+    curvature_rolling: PerMetre | Array,
+    curvature_transverse: PerMetre | Array,
+    contact_modulus: Pascal | Array,
 ) -> ContactEllipse:
     r"""Hertz contact of a load and the gap curvatures of two bodies.
 
     Parameters
     ----------
-    load : float
+    load : float or array
         Normal load, >= 0 [N]; 0 gives an ellipse of no size.
-    curvature_rolling, curvature_transverse : float
+    curvature_rolling, curvature_transverse : float or array
         Gap curvatures 1/R_x and 1/R_y, the first not below the second, both > 0 [1/m].
-    contact_modulus : float
-        E* of the pair [Pa].
+    contact_modulus : float or array
+        E* of the pair [Pa]. Arrays of different shapes are broadcast.
 
     Returns
     -------
@@ -97,7 +109,22 @@ def contact_ellipse(
     >>> ellipse = contact_ellipse(100.0, 200.0, 200.0, 110e9)
     >>> ellipse.semi_major == ellipse.semi_minor
     True
+    >>> contact_ellipse(np.array([100.0, 800.0]), 400.0, 200.0, 110e9).semi_major.round(6)
+    array([0.000103, 0.000206])
     """
+    given = np.broadcast(load, curvature_rolling, curvature_transverse, contact_modulus)
+    each = [_ellipse(*map(float, numbers)) for numbers in given]
+    if given.ndim == 0:
+        return each[0]
+    names = [field.name for field in fields(ContactEllipse)]
+    columns = {name: np.reshape([getattr(ellipse, name) for ellipse in each], given.shape) for name in names}
+    return ContactEllipse(**cast("dict[str, float]", columns))
+
+
+def _ellipse(
+    load: Newton, curvature_rolling: PerMetre, curvature_transverse: PerMetre, contact_modulus: Pascal
+) -> ContactEllipse:
+    """One contact."""
     _check(load, curvature_rolling, curvature_transverse, contact_modulus)
     k, K, D = ellipse_shape(curvature_rolling / curvature_transverse, 0.0)
     a = math.cbrt(3.0 * load * D / (math.pi * contact_modulus * curvature_transverse))
@@ -138,7 +165,7 @@ def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pasca
         )
 
 
-@kernel
+@part
 def elliptic_integrals(k: float) -> tuple[float, float, float]:
     """K(m), (K - E)/m and (E - k^2 K)/m for m = 1 - k^2 from k in (0, 1]: AGM, without cancellation."""
     # K = pi/(2 agm); K - E = K S, S = sum 2^(n-1) c_n^2, c_0^2 = m; terms are divided by m = (1-k)(1+k).
@@ -178,7 +205,7 @@ def ellipse_shape(ratio: float, guess: float) -> tuple[float, float, float]:
     return k, K, D
 
 
-@kernel
+@part
 def approach_coefficient(
     curvature_rolling: float, curvature_transverse: float, modulus: float, guess: float
 ) -> tuple[float, float, float]:

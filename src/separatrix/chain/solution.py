@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 from separatrix.cage import PlanarCage
-from separatrix.cage.kicks import REFERENCE, pocket_speed, with_kicks
+from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
 from separatrix.chain.contacts import (
     BearingState,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from separatrix.cage import PlanarCage, settings_for
-from separatrix.cage.drive import drift_rate_law, drifts
+from separatrix.cage.closed_forms import drift_rate_law, drifts
 from separatrix.limits.growth import GrowthCounter
 from separatrix.limits.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
 from separatrix.limits.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction

@@ -20,7 +20,7 @@ from separatrix.answers import (
     TractionAnswer,
 )
 from separatrix.cage import History, Judgement
-from separatrix.cage.drive import drift_rate_law
+from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
 from separatrix.chain.contacts import BearingState, RaceContact

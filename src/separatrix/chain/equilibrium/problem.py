@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from separatrix.chain.hertz import contact_modulus
-from separatrix.compiled import kernel
+from separatrix.compiled import part
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Operation
 from separatrix.units import Array
@@ -51,7 +51,7 @@ class Work(NamedTuple):
     push_by: Array
 
 
-@kernel
+@part
 def work(n: int) -> Work:
     """Empty room for a ball of n unknowns."""
     return Work(np.zeros((n, n + 2)), np.zeros(5), np.zeros((5, n + 2)))
@@ -90,7 +90,7 @@ def problem(bearing: BallBearing, operation: Operation, inner_share: float, fric
     return Problem(*(float(number) for number in numbers))  # an int would compile every kernel anew
 
 
-@kernel
+@part
 def solve_linear(matrix: Array, right: Array) -> bool:
     """Solve in place by Gauss with row exchange; `right`, shape (n, columns), becomes the answer.
 

@@ -1,4 +1,4 @@
-"""What the equilibrium returns."""
+"""What the equilibrium returns, and the Hertz contacts of a solved bearing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.study import KinematicModel, Race
+from separatrix.chain.hertz import ContactEllipse, contact_ellipse, contact_modulus, race_curvatures
+from separatrix.study import BallBearing, KinematicModel, Race
 from separatrix.units import Array, Metre, Newton, NewtonMetre, Radian
 
 
@@ -74,3 +75,13 @@ class Equilibrium:
         """Number of the ball with the largest inner load, the outer load deciding where none touches."""
         largest = self.load_inner if self.load_inner.any() else self.load_outer
         return int(np.argmax(np.round(largest / largest.max(), 9)))
+
+
+def contact(result: Equilibrium, bearing: BallBearing, race: Race, ball: int) -> ContactEllipse:
+    """Ellipse of one ball on one race, curvatures at its operating angle; no size where it is unloaded."""
+    inner = race is Race.INNER
+    load = (result.load_inner if inner else result.load_outer)[ball]
+    angle = (result.contact_angle_inner if inner else result.contact_angle_outer)[ball]
+    rolling, transverse = race_curvatures(bearing, race, float(angle))
+    modulus = contact_modulus(bearing.ball_material, bearing.ring_material)
+    return contact_ellipse(float(load), rolling, transverse, modulus)

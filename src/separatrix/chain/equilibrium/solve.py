@@ -7,13 +7,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from separatrix.chain.equilibrium.groove import static_split
+from separatrix.chain.equilibrium.balance import STEEPEST, inertia_loads
+from separatrix.chain.equilibrium.groove import chebyshev_nodes, static_split
 from separatrix.chain.equilibrium.problem import Method, Problem, problem
-from separatrix.chain.equilibrium.race_control import STEEPEST, inertia_loads
 from separatrix.chain.equilibrium.record import Equilibrium
-from separatrix.chain.equilibrium.ring import FREE, STATIC, Balls, ring_balance, solve_ring
-from separatrix.chain.equilibrium.slip import chebyshev_nodes
-from separatrix.chain.equilibrium.speeds import ball_table, controlled_states, settle_free_states
+from separatrix.chain.equilibrium.ring import (
+    FREE,
+    STATIC,
+    Balls,
+    ball_table,
+    controlled_states,
+    ring_balance,
+    settle_free_states,
+    solve_ring,
+)
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import BallBearing, KinematicModel, Operation, Race
 from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio

@@ -1,7 +1,12 @@
 """Traction of a rolling ball/race contact: strips with film and friction; curve and slope at the origin."""
 
-from separatrix.chain.traction.curve import TractionCurve, film_compliance, traction_curve, traction_slope
-from separatrix.chain.traction.dissimilar import dundurs_coupling
+from separatrix.chain.traction.curve import (
+    TractionCurve,
+    dundurs_coupling,
+    film_compliance,
+    traction_curve,
+    traction_slope,
+)
 from separatrix.chain.traction.layer import BondedLayer, bonded_layer
 from separatrix.chain.traction.shear import ShearField, direct_traction, shear_field
 from separatrix.chain.traction.strip import StripSolution, solve_strip

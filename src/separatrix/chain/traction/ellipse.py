@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from separatrix.chain.traction.master import master_traction
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
@@ -22,14 +22,14 @@ LEVELS = np.array([0.0, 0.6, 1.5, 4.0, 16.0, 100.0])
 Table = tuple[Array, Array, tuple[float, float, float, float, float]]
 
 
-@kernel
+@part
 def creep_at(theta: float, d: float, sigma: float, eta: float) -> float:
     """Creep X = d + sigma y + eta y^2 at y = sin(theta) [-]."""
     y = math.sin(theta)
     return d + (sigma + eta * y) * y
 
 
-@kernel
+@part
 def _roots(d: float, sigma: float, eta: float) -> tuple[float, float]:
     """Places y where d + sigma y + eta y^2 = 0; 2 where there is none."""
     if eta == 0.0:
@@ -60,7 +60,7 @@ def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) 
     return _split(_with_saturation(ordered, d, sigma, eta), splits)
 
 
-@kernel
+@part
 def _with_saturation(edges: Array, d: float, sigma: float, eta: float) -> Array:
     """Edges, and between them the places where a bare strip starts to slip throughout: |X| = cos(theta)."""
     refined = np.empty(2 * edges.size)
@@ -82,7 +82,7 @@ def _with_saturation(edges: Array, d: float, sigma: float, eta: float) -> Array:
     return refined[:count]
 
 
-@kernel
+@part
 def _split(edges: Array, splits: int) -> Array:
     """Edges with every panel cut into `splits` equal parts."""
     fine = np.empty((edges.size - 1) * splits + 1)
@@ -139,7 +139,7 @@ def resultant(
     return min(max(force, -1.0), 1.0), slope  # the shares of the strips sum to 1 but for 1e-9
 
 
-@kernel
+@part
 def highest(sigma: float, eta: float) -> float:
     """Largest value of sigma y + eta y^2 on the ellipse, |y| <= 1 [-]."""
     return -0.25 * sigma * sigma / eta if abs(sigma) < -2.0 * eta else abs(sigma) + eta

@@ -15,9 +15,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import expm
 
-from separatrix.chain.traction.influence import log_kernel
 from separatrix.chain.traction.master import MasterTable, master_tables
-from separatrix.compiled import kernel
+from separatrix.chain.traction.strip import log_kernel
+from separatrix.compiled import kernel, part
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Film, Material
 from separatrix.units import Array, Metre, Pascal, Ratio
@@ -144,7 +144,7 @@ def _monomials() -> Array:
     return rows
 
 
-@kernel
+@part
 def _smooth_kernel(x: float, half_width: float, depth: float) -> float:
     """As `log_kernel`, for exp(-k depth)/k: -(1/pi) ln(x^2 + depth^2) integrated over the element."""
     displacement = 0.0

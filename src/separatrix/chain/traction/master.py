@@ -15,8 +15,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from separatrix.chain.traction.influence import node_pressure, strip_influence, toeplitz_product
-from separatrix.compiled import kernel
+from separatrix.chain.traction.strip import node_pressure, strip_influence, toeplitz_product
+from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
 LAM_MIN, LAM_MAX, LAM_COUNT = 1e-3, 300.0, 56
@@ -83,7 +83,7 @@ def nested_sticks(t: Array, p: Array) -> tuple[Array, Array, Array]:
     return c, F, S
 
 
-@kernel
+@part
 def _grow(f: Array, b: Array, m: int, ef: float, eb: float, diagonal: float) -> float:
     """Levinson's step of forward and backward vectors from m to m + 1 elements, in place; the sum of b."""
     if m == 0:
@@ -200,7 +200,7 @@ def film_axis() -> tuple[tuple[float, float, float, float, float], Array]:
     return (LAM_MIN, LAM_MAX, first, (last - first) / (LAM_COUNT - 1), math.pi / 4.0), lams
 
 
-@kernel
+@part
 def film_place(lam: float, axis: tuple[float, float, float, float, float], count: int) -> tuple[int, float]:
     """First of the four table rows around lam, and the place of lam in row steps from it."""
     lam_min, lam_max, first, step, _ = axis

@@ -9,11 +9,10 @@ import numpy as np
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction.curve import ScaledContact, scaled_contact
 from separatrix.chain.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, strip_places
-from separatrix.chain.traction.influence import strip_influence
 from separatrix.chain.traction.layer import BondedLayer, strip_layer
-from separatrix.chain.traction.scaled import ScaledContact, scaled_contact
-from separatrix.chain.traction.strip import StripSolution, solve_strip, stick_solution
+from separatrix.chain.traction.strip import StripSolution, solve_strip, stick_solution, strip_influence
 from separatrix.units import Array, Ratio
 
 

@@ -1,24 +1,83 @@
-"""One strip solved directly: Coulomb's law by an active set of sticking and slipping elements (paper, 4.3.3).
+r"""One strip: influence of its traction elements, and Coulomb's law solved directly (paper, 4.3.3, Eqs 7-11).
 
-The paper cuts the traction without slip at the bound; that alone is not Carter's solution. Here the stick
-zone is solved anew after every change, and an element slips only while its slip opposes its traction.
+Half-plane with a film in series. Units of the strip: x in half lengths b, traction in mu p0, displacement in
+mu p0 b/E*. Nodes run from the leading edge x = +1, where particles enter, to x = -1. In stick
+
+    sum_j [A(x_i - x_j) - A(x_i + dx - x_j)] Q_j + lam (Q_i - Q_(i-1)) = 2 c dx,   Q_(-1) = 0,
+
+c = xi/xi_s being the creep over the strip's saturation creep 2 mu p0/E* and lam = L E*/b the film's
+compliance.
+
+The paper cuts the traction without slip at the bound; that alone is not Carter's solution. Here an active set
+of sticking and slipping elements is used: the stick zone is solved anew after every change, and an element
+slips only while its slip opposes its traction.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.chain.traction.influence import (
-    node_positions,
-    node_pressure,
-    strip_influence,
-    toeplitz_product,
-)
-from separatrix.compiled import kernel
+from separatrix.compiled import kernel, part
 from separatrix.errors import ConvergenceError
 from separatrix.units import Array, Ratio
+
+
+@part
+def log_kernel(x: float, half_width: float) -> float:
+    """Surface displacement at x of a uniform unit traction on |x| < half_width, without its constant."""
+    displacement = 0.0
+    for edge, sign in ((x + half_width, 1.0), (x - half_width, -1.0)):
+        if edge != 0.0:
+            displacement -= sign * edge * math.log(abs(edge))
+    return 2.0 / math.pi * displacement
+
+
+@kernel
+def strip_influence(nodes: int, lam: float) -> Array:
+    """Toeplitz coefficients t[i - j + nodes - 1] of the stick equations, shape (2 nodes - 1,) [-]."""
+    dx = 2.0 / nodes
+    t = np.zeros(2 * nodes - 1)
+    for k in range(1 - nodes, nodes):
+        t[k + nodes - 1] = log_kernel(-k * dx, 0.5 * dx) - log_kernel((1 - k) * dx, 0.5 * dx)
+    t[nodes - 1] += lam
+    if nodes > 1:
+        t[nodes] -= lam
+    return t
+
+
+@kernel
+def node_pressure(nodes: int) -> Array:
+    """Element averages of the Hertz pressure sqrt(1 - x^2) from the leading edge on, shape (node,) [-]."""
+    averages = np.zeros(nodes)
+    upper = math.pi / 4.0
+    for i in range(nodes):
+        x = 1.0 - 2.0 * (i + 1) / nodes
+        lower = 0.5 * (x * math.sqrt(max(1.0 - x * x, 0.0)) + math.asin(x))
+        averages[i] = (upper - lower) * nodes / 2.0
+        upper = lower
+    return averages
+
+
+def node_positions(nodes: int) -> Array:
+    """Centres of the elements from the leading edge x = +1 to -1, shape (node,) [-]."""
+    return 1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes
+
+
+@part
+def toeplitz_product(t: Array, q: Array) -> Array:
+    """Product of the Toeplitz matrix with tractions q, shape (node,) [-]."""
+    nodes = q.size
+    product = np.zeros(nodes)
+    for i in range(nodes):
+        total = 0.0
+        for j in range(nodes):
+            total += t[i - j + nodes - 1] * q[j]
+        product[i] = total
+    return product
+
 
 BLOCK_SWEEPS = 60
 LEAST_INDEX_SWEEPS = 20
@@ -143,7 +202,7 @@ def active_set(t: Array, bound: Array, strain: Array) -> tuple[Array, Array, int
     return q, slip, -limit
 
 
-@kernel
+@part
 def wanted_slip(t: Array, q: Array, strain: Array, bound: Array, slip: Array) -> Array:
     """Slip sign that Coulomb wants: within the bound in stick, along the traction in slip; shape (node,)."""
     rest = strain - toeplitz_product(t, q)

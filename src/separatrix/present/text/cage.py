@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from separatrix.cage import CageMotion
-from separatrix.cage.drive import drift_rate_law
+from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.present.shapes import outcome_sentence
 from separatrix.present.text.chain import basis

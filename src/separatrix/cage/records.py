@@ -1,0 +1,388 @@
+"""What the kernels work on: numbers of one cage, state and series of a step, and what a run leaves behind.
+
+A kernel reads and writes fields by name. A record is one row of a structured array: kernels take its address.
+Lengths are in metres, times in the engine's unit (`time_unit`), forces over the mass, so that a force and an
+acceleration have the unit of a length. Symbols are those of docs/theory/cage.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, cast, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.cage.closed_forms import fastest_rate, rebound_damping, time_unit
+from separatrix.study import Guidance
+from separatrix.units import Array, MetrePerSecond
+
+if TYPE_CHECKING:
+    from separatrix.cage.planar import PlanarCage
+
+ORDER = 14
+"""Terms of a series beyond the first; the step is so short that the last ones are small beside the speeds."""
+
+POWERS = ORDER + 3
+"""Rows of a series: the first, its terms, and two that a sticking land needs."""
+
+HARMONICS = 4
+"""Harmonics of the balls' uneven orbital speed, at most."""
+
+WAVES = 2 * HARMONICS
+"""Cosines and sines of these."""
+
+KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
+"""What is known of the series of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
+each half of the step, and the value at an event."""
+
+CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
+"""Modes of the land: not touched; dented but without force; touched and sticking, or sliding either way."""
+
+ONSET = 1e-5
+"""Depth at which a Hertz contact starts and ends, over that of an impact at the kick's speed: at zero depth
+the force has no power series. The force there is 3e-8 of the impact's largest."""
+
+Whole = NDArray[np.int64]
+Value = TypeVar("Value")
+Record = TypeVar("Record")
+
+
+class Coefficients(NamedTuple):
+    """Numbers of one cage and one kick."""
+
+    unit: float  # of time [s]
+    inertia: float  # J / (M R^2)
+    swiftness: float  # its inverse
+    radius: float  # R
+    turning: float  # Omega
+    stiffness: float  # k of a linear pocket
+    hertz: float  # K of a Hertz pocket; 0: linear
+    onset: float
+    yielding: float  # 1 / C_mu
+    friction: float  # sigma f over the cosine of the contact's tilt
+    slowest: float  # speed whose rounding is of no interest
+    gravity: float
+    eccentricity: float  # of the centre of mass
+    land_side: float  # q: 1 outer, -1 inner, 0 without a land
+    land_gap: float  # c_g
+    land_stiffness: float  # K of the land
+    land_damping: float  # c of the land
+    land_friction: float  # mu
+    ring_slide: float  # (omega_ring - Omega) R
+    roundness: float  # positive takes from the gap where the cosine is positive
+    lobes: int
+    harmonics: int
+    driven: float  # bound on the free speed of any ball
+    ramp_time: float
+    ramp_start: float
+    needs_rotation: bool
+    needs_frame: bool
+    gripped: bool  # no clearance: both sides of a pocket hold its ball
+    fastest: float  # bound on the rate of the motion in contact
+
+
+class Terms(Generic[Value]):
+    """Power series of a step. In a record: the coefficients of one power of time.
+
+    In the array of all powers (`Series`) a field is the column of one quantity.
+    """
+
+    x: Value  # centre of mass, in the turning frame
+    y: Value
+    vx: Value
+    vy: Value
+    s: Value  # slip of rotation, R theta
+    vs: Value
+    ex: Value  # speeds filtered by the yielding of the balls: what a ball in touch feels of the motion
+    ey: Value
+    es: Value
+    kept: Value  # e(t): the share that is left of a penetration
+    gx: Value  # geometric centre, where the cage has an unbalance
+    gy: Value
+    fx: Value  # forces of the contacts, and their torque over M R
+    fy: Value
+    torque: Value
+    frame_x: Value  # accelerations by the turning frame and gravity
+    frame_y: Value
+    frame_s: Value
+    cos: Value  # of theta
+    sin: Value
+    distance: Value  # |r|, its direction n = r / |r|, and the depth delta in the land
+    nx: Value
+    ny: Value
+    depth: Value
+    normal: Value  # P, the tangential force, and the sliding v_s
+    tangent: Value
+    sliding: Value
+    turn_cos: Value  # of the angle of n against the cage
+    turn_sin: Value
+    lobe_cos: Value  # of that angle times the number of lobes; the sine over the distance
+    lobe_sin: Value
+    tilt: Value
+    pushed: Value
+    frame: Array  # cosine and sine of the turning of the frame and of its multiples
+    felt: Array  # what a ball in touch, and a free one, has gone by a free speed of that form
+    gone: Array
+
+
+class Series(Terms[Array]):
+    """All powers: `w[n].x` is a coefficient, `w.x` the series of one quantity."""
+
+    def __getitem__(self, n: int) -> Terms[float]:
+        """Coefficients of one power of time."""
+        raise NotImplementedError
+
+
+class Balls(NamedTuple):
+    """Balls and their pockets, shape (ball,) unless stated."""
+
+    cosine: Array  # direction phi_j of the pocket
+    sine: Array
+    play: Array  # c_p
+    lead: Array  # y_j of a ball that does not touch
+    penetration: Array  # q_j of one that does
+    drive: Array  # free speed, shape (2 harmonic, ball)
+    side: Whole  # side on which the pocket touches its ball: 1, -1; 0 not; 2 both
+    touching: Whole  # balls in touch, `State.touching` of them
+    depth: Array  # series of the penetration and the force of Hertz pockets, shape (power, ball)
+    force: Array
+
+
+class Pace(NamedTuple):
+    """Share of the full speed in a ramp, and its rate."""
+
+    share: float
+    rise: float
+
+
+class State:
+    """State of a run."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    s: float
+    vs: float
+    clock: float
+    touching: int  # balls in touch
+    land: int  # mode of the land
+    rows: int  # rows of history filled
+
+
+class Ledger:
+    """Work done on the cage by each source (a sink is negative), and the sum of the magnitudes."""
+
+    pocket_friction: float
+    race_dampers: float
+    ball_drive: float
+    land_friction: float
+    land_damping: float
+    gravity: float
+    moving_frame: float
+    unbalance: float
+    gross: float
+
+
+SOURCES = tuple(name for name in Ledger.__annotations__ if name != "gross")
+
+
+class Evidence:
+    """Evidence of a run in SI units, but for forces, energies and powers, which are over the mass."""
+
+    outcome: int
+    cause: int
+    end_energy: float
+    growth_rate: float
+    largest_offset: float
+    drift_rate: float
+    whirl_frequency: float
+    whirl_direction: int
+    largest_contact_force: float
+    largest_land_force: float
+    energy_imbalance: float
+    mean_offset: float
+    offset_spread: float
+    orbit_speed: float
+    land_impacts: int
+    rows: int
+    followed: float
+    judged_from: float
+    pocket_power: float
+    land_power: float
+    rubbing_force: float
+    rubbing_speed: float
+
+
+class Row:
+    """A row of a history: geometric centre, velocity, slip and its rate, clock, then as named."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    s: float
+    vs: float
+    clock: float
+    pocket_energy: float
+    land_energy: float
+    land_force: float
+
+
+class Samples(NamedTuple):
+    """Rows of a history; the clock of a row that is not filled is the time from which it is due."""
+
+    row: Sequence[Row]
+    work: Sequence[Ledger]
+    lead: Array  # of every ball, shape (row, ball)
+    force: Array
+
+
+class Candidate:
+    """What may end a step: a pocket that may leave its ball (change 0), or meet it on a side (1, -1)."""
+
+    change: int
+    ball: int
+    early_half: int  # what is known of each half of the step
+    late_half: int
+    guess: float  # about when
+    noise: float
+    start: float  # knots
+    rise: float
+    middle: float
+    turn: float
+    last: float
+    fall: float
+
+
+class Sums:
+    """Sums over the pockets in touch: of directions and their products, and of penetrations."""
+
+    cc: float
+    cs: float
+    ss: float
+    c: float
+    s: float
+    qc: float
+    qs: float
+    q: float
+    drive_c: Array  # of the free speeds of each wave times the directions
+    drive_s: Array
+    drive: Array
+
+
+class Room(NamedTuple):
+    """Where `advance` keeps what it needs within a step."""
+
+    sums: Sums
+    c: Array  # a series, shape (power,)
+    work: Ledger
+    felt: Array  # knots of the waves, shape (KNOT_ROWS, wave)
+    gone: Array
+    beyond: Array  # shape (ball,)
+    queue: Sequence[Candidate]
+    lobes: Array  # powers of the lobes, shape (power, 2 lobe)
+
+
+@cache
+def dtype_of(kind: Hashable) -> np.dtype[np.void]:
+    """Type of the structured array of a record; an array within it has the length `WAVES`."""
+    fields: list[tuple[str, object, tuple[int, ...]]] = []
+    for name, hint in get_type_hints(kind).items():
+        whole = {int: np.int64, bool: np.bool_}.get(hint, np.float64)
+        fields.append((name, whole, (WAVES,) if hint == Array else ()))
+    return np.dtype(fields)
+
+
+def records(kind: type[Record], count: int) -> Sequence[Record]:
+    """Array of records, all zero."""
+    return cast("Sequence[Record]", np.zeros(count, dtype_of(cast("Hashable", kind))))
+
+
+def series() -> Series:
+    """Room for the series of a step."""
+    return cast("Series", np.zeros(POWERS, dtype_of(Terms)))
+
+
+def samples_for(rows: int, balls: int) -> Samples:
+    """Rows of a history, all zero."""
+    return Samples(
+        row=records(Row, rows),
+        work=records(Ledger, rows),
+        lead=np.zeros((rows, balls)),
+        force=np.zeros((rows, balls)),
+    )
+
+
+def room_for(balls: int, lobes: int) -> Room:
+    """Room for the steps of a cage with so many balls, and lobes of its land."""
+    return Room(
+        sums=records(Sums, 1)[0],
+        c=np.zeros(ORDER + 1),
+        work=records(Ledger, 1)[0],
+        felt=np.zeros((KNOT_ROWS, WAVES)),
+        gone=np.zeros((KNOT_ROWS, WAVES)),
+        beyond=np.zeros(balls),
+        queue=records(Candidate, 2 * balls),
+        lobes=np.zeros((POWERS, 2 * lobes)),
+    )
+
+
+def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
+    """Numbers of a cage as a record, which kernels hand on by its address instead of copying 29 numbers."""
+    T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
+    side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
+    tilt = cage.pocket_tilt[0]
+    K = 0.0 if cage.hertz_coefficient is None else cage.hertz_coefficient * tilt**2.5
+    harmonics = len(cage.orbital_cosines)
+    land_stiffness = cage.land_count * cage.land_stiffness
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(land_stiffness * M)
+    sign = -1.0 if cage.guidance is Guidance.INNER and cage.land_lobes % 2 else 1.0
+    numbers = Coefficients(
+        unit=T,
+        inertia=cage.moment_of_inertia / (M * R * R),
+        swiftness=M * R * R / cage.moment_of_inertia,
+        radius=R,
+        turning=cage.cage_speed * T,
+        stiffness=cage.ball_cage_stiffness * tilt**2 * T * T / M,
+        hertz=K * T * T / M,
+        onset=ONSET * (1.25 * M * kick**2 / K) ** 0.4 if K > 0.0 else 0.0,
+        yielding=M / (cage.race_damping * T),
+        friction=cage.friction_sense * cage.ball_cage_friction / tilt,
+        slowest=1e-2 * kick * T,
+        gravity=cage.gravity * T * T,
+        eccentricity=cage.unbalance / M,
+        land_side=side,
+        land_gap=cage.land_gap,
+        land_stiffness=land_stiffness * T * T / M,
+        land_damping=damping * T / M,
+        land_friction=cage.land_friction,
+        ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * R * T,
+        roundness=sign * cage.land_out_of_round,
+        lobes=cage.land_lobes,
+        harmonics=harmonics,
+        driven=float(np.sum(np.hypot(cage.orbital_cosines, cage.orbital_sines))) * T,
+        ramp_time=cage.ramp_time / T,
+        ramp_start=cage.ramp_start,
+        needs_rotation=cage.unbalance != 0.0 or cage.land_out_of_round != 0.0,
+        needs_frame=harmonics > 0 or cage.gravity > 0.0,
+        gripped=cage.half_play == 0.0,
+        fastest=fastest_rate(cage) * T,
+    )
+    return cast("Coefficients", np.array([tuple(numbers)], dtype_of(Coefficients))[0])
+
+
+def balls_of(cage: PlanarCage) -> Balls:
+    """Room for the balls of a cage, with their free speed as they go round, in metres by the unit of time."""
+    angles, count, waves = np.array(cage.ball_angles), cage.ball_count, []
+    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
+        c, s = np.cos(h * angles), np.sin(h * angles)
+        waves += [a * c + b * s, b * c - a * s]
+    drive = np.array(waves).reshape(len(waves), count) * time_unit(cage)
+    cosine, sine, play, lead, penetration = np.zeros((5, count))
+    side, touching = np.zeros((2, count), np.int64)
+    depth, force = np.zeros((2, POWERS, count))
+    return Balls(cosine, sine, play, lead, penetration, drive, side, touching, depth, force)
