@@ -1,7 +1,7 @@
-"""What the shape of a pocket makes of its clearances: play along the circumference, and lean of the contact.
+"""Effect of a pocket's shape on its clearances: along the circumference, and the lean of the contact.
 
-A cage that stands off its balls along the bearing axis meets them with another part of its pockets: in a
-round one there is less play, and the contact leans towards the axis.
+A cage that is offset from its balls along the bearing axis meets them with another part of its pockets: in
+a round one there is less clearance, and the contact leans towards the axis.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Pocket(Protocol):
 
     @property
     def pocket_clearance(self) -> Metre:
-        """Play along the circumference, stop to stop, of a cage that stands level with its balls [m]."""
+        """Clearance along the circumference, stop to stop, of a cage that is level with its balls [m]."""
 
     @property
     def pocket_axial_clearance(self) -> Metre | None:
@@ -42,7 +42,7 @@ class Pocket(Protocol):
 
 
 def end_half_play(pocket: Pocket) -> Metre:
-    """Half the play along the axis, which is the play around a pocket's round end [m]; inf if square."""
+    """Half the clearance along the axis, and around a pocket's round end [m]; inf if square."""
     if pocket.pocket_shape is PocketShape.SQUARE:
         return math.inf
     if pocket.pocket_shape is PocketShape.CYLINDRICAL:
@@ -51,7 +51,7 @@ def end_half_play(pocket: Pocket) -> Metre:
 
 
 def half_play(pocket: Pocket) -> Metre:
-    r"""Half the play of a ball along the circumference, :math:`c_p`, after shape and axial offset [m].
+    r"""Half the clearance of a ball along the circumference, :math:`c_p`, after shape and axial offset [m].
 
     Square: :math:`c`. Cylindrical bore: :math:`\sqrt{c^2 - z^2}`. Elongated, with round ends:
     :math:`c - c_a + \sqrt{c_a^2 - z^2}`.

@@ -68,9 +68,11 @@ def test_more_runs_are_those_before_and_more():
     """Draw n belongs to run n, however many there are."""
     study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=0.003))
     few, many = drawn_bearings(study, 4), drawn_bearings(study, 16)
-    assert [one["A"].cage for one in few.states] == [one["A"].cage for one in many.states[:4]]
+    assert [one["A"].cage_with(0.1) for one in few.solved] == [
+        one["A"].cage_with(0.1) for one in many.solved[:4]
+    ]
     assert np.array_equal(few.friction[CASE], many.friction[CASE][:4])
-    masses = [one["A"].cage.mass for one in many.states]
+    masses = [one["A"].design.mass for one in many.solved]
     assert len(set(masses)) == 16
     assert np.mean(masses) == pytest.approx(0.025, rel=0.05)  # 16 spread points: far below 0.003/4
 

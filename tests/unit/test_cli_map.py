@@ -265,7 +265,7 @@ def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     status, out, err = started(signal.SIGINT)
     part = json.loads(out)
     assert (status, part["complete"]) == (130, False)
-    assert err.endswith("The same call goes on from there.\n")
+    assert err.endswith("Run the same command to resume.\n")
     left = [point for point in part["points"] if not point["runs"]]
     assert {point["reason"] for point in left} == {"not run: interrupted"}
     assert 0 < part["counts"]["not_run"] == len(left) < 256

@@ -16,19 +16,47 @@ from separatrix.compiled import UNUSED, cache_folder, kernel_sources, source_sta
 
 PACKAGE = Path(separatrix.__file__).parent
 
-ONE_KERNEL = """
+SOME_KERNELS = """
 import json
-import numpy as np
-from law import Law
-from separatrix.cage.motion import push_of
+from separatrix.chain import hertz
+from separatrix.chain.traction import solve_strip, strip
 
-law = Law(0.0, 0, 1.0)
-pockets, w = np.arange(40.0).reshape(20, 2), np.arange(200.0).reshape(2, 100) ** 2
-value = push_of(law, pockets, w, 1, 0)
-stats = push_of.stats
-print(json.dumps([value, sum(stats.cache_hits.values()), sum(stats.cache_misses.values())]))
+values = [*hertz.ellipse_shape(3.0, 0.0), *solve_strip(0.4, 0.3, nodes=20).shear.tolist()]
+stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.active_set)]
+hits, misses = (sum(sum(getattr(s, name).values()) for s in stats) for name in ("cache_hits", "cache_misses"))
+print(json.dumps([values, hits, misses]))
 """
-"""Call one small kernel of the cage, which has the numbers of slots compiled in."""
+
+READS_A_CONSTANT = """
+from separatrix.cage.records import HARMONICS
+from separatrix.compiled import kernel
+
+
+@kernel
+def read() -> int:
+    return HARMONICS
+"""
+
+CALLS_IT = """
+import json
+from separatrix.reading import read
+value = read()
+print(json.dumps([value, sum(read.stats.cache_hits.values()), sum(read.stats.cache_misses.values())]))
+"""
+
+
+def _start(code, **environment):
+    """A process that runs this code; NUMBA_CACHE_DIR is not handed on."""
+    inherited = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    command = [sys.executable, "-c", code]
+    return subprocess.Popen(command, env=inherited | environment, stdout=subprocess.PIPE, text=True)
+
+
+def _answer(process):
+    """What the process printed."""
+    out, _ = process.communicate(timeout=500)
+    assert process.returncode == 0
+    return json.loads(out)
 
 
 def _package(folder, **sources):
@@ -73,13 +101,13 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
 def test_the_cage_and_the_study_are_sources_of_kernels_and_a_report_is_not():
     """What the files of today come to."""
     found = {str(path.relative_to(PACKAGE)) for path in kernel_sources(PACKAGE)}
-    assert {"cage/slots.py", "cage/planar.py", "study.py", "hertz.py", "compiled.py"} <= found
+    assert {"cage/records.py", "cage/planar.py", "study.py", "chain/hertz.py", "compiled.py"} <= found
     assert not any(name.startswith(("report", "figures", "cli", "results")) for name in found)
 
 
 def test_caches_of_other_sources_are_removed_once_they_are_old(tmp_path, monkeypatch):
     """An old one goes, a young one and anything else stay."""
-    monkeypatch.setattr(compiled.CONFIG, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setitem(compiled.CONFIG, "CACHE_DIR", str(tmp_path))
     for name in ("separatrix-kernels-0", "separatrix-kernels-1", "other"):
         (tmp_path / name).mkdir()
     then = time.time() - 2.0 * UNUSED
@@ -92,7 +120,7 @@ def test_caches_of_other_sources_are_removed_once_they_are_old(tmp_path, monkeyp
 def test_where_no_folder_can_be_written_nothing_is_cached(tmp_path, monkeypatch):
     """A file stands in the place of each folder; the kernels would be compiled at each start."""
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(compiled.CONFIG, "CACHE_DIR", str(tmp_path / "file"))
+    monkeypatch.setitem(compiled.CONFIG, "CACHE_DIR", str(tmp_path / "file"))
     assert cache_folder(PACKAGE) is None
 
 
@@ -101,33 +129,36 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
     """In a copy of the package: after an edit of a constant the kernel is compiled again and obeys it."""
     package = tmp_path / "separatrix"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-    law = "from collections import namedtuple\nLaw = namedtuple('Law', 'hertz harmonics stiffness')\n"
-    (tmp_path / "law.py").write_text(law)
-    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    (package / "reading.py").write_text(READS_A_CONSTANT)
 
     def value_hits_misses():
-        told = subprocess.run(
-            [sys.executable, "-c", ONE_KERNEL],
-            env=environment | {"PYTHONPATH": str(tmp_path)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return json.loads(told.stdout)
+        return _answer(_start(CALLS_IT, PYTHONPATH=str(tmp_path)))
 
     def edit(name, old, new):
         source = (package / name).read_text()
         assert old in source
         (package / name).write_text(source.replace(old, new))
 
-    value, hits, misses = value_hits_misses()
-    assert (hits, misses) == (0, 1)
+    assert value_hits_misses() == [4, 0, 1]
     edit("report/tables.py", '"""', '"""Edited. ')
-    assert value_hits_misses() == [value, 1, 0]
-    edit("cage/slots.py", "COSINE, SINE, PLAY,", "SINE, COSINE, PLAY,")
-    swapped, *found = value_hits_misses()
-    assert swapped != value
-    assert found == [0, 1]
+    assert value_hits_misses() == [4, 1, 0]
+    edit("cage/records.py", "HARMONICS = 4", "HARMONICS = 3")
+    assert value_hits_misses() == [3, 0, 1]
     for name in ("cage/planar.py", "study.py"):
         (package / name).write_text((package / name).read_text() + "\nADDED = 1\n")
-        assert value_hits_misses() == [swapped, 0, 1]
+        assert value_hits_misses() == [3, 0, 1]
+
+
+@pytest.mark.slow
+def test_processes_that_compile_at_once_share_a_folder(tmp_path):
+    """Two fill it together; a third compiles nothing; all compute the same numbers."""
+    settings = {"PYTHONPATH": str(PACKAGE.parent), "NUMBA_CACHE_DIR": str(tmp_path)}
+    together = [_start(SOME_KERNELS, **settings) for _ in range(2)]
+    first, second = (_answer(process) for process in together)
+    third = _answer(_start(SOME_KERNELS, **settings))
+    assert first[0] == second[0] == third[0]
+    assert third[1:] == [3, 0]
+    kept = [path.name for path in tmp_path.rglob("*.nbc")]
+    version = f".py{sys.version_info[0]}{sys.version_info[1]}"
+    assert len(kept) >= 3
+    assert all(version in name and name.endswith(".1.nbc") for name in kept)  # of one signature each

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from separatrix.cage import CageMotion, Judgement, Verdict
+from separatrix.draws import Case
+from separatrix.ranking import NotFinished
 from separatrix.ranking.friction import MeanFriction
 from separatrix.ranking.rank import _row
 
@@ -24,17 +26,17 @@ def judgement(**changes) -> Judgement:
 def row(one: Judgement):
     """The row of a candidate with this evidence, before its threshold is known."""
     eta = SimpleNamespace(restitution_factor=0.3)
-    state = SimpleNamespace(restitution=SimpleNamespace(restitution=eta))
-    question = SimpleNamespace(stiffness={"A": 1e6}, cages={1e6: state})
-    found = SimpleNamespace(judgements={(1e6, 0.1): one}, thresholds={}, points={}, limits={})
-    return _row(question, found, "A", MeanFriction(0.1, 0.01), "air")
+    question = SimpleNamespace(stiffness={"A": 1e6}, cages={1e6: SimpleNamespace(restitution=eta)})
+    found = SimpleNamespace(judgements={(1e6, 0.1): one}, points={})
+    return _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01), None)
 
 
 @pytest.mark.parametrize("bad", [np.inf, np.nan])
 def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     """Every number of it is absent, so that the answer can be written."""
     found = row(judgement(largest_contact_force=float(bad)))
-    assert (found.verdict, found.largest_contact_force, found.margin) == (None, None, None)
+    assert isinstance(found, NotFinished)
+    assert found.judgement is None
     assert found.reason == (
         f"no verdict: largest contact force is {float(bad)}. The inputs are far from those of a bearing"
     )

@@ -272,7 +272,7 @@ def traced(height, spread=0.002):
         return point(node[0], height(node[0]), spread)
 
     tracer = Tracer(None, (), band=False)
-    found = Runner().work_out(compute, tracer.first, more=tracer.more)
+    found = Runner().work_out(compute, tracer.first, into=dict, more=tracer.more)
     assert tracer.complete(found)
     return {node[0]: one for node, one in found.items()}
 

@@ -50,7 +50,7 @@ def test_film_compliance_is_thickness_over_shear_modulus():
 def test_a_thick_film_in_series_is_warned_of():
     """Above 0.03 of the semi-minor axis; the number is returned. A layer needs no warning."""
     thick = 0.031 * ELLIPSE.semi_minor
-    with pytest.warns(ValidityWarning, match=r"0\.031 of the semi-minor axis.*holds up to 0\.03 \(docs"):
+    with pytest.warns(ValidityWarning, match=r"0\.031 of the semi-minor axis.*is valid up to 0\.03 \(docs"):
         slope, _ = traction_slope(ELLIPSE, CREEP, film_thickness=thick, **GOOD)
     assert slope > 0.0
     traction_slope(ELLIPSE, CREEP, film_thickness=0.029 * ELLIPSE.semi_minor, **GOOD)

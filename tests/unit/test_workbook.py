@@ -15,7 +15,7 @@ from separatrix.study_file import read_study, shipped_studies
 from separatrix.study_file.cells import sheets_of
 from separatrix.study_file.document import SECTIONS, load
 from separatrix.study_file.sections import READERS
-from separatrix.study_file.template import TEMPLATE, study_workbook, template_keys, template_workbook
+from separatrix.study_file.templates import TEMPLATE, study_workbook, template_keys, template_workbook
 from separatrix.units import parse
 from separatrix.workbook import results_workbook
 from separatrix.workbook.ranking import OWN_SHEETS

@@ -36,8 +36,8 @@ WRONG_FILES = {
     "no material": (text_of(material=None), ("line 1: [[test]] lacks: material",)),
     "no medium and counterface": (text_of(medium=None, counterface=None), ("lacks: counterface, medium",)),
     "no friction": (text_of(friction=None), ("lacks: friction",)),
-    "unknown key": (text_of(speed='"1 m/s"'), ("line 6", "speed is no key", "Did you mean")),
-    "friction is text": (text_of(friction='"0.08"'), ("line 5", "plain number", "Write it without quotes")),
+    "unknown key": (text_of(speed='"1 m/s"'), ("line 6", "speed is not a key", "Did you mean")),
+    "friction is text": (text_of(friction='"0.08"'), ("line 5", "plain number", "as a number, not as text")),
     "friction 0": (text_of(friction="0"), ("line 5", "friction must be > 0", "logarithm")),
     "friction negative": (text_of(friction="-0.1"), ("friction must be > 0", "got -0.1")),
     "friction 3": (text_of(friction="3"), ("friction must be <= 2", "got 3")),
@@ -107,7 +107,7 @@ def test_a_wrong_friction_file_is_refused_in_one_line(tmp_path, name):
 WRONG_STUDIES = {
     "no such file": ('friction = "other.toml"', ("[ranking] friction names no file", "other.toml")),
     "a folder": ('friction = "folder.toml"', ("names no file beside the study",)),
-    "no such table": ('friction = "pin-on-disk-77"', ("[ranking] friction is no friction table",)),
+    "no such table": ('friction = "pin-on-disk-77"', ("[ranking] friction is not a friction table",)),
     "a material it lacks": (
         'friction = "friction.toml"\nmaterials = ["Armalom"]',
         ("materials names a material that friction.toml lacks", "Did you mean Armalon?"),
@@ -118,7 +118,7 @@ WRONG_STUDIES = {
     ),
     "scatter in percent": (
         'friction = "friction.toml"\nfriction_scatter = 9',
-        ("friction_scatter must lie between 0.001 and 1", "got 9", "0.09 stands for 9 %"),
+        ("friction_scatter must lie between 0.001 and 1", "got 9", "0.09 is 9 %"),
     ),
     "scatter as text": (
         'friction = "friction.toml"\nfriction_scatter = "9 %"', ("friction_scatter", "plain number"),

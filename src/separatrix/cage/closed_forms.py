@@ -26,7 +26,7 @@ LOWEST_RESTITUTION = 1e-4
 
 
 def linear_whirl_frequency(cage: PlanarCage) -> Hertz:
-    r"""Whirl without play at the stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
+    r"""Whirl without clearance at the stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
     return whirl_rate(cage) / (2.0 * math.pi)
 
 
@@ -36,7 +36,7 @@ def whirl_rate(cage: PlanarCage) -> float:
 
 
 def linear_critical_friction(cage: PlanarCage) -> Ratio:
-    r"""Friction above which a cage without play whirls, :math:`\sqrt{2kM/Z}/C_\mu`, ball set at rest [-]."""
+    r"""Friction above which it whirls without clearance, :math:`\sqrt{2kM/Z}/C_\mu`, ball set at rest [-]."""
     return math.sqrt(2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count) / cage.race_damping
 
 
@@ -63,7 +63,7 @@ def drift_law(cage: PlanarCage) -> float:
 
 
 def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
-    """Exact rates of the translation without play, fastest growing first, shape (3,) [rad/s].
+    """Exact rates of the translation without clearance, fastest growing first, shape (3,) [rad/s].
 
     The real part is the growth, the imaginary part the whirl in the turning frame, positive in the positive
     sense.
@@ -81,7 +81,7 @@ def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
 
 
 def room(cage: PlanarCage) -> Metre:
-    """Offset that the cage centre has: to its land, or half its pockets' play without a land [m]."""
+    """Offset that the cage centre has: to its land, or half its pocket clearance without a land [m]."""
     return cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
 
 
@@ -103,12 +103,12 @@ def drive_energy(cage: PlanarCage) -> Joule:
 
 
 def drifts(cage: PlanarCage) -> bool:
-    """Whether nothing holds the cage centre: no land, and the turning of the ball set or gravity moves it."""
+    """Whether the centre is free to drift: no land, and the turning of the ball set or gravity moves it."""
     return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
 def drift_rate_law(cage: PlanarCage) -> float:
-    """Rate at which the linear law has a landless cage drift [1/s]; 0 for one that a land holds."""
+    """Rate at which the linear law has a landless cage drift [1/s]; 0 for one with a land."""
     return drift_law(cage) if math.isinf(cage.land_gap) else 0.0
 
 

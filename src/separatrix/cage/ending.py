@@ -26,8 +26,8 @@ BEAT = 25.0
 """Time from beat to beat, in radians of the motion with one ball in touch: some turns of a whirl."""
 
 LONGEST, LONGEST_ADRIFT = 4, 20
-"""A run whose end is not plain after its duration goes on, to this multiple of it at most: of a cage that a
-land holds, and of one that drifts, whose weak whirl ends only when its centre has crept out of place."""
+"""A run whose end is not plain after its duration goes on, to this multiple of it at most: of a cage with a
+land, and of one that drifts, whose weak whirl ends only when its centre has crept out of place."""
 
 WINDOW = 10
 """Looks, and at least a turn of the ball set, over which the work of friction is weighed."""
@@ -38,14 +38,14 @@ that make the end plain. A motion near the drive energy is followed on: some com
 
 LOOKS_FAR = 50
 """Looks in a row far above the drive energy, the later half no lower than the earlier, that make it plain
-that a motion lasts though its energy wanders. Where nothing drives the cage, nothing is far above."""
+that a motion lasts although its energy varies. An undriven cage is never far above."""
 
 TURNED_OVER, HELD = 10.0, 0.01
 """How often pocket friction has put in the energy of a motion that it feeds for a whole duration, and the
 share of the room by which its mean offset may change: a whirl that unwinds creeps out of place first."""
 
 FED, HALF = 6, 0.5
-"""Looks, the last, whose work says what feeds a motion that is high; and the share that is most of it."""
+"""The last looks, whose work shows what feeds a motion of high energy; and the share that is most of it."""
 
 GROWN, GROWS_ON, GROWS_AT_ONCE = 100.0, 10.0, 30.0
 """Multiples of the energy scale (the kick's, and what frame and loads give) beyond which a growing motion
@@ -59,7 +59,7 @@ FALLS = 2.0 / 3.0
 """Energy in the last fifth of the longest run over that half way, below which the motion still falls."""
 
 REST = 0.01
-"""Share of the drive energy below which a cage is at rest, whatever friction does to it."""
+"""Share of the drive energy below which a cage is at rest, with any friction."""
 
 RISES = 1.2
 """Ratio of the energy in the second half of a window to that in the first above which it rises."""
@@ -69,7 +69,7 @@ UNFED, PATIENCE = 0.25, 3
 windows after which it may give half."""
 
 FAR = 10.0
-"""Mean offset, in half clearances of the pockets, at which a cage that nothing holds has left them."""
+"""Mean offset, in half clearances of the pockets, at which a cage without a land has left them."""
 
 PLACE, REACH = 0.05, 0.9
 """Shares of the land's clearance: by the first the mean offset of a cage in its place may change in half a
@@ -125,10 +125,10 @@ class Limits(NamedTuple):
     most: int
     least: int  # made even where the end is plain before
     window: int
-    place: float  # change of the mean offset that is none, in half a window; below 0 where nothing holds it
+    place: float  # change of the mean offset that is none, in half a window; below 0 for a cage free to drift
     held: float  # that is none in half a duration
     reach: float  # mean offset from which a cage that frame or loads move has come to its land
-    drifts: bool  # nothing holds the centre
+    drifts: bool  # the centre is free to drift
     far: float  # mean offset at which that is plain
     drive: float
     still: float
@@ -140,7 +140,7 @@ class Limits(NamedTuple):
 def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, least: bool = False) -> Limits:
     """Limits of a run; `least` follows it over its whole duration even where its end is plain before.
 
-    The land holds a guided cage, so its offset is no drift.
+    A guided cage does not drift: its land limits the offset.
     """
     unit, landless = time_unit(cage), math.isinf(cage.land_gap)
     beat, beats, looks = beat_of(unit, duration)

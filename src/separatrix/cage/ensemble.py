@@ -59,7 +59,7 @@ MOST_RADIANS = 1e8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ensemble:
-    """Outcome and evidence of every run; arrays have shape (kick, run) unless said.
+    """Outcome and evidence of every run; arrays have shape (kick, run) unless stated.
 
     Attributes
     ----------
@@ -192,7 +192,7 @@ def run_rows(
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
 
-    With samples of a history a run goes on to the last of them, whatever is plain before.
+    With samples of a history a run goes on to the last of them, even where its end is plain before.
     """
     balls, limits = cage.ball_count, run_limits(cage, kick, duration, least=samples is not None)
     run_chunk(
@@ -228,10 +228,10 @@ def check_length(cage: PlanarCage, duration: Second) -> None:
 def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
     """Start of every run, shape (run, 1 + 3 ball).
 
-    Direction of the kick [rad]; then by pocket the lead of its ball [m], its half play [m] and its angle
-    [rad]. A lead is random within the play, times `ball_scatter`, about the ball's free place among those
-    that a radial load speeds up and slows down; no ball starts beyond its play. A pocket out of its place is
-    a lead of its ball.
+    Direction of the kick [rad]; then by pocket the lead of its ball [m], half its clearance [m] and its angle
+    [rad]. A lead is random within the clearance, times `ball_scatter`, about the ball's free place among
+    those that a radial load speeds up and slows down; no ball starts beyond its clearance. A pocket out of
+    its place is a lead of its ball.
     """
     angles, half = np.array(cage.ball_angles), cage.half_play
     free = free_leads(cage, angles)
@@ -273,7 +273,7 @@ def settings_for(settings: StabilitySettings, cage: PlanarCage) -> StabilitySett
 def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilitySettings:
     """Return the settings with numbers for kicks and reference kick, from the pocket speed [m/s].
 
-    The reference kick is 2.5 times the pocket speed unless it is given, whatever the kicks: thresholds and
+    The reference kick is 2.5 times the pocket speed unless it is given, for any kicks: thresholds and
     margins belong to the bearing, not to the list. Without kicks they are 0.2, 1 and 4 times it.
     """
     reference = settings.reference_kick or _rounded(REFERENCE * speed)
@@ -293,7 +293,7 @@ def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
 def chosen(
     settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
 ) -> tuple[Array, int]:
-    """Kicks, shape (kick,), and runs: those given, else those of the settings; refuse what is no ensemble."""
+    """Kicks, shape (kick,), and runs: those given, else those of the settings; refuse an empty ensemble."""
     speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
     count = settings.runs if runs is None else runs
     if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > LEAST_KICK)):

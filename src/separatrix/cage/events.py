@@ -194,7 +194,7 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
 
 @inlined_kernel
 def place_at(cos: float, sin: float, x: float, y: float, s: float) -> float:
-    """How far a pocket lies along the circumference by centre and slip, or how fast it moves."""
+    """Place of a pocket along the circumference by centre and slip, or its speed."""
     return cos * y - sin * x + s
 
 
@@ -220,7 +220,7 @@ def farthest_way(p: Coefficients, w: Series, h: float) -> float:
 
 @inlined_kernel
 def may_reach(balls: Balls, x: float, y: float, s: float, most: float, beyond: Array) -> bool:
-    """By how much every pocket may pass its play at most, by its way; return whether any may."""
+    """By how much every pocket may exceed its clearance at most, by its way; return whether any may."""
     any_may = False
     for j in range(balls.play.size):
         place = place_at(balls.cosine[j], balls.sine[j], x, y, s) - balls.lead[j]
@@ -233,7 +233,7 @@ def may_reach(balls: Balls, x: float, y: float, s: float, most: float, beyond: A
 def reach_balls(
     balls: Balls, x: Knots, y: Knots, s: Knots, off: float, late_off: float, beyond: Array
 ) -> None:
-    """By how much every pocket may pass its play at most, by its cubics and what lies off them."""
+    """By how much every pocket may exceed its clearance at most, by its cubics and their error."""
     for j in range(balls.play.size):
         start, rise, middle, turn, last, fall = places_of(balls, j, x, y, s)
         one, two = start + THIRD * rise, middle - THIRD * turn

@@ -69,7 +69,7 @@ def enter_step(
         far = x * x + y * y
         going = x * vx + y * vy
         if leaving > 0.0 > going:
-            # The largest lies between: by parabolas from both sides.
+            # The largest is between: by parabolas from both sides.
             at, gap = leaving / (leaving - going), (t - late) * h
             between = 0.5 * (was_far + far + gap * (leaving * at - going * (1.0 - at)))
             farthest = max(farthest, between)
@@ -164,14 +164,14 @@ def add_work(
         else:
             pocket_work(p, balls, w, count, vx, vy, share, t, weight, work)
         if land != CLEAR and land != RELEASED:
-            # F_t v_s but for the ring's speed, which the frame knows nothing of; c (d delta/dt)^2
+            # F_t v_s without the ring's speed: the work on the cage alone; c (d delta/dt)^2
             tangent, normal = value(w.tangent, t), value(w.normal, t)
             along = value(w.nx, t) * vy - value(w.ny, t) * vx
             work.land_friction += weight * tangent * (along + p.land_side * vs)
             lost = normal - p.land_stiffness * value(w.depth, t)
             work.land_damping -= weight * lost * slope(w.depth, t) / h
         elif land == RELEASED:
-            # The damper holds the land's spring back alone.
+            # The damper alone balances the land's spring.
             work.land_damping += weight * p.land_stiffness * value(w.depth, t) * slope(w.depth, t) / h
         if p.gravity != 0.0:
             pull = value(w.frame[:, 0], t) * ux - value(w.frame[:, 1], t) * uy

@@ -196,7 +196,7 @@ def follow(
     lead = np.asarray(ball_lead, dtype=np.float64)
     play = np.full(cage.ball_count, cage.half_play) if half_play is None else half_play
     if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= play):
-        rule = f"must be {cage.ball_count} numbers within the pockets' play [m]"
+        rule = f"must be {cage.ball_count} numbers within the pocket clearance [m]"
         raise InputError("ball_lead", rule, f"{lead.tolist()}")
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)

@@ -160,7 +160,7 @@ def land_change(
 
 @inlined_kernel
 def farthest(x: Knots, y: Knots) -> float:
-    """Bound on the distance of the centre by its knots, without what lies off the cubics between them."""
+    """Bound on the distance of the centre by its knots, without the error of the cubics between them."""
     u, v = x[0], y[0]
     square = u * u + v * v
     u, v = u + THIRD * x[1], v + THIRD * y[1]

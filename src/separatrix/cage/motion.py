@@ -36,17 +36,7 @@ from separatrix.cage.records import (
     State,
     Whole,
 )
-from separatrix.cage.series import (
-    ROUNDING,
-    Motion,
-    centre,
-    fourths,
-    grip_at,
-    knots,
-    motion_at,
-    slope,
-    value,
-)
+from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
@@ -56,8 +46,8 @@ MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
 """Steps in the time of a radian of the fastest motion: a run that needs more makes no progress in time."""
 
 PRECISION, HERTZ_PRECISION = 2.0**-34, 2.0**-40
-"""Share of the speeds below which the last terms of a series lie. The force of a Hertz contact has no series
-about its beginning, so that near it the terms fall slowly."""
+"""Share of the speeds below which the last terms of a series must be. The force of a Hertz contact has no
+series about its beginning, so that near it the terms fall slowly."""
 
 LONGEST = 1e6
 
@@ -223,7 +213,7 @@ def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
 def change_land(
     p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, kind: int, room: Room
 ) -> None:
-    """Mode of the land after a change; the series' first coefficients hold the state."""
+    """Mode of the land after a change; the state is in the first coefficients of the series."""
     if kind == LAND_CLEAR:
         state.land = CLEAR
         return

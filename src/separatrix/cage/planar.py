@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class RunOutcome(IntEnum):
-    """Where the motion of one run ends, whatever the kick."""
+    """Where the motion of one run ends."""
 
     SETTLES = 0
     WHIRLS = 1
@@ -68,20 +68,20 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanarCage:
-    """A cage that moves in the bearing plane among balls which the races hold.
+    """A cage that moves in the bearing plane among balls that the races guide.
 
     Parameters
     ----------
     mass, moment_of_inertia : float
         M_C [kg] and J about the bearing axis [kg m2]; a thin ring has J = M R^2.
     ball_count : int
-        Z; ball j stands at 2 pi j/Z unless `pocket_angles` says otherwise.
+        Z; ball j is at 2 pi j/Z unless `pocket_angles` are given.
     pitch_radius : float
         R, where balls and pockets meet; the land's friction acts at this radius too [m].
     cage_speed, inner_speed, outer_speed : float
         Omega of the ball set and speeds of the rings [rad/s].
     pocket_clearance : float
-        Play of a ball in its pocket along the circumference, stop to stop, 2 c_p [m];
+        Clearance of a ball in its pocket along the circumference, stop to stop, 2 c_p [m];
         0 means a pocket that grips its ball from both sides.
     ball_cage_stiffness, race_damping : float
         k_BC [N/m] and C_mu [N s/m], in series; an infinite C_mu is a ball gripped by its races.
@@ -93,8 +93,8 @@ class PlanarCage:
         Mass times eccentricity [kg m], and acceleration across the bearing axis, along azimuth 0, fixed in
         space [m/s2].
     pocket_shape, pocket_axial_clearance, pocket_axial_offset
-        Shape of the pockets; play along the axis, stop to stop, of an elongated one [m]; how far the cage
-        stands off the plane of the balls, along the bearing axis [m].
+        Shape of the pockets; clearance along the axis, stop to stop, of an elongated one [m]; distance
+        of the cage from the plane of the balls, along the bearing axis [m].
     hertz_coefficient : float or None
         K of N = K approach^1.5 [N/m^1.5]; None is linear contact with `ball_cage_stiffness`.
     pocket_angles : tuple of float
@@ -174,7 +174,7 @@ class PlanarCage:
 
     @property
     def half_play(self) -> Metre:
-        """c_p, half the play of a ball in its pocket along the circumference, after shape and offset [m]."""
+        """c_p, half the clearance of a ball along the circumference, after shape and offset [m]."""
         return pocket_shape.half_play(self)
 
     @property
@@ -190,7 +190,7 @@ class PlanarCage:
 
     @property
     def lead_amplitude(self) -> Metre:
-        """Largest lead or lag of a ball that no pocket holds, from its uneven orbital speed [m]."""
+        """Largest lead or lag of a free ball, from its uneven orbital speed [m]."""
         waves = enumerate(zip(self.orbital_cosines, self.orbital_sines, strict=True), 1)
         parts = [(h, a / (h * self.cage_speed), b / (h * self.cage_speed)) for h, (a, b) in waves]
         turn = (2.0 * math.pi * i / _AROUND for i in range(_AROUND))

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 Mask = NDArray[np.bool_]
 
 LEFT = 2.0
-"""Mean offset, in half plays of the pockets, at which a cage that a land holds has left its pockets."""
+"""Mean offset, in half clearances of the pockets, at which a cage with a land has left its pockets."""
 
 BEYOND = 2.0
-"""Offset, over the room of the cage centre (land or half play, the larger), that no cage survives."""
+"""Offset that no cage survives, over the room of its centre (land or half pocket clearance, the larger)."""
 
 CAUSES = {
     Cause.IMPACTS: "impacts accumulate without limit; raise [cage] land_restitution or soften the contacts",
@@ -69,7 +69,7 @@ def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
 
 
 def left_pockets(cage: PlanarCage, ensemble: Ensemble) -> Mask:
-    """Runs whose centre ended beyond twice the half play of the pockets, shape (kick, run)."""
+    """Runs whose centre ended beyond the clearance of the pockets, shape (kick, run)."""
     limit = LEFT * cage.half_play if cage.half_play > 0.0 else math.inf
     return np.asarray(ensemble.mean_offset > limit)
 
@@ -110,7 +110,7 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
 
 
 def not_finite(ensemble: Ensemble) -> str:
-    """Return in how many runs nothing is known of the motion."""
+    """Return in how many runs the motion left the range of numbers."""
     runs = ensemble.cause == Cause.NOT_FINITE
     return f"In {int(runs.sum())} of {runs.size} runs {CAUSES[Cause.NOT_FINITE]}."
 

@@ -35,7 +35,7 @@ WAVES = 2 * HARMONICS
 """Cosines and sines of these."""
 
 KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
-"""What is known of the series of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
+"""Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
@@ -80,7 +80,7 @@ class Coefficients(NamedTuple):
     ramp_start: float
     needs_rotation: bool
     needs_frame: bool
-    gripped: bool  # no clearance: both sides of a pocket hold its ball
+    gripped: bool  # no clearance: both sides of a pocket touch its ball
     fastest: float  # bound on the rate of the motion in contact
 
 
@@ -246,7 +246,7 @@ class Candidate:
 
     change: int
     ball: int
-    early_half: int  # what is known of each half of the step
+    early_half: int  # what it does in each half of the step
     late_half: int
     guess: float  # about when
     noise: float

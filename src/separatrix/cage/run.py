@@ -303,7 +303,7 @@ def run_chunk(
     """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
 
     A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
-    [m], its half play [m] and its angle [rad].
+    [m], half its clearance [m] and its angle [rad].
     """
     count = hits.shape[1]
     for i in range(starts.shape[0]):

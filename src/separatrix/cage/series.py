@@ -25,7 +25,7 @@ LAST_TURN = 1e-2
 MOST_ZEROS = 3
 
 STAYS, FALLS, MAY_FALL = range(3)
-"""Above zero between two knots; falls through zero once; or neither is known."""
+"""Above zero between two knots; falls through zero once; or undetermined."""
 
 THIRD = 1.0 / 3.0
 SLOPE_OFF = np.sqrt(3.0) / 216.0
@@ -124,7 +124,7 @@ def first_zero(c: Array, start: float, sign: float, end: float, noise: float) ->
     curvature up to `end`. The zero of that parabola is a time up to which there is no zero of g; from
     there the next parabola starts. So the march converges to the first zero from below, quadratically, and
     cannot pass over it, however short the touch. A zero at the start (a contact that has just changed) is
-    divided out; the first coefficient that is more than rounding then says which way g goes.
+    divided out; the first coefficient that is more than rounding then decides which way g goes.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def first_zero(c: Array, start: float, sign: float, end: float, noise: float) ->
     end : float
         Time after which a zero is of no interest.
     noise : float
-        Size of the numbers whose difference the series is: their rounding is no zero.
+        Size of the numbers whose difference the series is: their rounding is not a zero.
 
     Returns
     -------
@@ -214,10 +214,10 @@ def falling(
 
     Values up to `tiny` are no more than rounding.
 
-    The cubic through them lies between the corners of its Bezier polygon. The function lies off that cubic
-    by no more than 1/384 of its fourth derivative (`fourth`: times the fourth power of the distance), its
-    slope by sqrt(3)/216, its curvature by 1/12 (Birkhoff and Priver 1967): falling, or concave, throughout,
-    it has one zero. At a share t of the way it lies off by no more than
+    The cubic through them stays between the corners of its Bezier polygon. The function differs from that
+    cubic by no more than 1/384 of its fourth derivative (`fourth`: times the fourth power of the distance),
+    its slope by sqrt(3)/216, its curvature by 1/12 (Birkhoff and Priver 1967): falling, or concave,
+    throughout, it has one zero. At a share t of the way it differs by no more than
     fourth t^2 (1 - t)^2 / 24, less than 1/144 of it in both inner corners make up for.
     """
     one, two = start + THIRD * start_slope, last - THIRD * last_slope
@@ -256,7 +256,7 @@ def cubic_zero(start: float, start_slope: float, last: float, last_slope: float)
 
 @inlined_kernel
 def earliest_zero(c: Array, at: Knots, sign: float, early: int, late: int, end: float, noise: float) -> float:
-    """First zero as by `first_zero`, where it is known what each half of the step does, and the knots."""
+    """First zero as by `first_zero`, from the knots and what each half of the step does."""
     start, rise, middle, turn, last, fall = at
     if early == FALLS:
         guess = 0.5 * cubic_zero(start, rise, middle, turn)

@@ -110,7 +110,7 @@ def contact_ellipse(
     >>> ellipse.semi_major == ellipse.semi_minor
     True
     >>> contact_ellipse(np.array([100.0, 800.0]), 400.0, 200.0, 110e9).semi_major.round(6)
-    array([0.000103, 0.000206])
+    array([0.000168, 0.000335])
     """
     given = np.broadcast(load, curvature_rolling, curvature_transverse, contact_modulus)
     each = [_ellipse(*map(float, numbers)) for numbers in given]

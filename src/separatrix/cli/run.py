@@ -229,7 +229,7 @@ def _check_name(path: Path, *, excel: bool) -> None:
 def _new_study(*, excel: bool) -> bytes:
     """Return the file to fill in."""
     if excel:
-        from separatrix.study_file.template import template_workbook
+        from separatrix.study_file.templates import template_workbook
 
         return template_workbook()
     from separatrix.study_file import template

@@ -19,7 +19,7 @@ from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
 STEEPEST = 1.4
-"""Largest contact angle for which kinematics are asked [rad]."""
+"""Largest contact angle for which kinematics are computed [rad]."""
 
 
 @part

@@ -137,7 +137,7 @@ def _normal_pull(p: Problem, A: Array, state: Array, pull: Array, g: Array, H: A
 
 @part
 def rest(p: Problem, A: Array, pull: Array, state: Array) -> None:
-    """Move the ball to where the grooves hold it against a constant pull.
+    """Move the ball to where the grooves balance a constant pull.
 
     Both grooves are convex, so the energy is, and Newton's steps find its only low point from anywhere if
     none of them climbs beyond it.

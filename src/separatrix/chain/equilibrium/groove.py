@@ -42,7 +42,7 @@ class Touch(NamedTuple):
 
 @part
 def touch(p: Problem, side: float, axial: float, radial: float, guess: float) -> Touch:
-    """Contact of a ball whose centre lies (axial, radial) from the groove's; side -1 inner, +1 outer."""
+    """Contact of a ball whose centre is (axial, radial) from the groove's; side -1 inner, +1 outer."""
     D = p.ball_diameter
     f = p.inner_conformity if side < 0.0 else p.outer_conformity
     at_wall = radial < 0.0
@@ -62,7 +62,7 @@ def touch(p: Problem, side: float, axial: float, radial: float, guess: float) ->
 
 @kernel
 def static_split(p: Problem, axial: float, radial: float) -> tuple[float, float, float]:
-    """Ball centre V and load where both contacts lie on one line (no inertia); A = (axial, radial)."""
+    """Ball centre V and load where both contacts are on one line (no inertia); A = (axial, radial)."""
     D, below = p.ball_diameter, 0.5 * min(radial, 0.0)  # between straight walls any height balances
     radial = max(radial, 0.0)
     length = math.hypot(axial, radial)
@@ -127,7 +127,7 @@ def friction_resultants(
     column 0 the value, 1 to 4 its slopes with c, 5 its slope with ln(load) through a and b.
 
     `cells` strips across the groove, in each the slip along t is taken linear in y and averaged exactly, so
-    that a line of no slip may lie anywhere. `nodes`, shape (2, node): places and weights along rolling.
+    that a line of no slip may be anywhere. `nodes`, shape (2, node): places and weights along rolling.
     """
     out[:, :] = 0.0
     eps2, step = smoothing * smoothing, 2.0 / cells

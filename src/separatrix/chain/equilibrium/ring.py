@@ -219,7 +219,7 @@ COLUMNS = 21
 
 @part
 def _grip(t: Touch) -> float:
-    """Jones's measure of how well a race holds the spin of a ball, Q a E [N m]."""
+    """Jones's measure of how strongly a race controls the spin of a ball, Q a E [N m]."""
     K, D, _ = elliptic_integrals(t.axis_ratio)
     E = K - (1.0 - t.axis_ratio) * (1.0 + t.axis_ratio) * D
     return float(t.major_coefficient * t.load ** (4.0 / 3.0) * E)

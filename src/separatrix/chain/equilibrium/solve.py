@@ -118,7 +118,7 @@ class _Setup(NamedTuple):
 
 
 def _setup(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Setup:
-    """Collect the loads; one ball stands for all where load and ring make them alike."""
+    """Collect the loads; one ball represents all where load and ring make them alike."""
     Z, arm = bearing.ball_count, 0.5 * bearing.pitch_diameter
     loads = np.array(
         (operation.axial_load, operation.radial_load, 0.0, cross_moment, -(operation.moment or 0.0)),
@@ -152,7 +152,7 @@ def _solve(
 
 
 def _first_place(p: Problem, setup: _Setup, angle: Radian) -> Array:
-    """Where the ring would stand if every ball took an even share along the load, and ball 0 at `angle`."""
+    """Where the ring would be if every ball took an even share along the load, and ball 0 at `angle`."""
     arm, loads = 0.5 * p.pitch_diameter, setup.balls.loads
     units = np.array([1.0, 1.0, 1.0, arm, arm])
     size, trial = float(np.abs(loads / units).max()), 1e-3 * p.ball_diameter
@@ -171,8 +171,8 @@ def _first_place(p: Problem, setup: _Setup, angle: Radian) -> Array:
 def _static(p: Problem, setup: _Setup) -> tuple[Array, int, Newton, Array]:
     """Ring and balls without inertia: a convex problem, from several places of the ring.
 
-    Where the radial load prevails the ring leaves the free angle for the middle of its axial play, along a
-    curved valley that Newton's method follows slowly: then it starts nearer.
+    Where the radial load prevails the ring leaves the free angle for the middle of its axial clearance, along
+    a curved valley that Newton's method follows slowly: then it starts nearer.
     """
     free, total = math.asin(p.free_sine), 0
     leaning = math.atan2(setup.balls.loads[0], setup.balls.loads[1])
@@ -301,7 +301,7 @@ def _beside_grooves(table: Array) -> InputError | None:
 
 
 def _carried_moment(p: Problem, setup: _Setup, q: Array, solved: Array) -> NewtonMetre:
-    """Give the moment asked for, or what the balls return to a held tilt [N m]."""
+    """The given moment, or what the balls return to a fixed tilt [N m]."""
     if 4 in setup.balls.dofs or len(setup.balls.dofs) == 1:
         return float(-setup.balls.loads[4])
     balance, slopes = np.empty(5), np.empty((5, 5))

@@ -107,7 +107,7 @@ def matched_knots(coarse: Array, fine: Array) -> tuple[Knots, Knots]:
     """Knots (c, F, dF/dc) of a strip from its influences with n and 2 n elements, at equal stick lengths.
 
     At equal stick length all three are first order in 1/n and smooth, so that Richardson's 2 (fine) -
-    (coarse) holds up to saturation, where the curve at equal creep has a kink that moves with n. Returns the
+    (coarse) works up to saturation, where the curve at equal creep has a kink that moves with n. Returns the
     extrapolated knots, and the fine ones.
     """
     n = (coarse.size + 1) // 2
@@ -120,7 +120,7 @@ def matched_knots(coarse: Array, fine: Array) -> tuple[Knots, Knots]:
 def _ordered(c: Array, F: Array, S: Array) -> Knots:
     """Knots from the origin to saturation, without those of unresolved stick or slip zones.
 
-    A stick zone of one element is no zone. Slip zones under a thirty-second of the strip at the trailing
+    A stick zone of one element does not count. Slip zones under a thirty-second of the strip at the trailing
     edge, where the curve is all but straight, are bridged by the cubic between the tangents, which is exact
     for Carter's curve.
     """
