@@ -17,8 +17,7 @@ with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "my-compound.csv"
     rows = (f"{t:.0f},{f:.5f}" for t, f in zip(time, friction, strict=True))
     path.write_text("Time [s],COF\n" + "\n".join(rows), encoding="utf-8")
-    log = separatrix.read_log(path)[0]
-    test = separatrix.reduce_log(log)
+    test = separatrix.tribometer(path).tests[0]
 print(f"friction {test.friction:.4f} +- {test.half_width:.4f}, running-in ends at {test.run_in_end:.0f} s")
 
 study = separatrix.read_study("momentum-wheel")

@@ -1,7 +1,7 @@
 """Named materials, fluids and friction tables, each number with its source, conditions and confidence.
 
 The shipped data are the TOML files in `data/`; libraries of the user have the same form
-(docs/materials.md). The functions here answer from the shipped ones; a study asks its own `Library`.
+(docs/reference/materials.md). The functions here read the shipped ones; a study has its own `Library`.
 """
 
 from __future__ import annotations

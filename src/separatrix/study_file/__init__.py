@@ -1,4 +1,4 @@
-"""Reading study files: TOML whose every dimensional value is text with its unit (docs/study-file.md)."""
+"""Study files: TOML whose every dimensional value is text with its unit (docs/reference/study-file.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study in a workbook: one sheet for each section, one row for each key (docs/spreadsheets.md).
+"""A study in a workbook: one sheet for each section, one row for each key (docs/reference/workbook.md).
 
 A row gives a key, its value, perhaps its uncertainty, and its unit. It becomes what a TOML file would
 say, ``"25 g"`` or ``"0.5 um +- 20 %"``, and is read by the same readers; a dotted key is a table in place.

@@ -1,4 +1,4 @@
-"""A column map: a small TOML file with what a log does not state itself (docs/tribometer-logs.md)."""
+"""A column map: a small TOML file with what a log does not state (docs/reference/tribometer-logs.md)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Text formats of instruments: how each is recognised, and what its files do not state themselves.
 
-The table in a file is read the same way for all. docs/tribometer-logs.md describes the formats.
+The table in a file is read the same way for all. docs/reference/tribometer-logs.md describes the formats.
 """
 
 from __future__ import annotations
