@@ -1,0 +1,47 @@
+"""A curve on three worker processes of which one is killed in the middle, against the same without a cluster.
+
+    python benchmarks/cluster_kill.py
+
+Prints whether they agree to the last bit. Seen to agree five times, and to hang once: the cause is not known.
+"""
+
+import os
+import signal
+import warnings
+from dataclasses import replace
+
+import distributed
+
+from separatrix.chain.solution import solve
+from separatrix.cluster import cluster
+from separatrix.errors import ValidityWarning
+from separatrix.limits import stability_curve
+from separatrix.runner import Runner
+from separatrix.study_file import read_study
+
+
+def main() -> None:
+    """Run both and compare."""
+    warnings.simplefilter("ignore", ValidityWarning)
+    wheel = solve(read_study("momentum-wheel"))
+    cage = wheel.cage_with(0.0)
+    settings = replace(wheel.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
+    killed: list[int] = []
+    with distributed.LocalCluster(
+        n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as three:
+
+        def kill(done: int, total: int) -> None:  # noqa: ARG001 - as progress is reported
+            if not killed:
+                killed.append(three.workers[0].pid)
+                os.kill(killed[0], signal.SIGKILL)
+
+        with cluster(three.scheduler_address) as (executor, threads):
+            far = stability_curve(
+                cage, settings, runner=Runner(jobs=threads, executor=executor, progress=kill)
+            )
+    print("killed", killed, "same" if far == stability_curve(cage, settings) else "DIFFERENT")
+
+
+if __name__ == "__main__":
+    main()
