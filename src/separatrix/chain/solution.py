@@ -73,7 +73,7 @@ def solve(study: Study, candidate: Candidate | None = None) -> Solution:
     >>> import separatrix
     >>> found = separatrix.solve(separatrix.read_study("cryogenic-turbopump"))
     >>> round(found.restitution.restitution_factor, 2)
-    0.17
+    0.27
     """
     return Solution(study=study, candidate=candidate)
 
