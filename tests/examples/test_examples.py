@@ -1,5 +1,10 @@
-"""Every script in examples/ runs, gives its answer and its figure, and uses public names only."""
+"""Every script in examples/ runs, gives its answer and its figure, and uses public names only.
 
+The examples in docstrings run, too.
+"""
+
+import doctest
+import importlib
 import re
 import runpy
 from pathlib import Path
@@ -63,3 +68,15 @@ def test_a_script_uses_public_names_only(script):
     text = (FOLDER / script).read_text(encoding="utf-8")
     assert not re.findall(r"from separatrix|import separatrix\.", text)
     assert set(re.findall(r"\bseparatrix\.(\w+)\(", text)) <= set(dir(separatrix))
+
+
+SOURCE = Path(separatrix.__file__).parent
+SHOWN = [path for path in SOURCE.rglob("*.py") if re.search(r"^\s*>>>", path.read_text(encoding="utf-8"), re.M)]
+
+
+@pytest.mark.parametrize("path", SHOWN, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_the_examples_of_a_docstring_print_what_they_say(path):
+    """What `help` shows is what a reader gets."""
+    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
+    found = doctest.testmod(importlib.import_module(name))
+    assert found.attempted and not found.failed

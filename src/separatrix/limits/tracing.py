@@ -9,9 +9,13 @@ from separatrix.units import Ratio
 
 Point = TypeVar("Point")
 
-COARSE: tuple[Ratio, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
+COARSE: tuple[Ratio, ...] = (0.0, 0.25, 0.5, 0.75, 0.875, 1.0)
+"""Restitution factors to begin with: closer before 1, where balls gripped by their races damp nothing, the
+critical friction falls to zero and a line from 0.75 would be taken for straight."""
+
+FIRST_THREES = ((0.0, 0.25, 0.5), (0.5, 0.75, 1.0), (0.75, 0.875, 1.0))
 FINEST: Ratio = 1.0 / 32.0
-"""Restitution factors to begin with, and the least distance between two; halves, so exact in binary."""
+"""The least distance between two; all are halves of halves, so exact in binary."""
 
 Bends = Callable[[Point, Point, Point], bool]
 """Whether the middle one of three points lies off the line between the others."""
@@ -27,16 +31,15 @@ def finer(eta: Ratio, found: Mapping[Ratio, Point], bends: Bends[Point]) -> list
     for low, middle, high in _threes(eta):
         known = [found[at] for at in (low, middle, high) if at in found]
         if high - middle >= 2.0 * FINEST and len(known) == 3 and bends(*known):
-            wanted += [(low, middle), (middle, high)]
+            halves = (low, middle), (middle, high)
+            wanted += [half for half in halves if 0.5 * sum(half) not in COARSE]
     return wanted
 
 
 def _threes(eta: Ratio) -> Iterator[tuple[Ratio, Ratio, Ratio]]:
-    """Neighbours that `eta` completes: it is their middle, or one of the first five."""
+    """Neighbours that `eta` completes: it is their middle, or one of the first."""
     if eta in COARSE:
-        for i in range(0, len(COARSE) - 2, 2):
-            if eta in COARSE[i : i + 3]:
-                yield COARSE[i], COARSE[i + 1], COARSE[i + 2]
+        yield from (three for three in FIRST_THREES if eta in three)
         return
     gap = FINEST
     while eta % (2.0 * gap) == 0.0:
