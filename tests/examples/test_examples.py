@@ -71,7 +71,9 @@ def test_a_script_uses_public_names_only(script):
 
 
 SOURCE = Path(separatrix.__file__).parent
-SHOWN = [path for path in SOURCE.rglob("*.py") if re.search(r"^\s*>>>", path.read_text(encoding="utf-8"), re.M)]
+SHOWN = [
+    path for path in SOURCE.rglob("*.py") if re.search(r"^\s*>>>", path.read_text(encoding="utf-8"), re.M)
+]
 
 
 @pytest.mark.parametrize("path", SHOWN, ids=lambda path: str(path.relative_to(SOURCE)))
@@ -79,4 +81,5 @@ def test_the_examples_of_a_docstring_print_what_they_say(path):
     """What `help` shows is what a reader gets."""
     name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
     found = doctest.testmod(importlib.import_module(name))
-    assert found.attempted and not found.failed
+    assert found.attempted
+    assert not found.failed
