@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from separatrix.cage import KickCount
-from separatrix.units import Array, Hertz, Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second, Watt
+from separatrix.cage import Judgement
+from separatrix.units import Array, MetrePerSecond, Ratio, Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,61 +27,50 @@ class InputRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainMaterial:
-    """One candidate in one environment, or over all of them; if not measured, only its name and the reason.
+    """One measured candidate in one environment, or over all of them.
 
     Attributes
     ----------
     name : str
         The candidate.
-    friction, friction_deviation : float or None
+    friction, friction_deviation : float
         Mean and standard deviation of the friction of a new cage [-].
-    friction_scatter_assumed : bool or None
+    friction_scatter_assumed : bool
         Whether that scatter is the default one, a guess.
     extrapolation : tuple of str
         In what respect the friction is extrapolated beyond its tests.
     probability_lowest_friction : float or None
         Probability that no other candidate's mean friction is lower; None if no other was measured [-].
-    restitution_factor, restitution_factor_low, restitution_factor_high : float or None
+    restitution_factor, restitution_factor_low, restitution_factor_high : float
         Median over the bearings, and the ends between which nine in ten lie [-].
-    verdict : str or None
-        STABLE, UNSTABLE or UNDECIDED, by the rule of every verb.
-    probability_stable, probability_low, probability_high : float or None
-        Share of the bearings whose cage settles, from the worst kick, and its 95 % interval [-].
-    worst_kick, by_kick, runs, cage_motion, largest_offset, mean_offset, drift_rate, largest_contact_force
-    largest_land_force, whirl_frequency, rubbing_power, energy_imbalance, duration, longest_run
-        Evidence, as in `Judgement`; `runs` are those from the worst kick.
+    judgement : Judgement or None
+        By the rule of every verb, each run with its own bearing; None where `reason` says why.
     reason : str
         A sentence with the numbers.
     """
 
     name: str
-    friction: Ratio | None = None
-    friction_deviation: Ratio | None = None
-    friction_scatter_assumed: bool | None = None
-    extrapolation: tuple[str, ...] = ()
-    probability_lowest_friction: Ratio | None = None
-    restitution_factor: Ratio | None = None
-    restitution_factor_low: Ratio | None = None
-    restitution_factor_high: Ratio | None = None
-    verdict: str | None = None
-    probability_stable: Ratio | None = None
-    probability_low: Ratio | None = None
-    probability_high: Ratio | None = None
-    worst_kick: MetrePerSecond | None = None
-    by_kick: Annotated[tuple[KickCount, ...] | None, Rows("kick", "by_kick_", label="kick")] = None
-    runs: int | None = None
-    cage_motion: str | None = None
-    largest_offset: Metre | None = None
-    mean_offset: Metre | None = None
-    drift_rate: PerSecond | None = None
-    largest_contact_force: Newton | None = None
-    largest_land_force: Newton | None = None
-    whirl_frequency: Hertz | None = None
-    rubbing_power: Watt | None = None
-    energy_imbalance: Ratio | None = None
-    duration: Second | None = None
-    longest_run: Second | None = None
+    friction: Ratio
+    friction_deviation: Ratio
+    friction_scatter_assumed: bool
+    extrapolation: tuple[str, ...]
+    probability_lowest_friction: Ratio | None
+    restitution_factor: Ratio
+    restitution_factor_low: Ratio
+    restitution_factor_high: Ratio
+    judgement: Judgement | None = None
     reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NotDrawn:
+    """A candidate without a measured friction in this environment; `reason` says so."""
+
+    name: str
+    reason: str
+
+
+UncertainRow = UncertainMaterial | NotDrawn
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +78,7 @@ class UncertainEnvironment:
     """The candidates in one environment, best first; those not measured come last."""
 
     name: str
-    materials: Annotated[tuple[UncertainMaterial, ...], Rows("material", "material_", label="name")]
+    materials: Annotated[tuple[UncertainRow, ...], Rows("material", "material_", label="name")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -245,7 +234,7 @@ class UncertainStudy:
     environment: str
     inputs: Annotated[tuple[InputRow, ...], Rows("input", "input_", label="name")]
     environments: Annotated[tuple[UncertainEnvironment, ...], Rows("environment", label="name")]
-    overall: Annotated[tuple[UncertainMaterial, ...], Rows("material", "overall_", label="name")]
+    overall: Annotated[tuple[UncertainRow, ...], Rows("material", "overall_", label="name")]
     convergence: tuple[ConvergenceRow, ...]
     clouds: tuple[Cloud, ...]
     drivers: tuple[Drivers, ...]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -28,10 +28,12 @@ from separatrix.explore.records import (
     ConvergenceRow,
     Drivers,
     InputRow,
+    NotDrawn,
     SmoothShares,
     TestGain,
     UncertainEnvironment,
     UncertainMaterial,
+    UncertainRow,
     UncertainStudy,
 )
 from separatrix.explore.shares import sobol_shares
@@ -44,18 +46,13 @@ from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
 from separatrix.runner import Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
-from separatrix.units import Array
+from separatrix.units import Array, Ratio
 
 FEWEST = 64
 """Bearings below which no probability is worth a table."""
 
 CLOUD = 256
 """Bearings of a case that are kept for the pictures."""
-
-EVIDENCE = {f.name for f in fields(UncertainMaterial)} & {f.name for f in fields(Judgement)} - {
-    *("verdict", "cage_motion", "reason")
-}
-"""What a row takes from its judgement as it is."""
 
 Counted = tuple[Judgement, Ensemble]
 
@@ -114,9 +111,9 @@ def _answer(
     environment = required_environment(study, ranking)
     own = _rows(drawn, environment, judged)
     moved = [
-        Moved(row.name, row.largest_contact_force, row.largest_offset, row.by_kick or ())
+        Moved(row.name, found.largest_contact_force, found.largest_offset, found.by_kick)
         for row in own
-        if row.largest_contact_force is not None and row.largest_offset is not None
+        if isinstance(row, UncertainMaterial) and (found := row.judgement)
     ]
     reference = reference_candidate(study, ranking)
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
@@ -169,9 +166,7 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
     return pieces
 
 
-def _rows(
-    drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]
-) -> tuple[UncertainMaterial, ...]:
+def _rows(drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]) -> tuple[UncertainRow, ...]:
     """Rows of an environment: verdicts first that are better, then the larger P(stable)."""
     ranking = ranking_question(drawn.study)
     means: dict[str, MeanFriction | None] = {}
@@ -180,22 +175,25 @@ def _rows(
         cases = [Case(candidate.name, place) for place in places]
         known = [drawn.stated[case] for case in cases if case in drawn.stated]
         means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
-    lowest = lowest_among({name: one for name, one in means.items() if one is not None}).probabilities
-    rows = [
-        _row(drawn, Case(name, environment), mean, lowest.get(name), judged.get(Case(name, environment)))
-        for name, mean in means.items()
-    ]
-    return tuple(sorted(rows, key=_best_first))
+    measured = {name: one for name, one in means.items() if one is not None}
+    lowest = lowest_among(measured).probabilities
+    rows = [_row(drawn, Case(n, environment), f, lowest.get(n), judged) for n, f in measured.items()]
+    others = (NotDrawn(name=n, reason=not_measured(environment)) for n in means if n not in measured)
+    return (*sorted(rows, key=_best_first), *others)
 
 
 def _row(
-    drawn: DrawnBearings, case: Case, mean: MeanFriction | None, lowest: float | None, found: Counted | None
+    drawn: DrawnBearings,
+    case: Case,
+    mean: MeanFriction,
+    lowest: Ratio | None,
+    judged: Mapping[Case, Counted],
 ) -> UncertainMaterial:
     """One candidate in one environment."""
-    if mean is None:
-        return UncertainMaterial(name=case.candidate, reason=not_measured(case.environment))
     eta = np.quantile(_factors(drawn, case), (0.5, 0.05, 0.95))
-    row = UncertainMaterial(
+    judgement = judged[case][0] if case in judged else None
+    broken = not_finite(judgement) if judgement else NOT_FINISHED
+    return UncertainMaterial(
         name=case.candidate,
         friction=mean.mean,
         friction_deviation=float(np.std(drawn.friction[case])),
@@ -205,25 +203,16 @@ def _row(
         restitution_factor=float(eta[0]),
         restitution_factor_low=float(eta[1]),
         restitution_factor_high=float(eta[2]),
-        reason=NOT_FINISHED,
-    )
-    if found is None:
-        return row
-    judgement = found[0]
-    if broken := not_finite(judgement):
-        return replace(row, reason=broken)
-    return replace(
-        row,
-        verdict=judgement.verdict.name,
-        cage_motion=None if judgement.cage_motion is None else judgement.cage_motion.value,
-        reason=judgement.reason,
-        **{name: getattr(judgement, name) for name in EVIDENCE},
+        judgement=None if broken else judgement,
+        reason=broken or (judgement.reason if judgement else ""),
     )
 
 
 def _best_first(row: UncertainMaterial) -> tuple[int, float, float]:
-    order = {"STABLE": 0, "UNDECIDED": 1, "UNSTABLE": 2}.get(row.verdict or "", 3)
-    return order, -(row.probability_stable or 0.0), row.friction or 0.0
+    order = {Verdict.STABLE: 0, Verdict.UNDECIDED: 1, Verdict.UNSTABLE: 2}
+    if row.judgement is None:
+        return 3, 0.0, row.friction
+    return order[row.judgement.verdict], -row.judgement.probability_stable, row.friction
 
 
 def _factors(drawn: DrawnBearings, case: Case) -> Array:

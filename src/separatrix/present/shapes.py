@@ -27,7 +27,7 @@ from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
-from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
+from separatrix.explore.records import AllowedFilm, NotDrawn, Share, UncertainMaterial, UncertainStudy
 from separatrix.explore.sweep import Sweep
 from separatrix.present.walk import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.walk import shape as shape
@@ -182,6 +182,17 @@ def _(row: Ranked | NotFinished | NotMeasured) -> Node:
     node = evidence | absent(Ranked) | {"extrapolation": Leaf(())} | fields_of(row)
     del node["judgement"], node["over_inputs"]
     return node | {f"uncertain_{name}": over[name] for name in names}
+
+
+@shape.register(UncertainMaterial)
+@shape.register(NotDrawn)
+def _(row: UncertainMaterial | NotDrawn) -> Node:
+    """The evidence on the level of the row."""
+    judged = getattr(row, "judgement", None)
+    evidence = absent(Judgement) if judged is None else shape(judged)
+    node = evidence | absent(UncertainMaterial) | {"extrapolation": Leaf(())} | fields_of(row)
+    del node["judgement"]
+    return node
 
 
 @shape.register

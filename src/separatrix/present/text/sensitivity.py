@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from separatrix.explore.records import NotDrawn
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
     ABSENT,
@@ -20,7 +21,14 @@ from separatrix.present.text.tables import (
 
 if TYPE_CHECKING:
     from separatrix.answers import SensitivityAnswer
-    from separatrix.explore.records import AllowedFilm, Drivers, Share, UncertainMaterial, UncertainStudy
+    from separatrix.explore.records import (
+        AllowedFilm,
+        Drivers,
+        Share,
+        UncertainMaterial,
+        UncertainRow,
+        UncertainStudy,
+    )
     from separatrix.study import Study
 
 HEADERS = (
@@ -55,10 +63,11 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
     own, *others = sorted(found.environments, key=lambda one: bool(one.name != found.environment))
     verdicts: dict[str, list[str]] = {}
     for row in own.materials:
-        word = row.verdict or ("not measured" if row.friction is None else "not finished")
+        word = "not measured" if isinstance(row, NotDrawn) else _verdict(row)
         verdicts.setdefault(word, []).append(row.name)
     short = "; ".join(f"{verdict} {', '.join(names)}" for verdict, names in verdicts.items())
-    drift = [row.drift_rate for row in found.overall if row.drift_rate is not None]
+    judged = [row.judgement for row in found.overall if not isinstance(row, NotDrawn)]
+    drift = [judgement.drift_rate for judgement in judged if judgement]
     holds_for = [
         *basis(study, answer),
         ("Kicks", f"{', '.join(f'{kick:g}' for kick in found.kicks)} m/s"),
@@ -83,10 +92,10 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
     ]
 
 
-def _environment(name: str, rows: Sequence[UncertainMaterial]) -> str:
+def _environment(name: str, rows: Sequence[UncertainRow]) -> str:
     etas: dict[str, list[str]] = {}
     for row in rows:
-        if row.restitution_factor is not None:
+        if not isinstance(row, NotDrawn):
             ends = row.restitution_factor, row.restitution_factor_low, row.restitution_factor_high
             etas.setdefault("{} ({} to {})".format(*(number(eta, 2) for eta in ends)), []).append(row.name)
     alike = len(etas) == 1
@@ -96,30 +105,36 @@ def _environment(name: str, rows: Sequence[UncertainMaterial]) -> str:
     return section(name[:1].upper() + name[1:], table(HEADERS, cells, left=1), "", words)
 
 
-def _row(row: UncertainMaterial) -> list[str]:
-    if row.friction is None:
+def _verdict(row: UncertainMaterial) -> str:
+    return row.judgement.verdict.name if row.judgement else "not finished"
+
+
+def _row(row: UncertainRow) -> list[str]:
+    if isinstance(row, NotDrawn):
         return [row.name, "not measured"]
     marks = (GUESS if row.friction_scatter_assumed else "") + (MARK if row.extrapolation else "")
-    share = (row.friction_deviation or 0.0) / row.friction if row.friction else 0.0
+    share = row.friction_deviation / row.friction if row.friction else 0.0
     known = [row.name, f"{number(row.friction)} ({100.0 * share:.0f} %){marks}"]
-    if row.verdict is None or row.largest_offset is None:
-        return [*known, "not finished"]
-    ends = f"{number(row.probability_low, 2)}-{number(row.probability_high, 2)}"
+    judged = row.judgement
+    if judged is None:
+        return [*known, _verdict(row)]
     return [
         *known,
-        f"{number(row.probability_stable, 2)} ({ends})",
-        row.verdict,
-        row.cage_motion or "unresolved",
-        number(1e3 * row.largest_offset),
-        number(row.largest_contact_force, 0),
-        number(row.largest_land_force, 0),
-        str(row.runs),
+        f"{number(judged.probability_stable, 2)} "
+        f"({number(judged.probability_low, 2)}-{number(judged.probability_high, 2)})",
+        _verdict(row),
+        judged.cage_motion.value if judged.cage_motion else "unresolved",
+        number(1e3 * judged.largest_offset),
+        number(judged.largest_contact_force, 0),
+        number(judged.largest_land_force, 0),
+        str(judged.runs),
     ]
 
 
 def marks(found: UncertainStudy) -> Iterator[str]:
     """Yield what the marks beside frictions mean, if there are any."""
-    rows = [row for one in found.environments for row in one.materials]
+    every = (row for one in found.environments for row in one.materials)
+    rows = [row for row in every if not isinstance(row, NotDrawn)]
     if any(row.friction_scatter_assumed for row in rows):
         share = f"{100.0 * found.default_scatter:.3g} % of the mean"
         yield paragraph(
