@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.pocket_contact import contact_radius, impact_force, sliding_speed
+from separatrix.chain.pocket import contact_radius, impact_force, sliding_speed
 from separatrix.chain.restitution import damping_ratio, hertz_coefficient
 from separatrix.friction.fit import TestedFriction, fit_friction
 from separatrix.friction.law import StatedFriction

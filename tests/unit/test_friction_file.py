@@ -8,8 +8,7 @@ from subprocess import run
 
 import pytest
 
-from separatrix.chain.pocket_contact import PocketConditions
-from separatrix.chain.pocket_friction import friction_in_pocket
+from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError

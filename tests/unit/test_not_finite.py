@@ -9,7 +9,7 @@ import pytest
 from separatrix.cage import CageMotion, Judgement, Verdict
 from separatrix.draws import Case
 from separatrix.ranking import NotFinished
-from separatrix.ranking.friction import MeanFriction
+from separatrix.ranking.lowest import MeanFriction
 from separatrix.ranking.rank import _row
 
 

@@ -10,8 +10,15 @@ from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.limits import RestitutionThreshold
 from separatrix.ranking import rank, ranks
-from separatrix.ranking.friction import MeanFriction, measured, overall, with_scatter
-from separatrix.ranking.lowest import LowestFriction, may_be_lower, probability_lowest
+from separatrix.ranking.lowest import (
+    LowestFriction,
+    MeanFriction,
+    may_be_lower,
+    measured,
+    overall,
+    probability_lowest,
+    with_scatter,
+)
 from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked

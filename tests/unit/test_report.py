@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from separatrix.cage import CageMotion, Judgement, KickCount, Verdict
-from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.chain.pocket import PocketConditions
 from separatrix.present import report, whereabouts
 from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts

@@ -24,10 +24,9 @@ from separatrix.limits import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.limits.curve import Tracer, bends
+from separatrix.limits.curve import COARSE, FINEST, Tracer, bends, finer
 from separatrix.limits.point import own_restitution_factor
 from separatrix.limits.response import LADDER, Crossing, cell_of
-from separatrix.limits.tracing import COARSE, FINEST, finer
 from separatrix.present.text.stability import curve
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings

@@ -20,8 +20,7 @@ from separatrix.limits.map import (
     inference,
     stability_map,
 )
-from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill
-from separatrix.limits.map_grid import near_a_change, rounds
+from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill, near_a_change, rounds
 from separatrix.limits.map_parameters import parameters, varied
 from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion
 from separatrix.limits.map_rule import (

@@ -24,8 +24,12 @@ from separatrix.chain.contacts import (
 )
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
-from separatrix.chain.pocket_contact import PocketConditions, pocket_conditions
-from separatrix.chain.pocket_friction import friction_in_pocket, names_of_fluid
+from separatrix.chain.pocket import (
+    PocketConditions,
+    friction_in_pocket,
+    names_of_fluid,
+    pocket_conditions,
+)
 from separatrix.chain.restitution import (
     Restitution,
     ball_pocket_stiffness,

@@ -12,7 +12,7 @@ import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
 from separatrix.cage_choice import reference_candidate, required_environment
-from separatrix.chain.pocket_friction import with_scatter
+from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
 from separatrix.distribution import described
 from separatrix.draws import Case, UncertainInput
@@ -39,8 +39,7 @@ from separatrix.explore.records import (
 from separatrix.explore.shares import sobol_shares
 from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.friction import MeanFriction, overall
-from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
 from separatrix.runner import Runner

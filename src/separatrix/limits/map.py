@@ -16,8 +16,7 @@ from separatrix.cage_choice import require_friction
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.limits.growth import cage_at
-from separatrix.limits.map_fill import Filled, fill
-from separatrix.limits.map_grid import Place
+from separatrix.limits.map_fill import Filled, Place, fill
 from separatrix.limits.map_parameters import (
     FRICTION,
     KICK,

@@ -9,7 +9,7 @@ from separatrix.ranking.lowest import may_be_lower
 from separatrix.units import Ratio
 
 if TYPE_CHECKING:
-    from separatrix.ranking.friction import MeanFriction
+    from separatrix.ranking.lowest import MeanFriction
     from separatrix.ranking.records import Ranked
 
 Interval = tuple[Ratio, Ratio, Ratio]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from separatrix.cage import KickCount
-from separatrix.chain.pocket_contact import contact_radius
+from separatrix.chain.pocket import contact_radius
 from separatrix.chain.restitution import hertz_coefficient
 from separatrix.chain.solution import Solution
 from separatrix.study import BallBearing, Material, Study

@@ -27,8 +27,7 @@ from separatrix.limits import (
 from separatrix.limits.curve import HERE, Node, height
 from separatrix.limits.threshold import rising
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.friction import MeanFriction, measured, overall
-from separatrix.ranking.lowest import lowest_among
+from separatrix.ranking.lowest import MeanFriction, lowest_among, measured, overall
 from separatrix.ranking.order import margin_interval, ranks, same_rank
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from separatrix.cage import Judgement
-from separatrix.chain.pocket_contact import PocketConditions
+from separatrix.chain.pocket import PocketConditions
 from separatrix.limits import StabilityCurve
 from separatrix.units import MetrePerSecond, NewtonPerMetre, Ratio, Rows, Second
 

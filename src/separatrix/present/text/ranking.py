@@ -24,7 +24,7 @@ from separatrix.ranking import NotMeasured, Ranked
 if TYPE_CHECKING:
     from separatrix.answers import RankingAnswer
     from separatrix.cage import Judgement
-    from separatrix.chain.pocket_contact import PocketConditions
+    from separatrix.chain.pocket import PocketConditions
     from separatrix.ranking import RankedEnvironment, Ranking, Row
     from separatrix.study import Study
 
