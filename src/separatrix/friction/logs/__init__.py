@@ -140,7 +140,7 @@ def _tables_of_text(text: bytes, file: _File, sheet: str = "") -> tuple[list[Raw
 
 def _tables_of_workbook(file: _File) -> list[RawTable]:
     """Tables of all sheets, or of those that the column map names."""
-    from separatrix.friction.logs.sheet import sheets_as_text, with_formats
+    from separatrix.friction.logs.sheet import checked, odd_cells, sheets_as_text
 
     texts = sheets_as_text(file.path, file.name)
     named = file.chosen.format.tables
@@ -152,13 +152,14 @@ def _tables_of_workbook(file: _File) -> list[RawTable]:
             tables, _ = _tables_of_text(text, file, sheet)
         except InputError as error:
             raise error.at(error.path.replace(": line ", ": row ", 1)) from None
+        odd = None
         for table in tables:
-            read = file.wanted(table.headers, table.units, table.layout)
-            given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
-            odd = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
-            odd += [i for i in read if np.isnan(table.columns[i][0])]
-            if odd:  # only a percentage, or a formula without a value, must be looked at again
-                table = with_formats(table, file.path, sheet, file.name, odd)
+            if read := file.wanted(table.headers, table.units, table.layout):
+                odd = odd or odd_cells(file.path, sheet, file.name)
+                given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
+                percent = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
+                where = f"{file.name}, sheet {printable(sheet)}"
+                table = checked(table, odd, where, read, percent, file.chosen.format)
             found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
     return found
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
-from separatrix.friction.logs.dialect import ENCODINGS, MISSING, SEPARATORS
+from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
 from separatrix.friction.logs.log import MEANINGS
 from separatrix.friction.logs.names import known_units, scale_of
 from separatrix.friction.records import place
@@ -65,7 +65,8 @@ class TextFormat:
     encoding: str | None = None
     header_line: int | None = None
     units_line: int | None = None
-    missing: frozenset[str] = MISSING
+    missing: frozenset[str] = frozenset()
+    """Texts that mean a missing value besides `MISSING`, in small letters."""
     tables: tuple[str, ...] = ()
     """Names of the tables (sheets, steps) to read; all of them if empty."""
 
@@ -213,7 +214,7 @@ def _format(given: Mapping[str, Any], where: str) -> TextFormat:
         raise InputError(where, "cannot have a comma both as separator and as decimal sign")
     if found["units_line"] and not found["header_line"]:
         raise InputError(f"{where} units_line", "needs a header_line, too")
-    found["missing"] = MISSING | {text.casefold() for text in found["missing"]}
+    found["missing"] = frozenset(text.casefold() for text in found["missing"])
     return TextFormat(**found)
 
 

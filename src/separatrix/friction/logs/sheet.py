@@ -1,20 +1,24 @@
 """Sheets of an .xlsx workbook as tab separated text, which the reader of text takes from there.
 
 Row n of the sheet is line n of the text. Formulas have the value saved with them. Dates and times of day are
-written as such. An error has no value, like an empty cell.
+written as such.
 """
 
 from __future__ import annotations
 
 import datetime
+import re
 import warnings
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import IO, Any
 
 import numpy as np
 
 from separatrix.errors import InputError
+from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.log import RawTable
 from separatrix.units import printable
 from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
@@ -24,6 +28,12 @@ MOST_ROWS_ABOVE = 2000
 
 _NUMBERS = (float, datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
 _FIRST_DAY = datetime.datetime(1900, 1, 1)
+_PIECE = 4 * 1024**2
+_LITERAL = re.compile(r'"[^"]*"|\\.')
+"""Part of a number format that is shown as it is: a % in it does not make a percentage."""
+
+_ATTRIBUTE, _PLACE = re.compile(r'(\w+)="([^"]*)"'), re.compile("([A-Z]{1,3})([0-9]{1,7})")
+_PREFIX = re.compile(rb"<(\w+:|)worksheet\b")
 _BLANKS = str.maketrans("\t\r\n", "   ")
 
 
@@ -76,31 +86,129 @@ def _written(cell: object) -> str:
     return str(_FIRST_DAY + cell if isinstance(cell, datetime.timedelta) else cell)
 
 
-def with_formats(table: RawTable, path: Path, sheet: str, label: str, read: Collection[int]) -> RawTable:
-    """Return a table of a sheet; fractions in cells that are shown as percentages become percent.
+@dataclass(frozen=True, slots=True)
+class OddCells:
+    """Cells of a sheet that are not what their value says, by column from 0 and row from 1."""
+
+    percentages: dict[int, list[int]] = field(default_factory=dict)
+    """Rows of the cells that are shown as percentages, by column. They hold fractions."""
+    valueless: list[tuple[int, int, str]] = field(default_factory=list)
+    """Column, row and error of each error cell; no error for a formula that was never computed."""
+
+
+def odd_cells(path: Path, sheet: str, label: str) -> OddCells:
+    """Return the percentages, the errors and the formulas without a value of a sheet.
+
+    calamine returns neither formats nor errors, and openpyxl takes a minute for a million rows: the XML is
+    searched for such cells.
+    """
+    from openpyxl.cell.read_only import ReadOnlyCell
+    from openpyxl.reader.excel import ExcelReader
+    from openpyxl.styles.stylesheet import apply_stylesheet
+
+    found = OddCells()
+    try:
+        with path.open("rb") as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # about parts of the workbook that are not read
+            reader: Any = ExcelReader(file, read_only=True, keep_links=False)
+            reader.read_manifest()
+            reader.read_workbook()
+            apply_stylesheet(reader.archive, reader.wb)
+            holder = SimpleNamespace(parent=reader.wb)
+            styles = [
+                ReadOnlyCell(holder, 1, 1, None, style_id=i) for i in range(len(reader.wb._cell_styles))
+            ]
+            shown_as = [_LITERAL.sub("", style.number_format or "") for style in styles]
+            percent = {str(i) for i, text in enumerate(shown_as) if "%" in text}
+            target = next(link.target for one, link in reader.parser.find_sheets() if one.name == sheet)
+            with reader.archive.open(target) as part:
+                _search(part, percent, found)
+    except (OSError, LookupError, ValueError, StopIteration) as error:
+        raise _unreadable(label, error) from None
+    return found
+
+
+def _search(part: IO[bytes], percent: Collection[str], found: OddCells) -> None:
+    """Note the odd cells of a sheet's XML, which is read in pieces that end with a row."""
+    from openpyxl.utils import column_index_from_string
+
+    left = part.read(_PIECE)
+    prefix = _PREFIX.search(left)
+    x = prefix[1].decode() if prefix else ""
+    marks = "|".join(['t="e"', *(f's="{style}"' for style in sorted(percent))])
+    formula = rf"<{x}f\b(?:[^<>]*/>|[^<>]*>[^<]*</{x}f>)\s*(?:<{x}v\s*(?:/>|></{x}v>)\s*)?</{x}c>"
+    cells = re.compile(rf"<{x}c (?:[^<>]*?\b(?:{marks})|[^<>]*>\s*{formula})".encode())
+    value = re.compile(rf"<{x}v>([^<]*)<".encode())
+    while left:
+        end = left.rfind(b"row>") + 4
+        for cell in cells.finditer(left, 0, end) if end >= 4 else ():
+            close = left.index(b">", cell.start())
+            known = dict(_ATTRIBUTE.findall(left[cell.start() : close].decode()))
+            place = _PLACE.fullmatch(known.get("r", ""))
+            if place is None:
+                raise ValueError("its cells do not state where they are")
+            column, row = column_index_from_string(place[1]) - 1, int(place[2])
+            if known.get("t") == "e":
+                error = value.search(left, close)
+                found.valueless.append((column, row, error[1].decode() if error else "#"))
+            elif known.get("s") in percent:
+                found.percentages.setdefault(column, []).append(row)
+            elif known.get("t") != "str":  # a formula whose value is an empty text has one
+                found.valueless.append((column, row, ""))
+        piece = part.read(_PIECE)
+        left = left[max(end, 0) :] + piece if piece else b""
+
+
+def checked(
+    table: RawTable, odd: OddCells, where: str, read: Sequence[int], percent: Sequence[int], form: TextFormat
+) -> RawTable:
+    """Return a table of a sheet, its columns of percent in percent where their cells hold fractions.
+
+    Parameters
+    ----------
+    table : RawTable
+        As the reader of text returns it.
+    odd : OddCells
+        Of its sheet.
+    where : str
+        Names the workbook and the sheet in a refusal.
+    read, percent : sequence of int
+        Columns that are read, and those of them that are in percent by their name or the column map.
+    form : TextFormat
+        Its `missing` names the errors that mean a missing value.
 
     Raises
     ------
     InputError
-        In a column that is read, the first row holds a formula that was never computed.
+        In a column that is read, a cell has an error or no value, or is the only percentage, or is not one.
     """
-    import openpyxl
+    from openpyxl.utils import get_column_letter
 
-    warnings.filterwarnings("ignore", category=UserWarning, module="openpyxl")  # of styles that it lacks
-    units, columns = list(table.units), list(table.columns)
-    row = 1 if table.lines is None else int(table.lines[0])
-    try:
-        workbook = openpyxl.load_workbook(path, read_only=True)
-        (cells,) = workbook[sheet].iter_rows(row, row, max_col=len(columns))
-        workbook.close()
-    except (OSError, LookupError, ValueError) as error:
-        raise _unreadable(label, error) from None
-    for i in read:
-        if cells[i].data_type == "f" and np.isnan(columns[i][0]):
-            where = f"{label}, sheet {printable(sheet)}, cell {cells[i].coordinate}"
+    units, columns, lines = list(table.units), list(table.columns), np.asarray(table.lines)
+    for column, row, error in odd.valueless:
+        if column not in read or row not in lines or error.casefold() in form.missing:
+            continue
+        place = f"{where}, cell {get_column_letter(column + 1)}{row}"
+        if not error:
             cure = "Open the workbook in a spreadsheet program and save it."
-            raise InputError(where, "holds a formula without a saved value", cure=cure)
-        if "%" in (cells[i].number_format or ""):
+            raise InputError(place, "holds a formula without a saved value", cure=cure)
+        cure = f'If that means a missing value, add below [format] in the column map: missing = ["{error}"].'
+        raise InputError(place, "holds an error", error, cure)
+    for i in read:
+        there = np.isfinite(columns[i])
+        shown = np.isin(lines, odd.percentages.get(i, ())) & there
+        if not shown.any():
+            continue
+        if not np.array_equal(shown, there):
+            first = shown[there][0]
+            row = int(np.flatnonzero(there & (shown != first))[0])
+            rule = (
+                "is a percentage among plain numbers" if not first else "is a plain number among percentages"
+            )
+            got = f"{columns[i][row]:g}" if first else f"{100.0 * columns[i][row]:g} %"
+            place = f"{where}, cell {get_column_letter(i + 1)}{lines[row]}"
+            raise InputError(place, rule, got, "Format all cells of the column alike.")
+        if i in percent:
             units[i], columns[i] = "%", columns[i] * 100.0
     return replace(table, units=tuple(units), columns=columns)
 

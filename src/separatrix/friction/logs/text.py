@@ -14,6 +14,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.clock import CLOCK, SHORT_CLOCKS, is_clock, seconds
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import (
+    MISSING,
     NO_MOMENTS,
     QUOTED,
     Dialect,
@@ -130,11 +131,11 @@ class _Text:
         given = {"separator": form.separator, "decimal": form.decimal}
         heads = [[self[i] for i in range(begin, min(len(self), begin + n))] for n in (HEAD, 10 * HEAD)]
         try:
-            return dialect_of(heads[0], self.source, missing=form.missing, **given)
+            return dialect_of(heads[0], self.source, missing=MISSING | form.missing, **given)
         except InputError:
             if len(heads[0]) == len(heads[1]):
                 raise
-            return dialect_of(heads[1], self.source, missing=form.missing, **given)
+            return dialect_of(heads[1], self.source, missing=MISSING | form.missing, **given)
 
     def found(self, *, headless: bool) -> list[_Found]:
         """The tables of two rows or more; one row under names is metadata of the next table."""
