@@ -20,8 +20,7 @@ LEAST_SPAN = 1.2
 """Ratio of the largest to the smallest value from which tests span a condition; nearer than that
 tests were run at one temperature."""
 
-TOGETHER = 0.95
-"""Correlation of ln speed and ln pressure from which their slopes cannot be separated."""
+TOGETHER = 0.95  # correlation of ln speed and ln pressure from which their slopes cannot be separated
 
 Range = tuple[float, float]
 
@@ -143,11 +142,8 @@ EXPONENTS = {"slip_speed": 0.1, "pressure": 0.1, PRODUCT: 0.1, "temperature": 0.
 """Exponent with which friction may go on with a condition beyond the tests: guesses. For slip speed,
 pressure and pV a slope that was measured to be steeper takes their place."""
 
-SLACK = 1.05
-"""Ratio to the tested range within which a speed, a pressure or pV still counts as tested."""
-
-TEMPERATURE_SLACK = 5.0
-"""The same for temperature, as a difference [K]."""
+SLACK = 1.05  # ratio to the tested range within which a speed, a pressure or pV still counts as tested
+TEMPERATURE_SLACK = 5.0  # the same for temperature, as a difference [K]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -64,9 +64,7 @@ PRODUCT = "pressure_velocity"
 WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "pressure", PRODUCT: "pV"}
 
 _LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
-NAMES = ("material", "counterface", "medium")
-"""What a test must state: what slid on what, in what."""
-
+NAMES = ("material", "counterface", "medium")  # what a test must state: what slid on what, in what
 _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 
 

@@ -23,8 +23,7 @@ from separatrix.units import format_quantity, printable, shown, unit_of
 
 __all__ = ["ColumnMap", "Conditions", "RawLog", "column_map", "described", "read_column_map", "read_log"]
 
-LARGEST = 2_000_000_000
-"""Bytes that a log may have."""
+LARGEST = 2_000_000_000  # bytes that a log may have
 
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:

@@ -12,9 +12,7 @@ from separatrix.units import Array
 
 DAY = 86_400.0
 
-CLOCK = "clock"
-"""Unit of a column of times as text."""
-
+CLOCK = "clock"  # unit of a column of times as text
 SHORT_CLOCKS = ("hh:mm", "h:min", "mm:ss", "min:s", "m:s")
 """Units that state what the two numbers of a time are."""
 

@@ -19,9 +19,7 @@ from separatrix.units import printable, shown
 
 KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
 
-MOST = 1_000_000_000
-"""Number of a column or a line, at most."""
-
+MOST = 1_000_000_000  # number of a column or a line, at most
 QUANTITIES = {
     "temperature": "K",
     "slip_speed": "m/s",
@@ -35,12 +33,8 @@ QUANTITIES = {
 }
 """Conditions that are a number with a unit."""
 
-TEXTS = ("material", "counterface", "medium", "sample", "test")
-"""Conditions that are words."""
-
-RUN_IN_END = "run_in_end"
-"""Not a condition, but stated with them: where running-in ends."""
-
+TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
+RUN_IN_END = "run_in_end"  # not a condition, but stated with them: where running-in ends
 _AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
 _DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
 

@@ -24,9 +24,7 @@ from separatrix.friction.logs.names import (
 )
 from separatrix.units import printable, shown
 
-LAST = 9
-"""Rank of times as text: a column of seconds is finer."""
-
+LAST = 9  # rank of times as text: a column of seconds is finer
 NO_UNIT = "has no unit, so that its meaning is not certain"
 IN_MAP = "Below [columns] in a column map"
 

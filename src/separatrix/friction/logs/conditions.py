@@ -45,8 +45,7 @@ _VALUE = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"
 )
 
-MAP, MEDIAN = "column map", "median of its column"
-"""Where a condition comes from."""
+MAP, MEDIAN = "column map", "median of its column"  # where a condition comes from
 
 
 def conditions_of(

@@ -38,9 +38,7 @@ MISSING = frozenset(
 SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
 
-QUOTED = "\x1f"
-"""Stands for the comma between fields, where fields in quotes hold commas."""
-
+QUOTED = "\x1f"  # stands for the comma between fields, where fields in quotes hold commas
 _NAMES = {
     "\t": "tab",
     ";": "semicolon",
@@ -199,9 +197,7 @@ _OTHERS = {
     b"MATLAB 5": ("a MATLAB file", "Export the log as text."),
 }
 _ASCII_BELOW = ("utf-8", "cp1252", "latin-1", "cp1250")
-_END_OF_FILE = b"\x1a"
-"""What DOS programs write behind the last line."""
-
+_END_OF_FILE = b"\x1a"  # what DOS programs write behind the last line
 _MINUS = "\u2212".encode()
 _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 

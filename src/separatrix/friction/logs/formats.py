@@ -79,9 +79,7 @@ def _umt_series(head: str) -> str:
     return f"{data[1]} {script[1] if script else ''}" if data else ""
 
 
-PLAIN = Layout(name="plain text", recognised=lambda _: True)
-"""A table in text of no known instrument."""
-
+PLAIN = Layout(name="plain text", recognised=lambda _: True)  # A table in text of no known instrument
 LAYOUTS = (
     Layout(  # .lvm: a head and segments, each with a block of keys and its own table; X_Value is the time
         name="LabVIEW text",

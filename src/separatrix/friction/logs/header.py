@@ -32,8 +32,7 @@ _REMARKS = frozenset(
 _PAIR = re.compile(r"[\s#%]*([^:=\t;,]{1,60}?)\s*(?:[:=\t;,]\s*)+(\S.*?)[\s;,]*$")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)\s*(\d+)\s*$", re.IGNORECASE)
 
-MOST = 400
-"""Pairs kept of one table."""
+MOST = 400  # pairs kept of one table
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,8 +40,7 @@ MEANINGS = {
 }
 """What a column may mean, and the SI unit it is kept in. A rotational speed serves the conditions only."""
 
-ABSCISSAE = ("time", "distance", "cycles")
-"""The columns of which a log has at least one."""
+ABSCISSAE = ("time", "distance", "cycles")  # the columns of which a log has at least one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,11 +176,8 @@ class RawLog:
         return tuple(name for name in ABSCISSAE if getattr(self, name) is not None)
 
 
-ALIKE = 0.1
-"""Share by which measured conditions of parts may differ; beyond it they are of different tests."""
-
-LISTED = 12
-"""Parts whose friction is listed."""
+ALIKE = 0.1  # share by which measured conditions of parts may differ; beyond it they are of different tests
+LISTED = 12  # parts whose friction is listed
 
 
 def in_order(name: str) -> list[tuple[int, str]]:

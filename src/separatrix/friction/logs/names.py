@@ -125,9 +125,7 @@ _COUNTS = frozenset(
 )
 
 
-_CAMEL = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z])")
-"""Where two words of a name meet without a blank."""
-
+_CAMEL = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z])")  # where two words of a name meet without a blank
 _UNIT_AT_END = (
     r"(.+)_([^_\s]+)",
     r"(.+?)\s*/\s*(\S+)",

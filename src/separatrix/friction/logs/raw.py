@@ -22,9 +22,7 @@ HIGHEST = 5.0
 
 Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
-FEW = 0.1
-"""Share of the rows up to which such values are left out; with more of them the column is refused."""
-
+FEW = 0.1  # share of the rows up to which such values are left out; with more of them the column is refused
 ONE_SIGN = 0.9
 """Share of the rows in which the normal force must have one sign for it to be that of compression."""
 

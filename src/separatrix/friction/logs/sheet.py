@@ -23,9 +23,7 @@ from separatrix.friction.logs.log import RawTable
 from separatrix.units import printable
 from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
 
-MOST_ROWS_ABOVE = 2000
-"""Rows in which the first rows of numbers are looked for."""
-
+MOST_ROWS_ABOVE = 2000  # rows in which the first rows of numbers are looked for
 _NUMBERS = (float, datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
 _FIRST_DAY = datetime.datetime(1900, 1, 1)
 _PIECE = 4 * 1024**2

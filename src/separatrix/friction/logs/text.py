@@ -32,15 +32,9 @@ from separatrix.units import Array, printable
 Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
 """From the headers and units of a table to the numbers of the columns to read."""
 
-HEAD = 300
-"""Lines in which the table's separator and decimal sign are looked for first."""
-
-NEAR = 6
-"""Rows below which a line of names makes metadata of them."""
-
-MOST_TABLES = 2000
-"""Tables of one file; each keeps some 80 kB."""
-
+HEAD = 300  # lines in which the table's separator and decimal sign are looked for first
+NEAR = 6  # rows below which a line of names makes metadata of them
+MOST_TABLES = 2000  # tables of one file; each keeps some 80 kB
 _COMMA_IN_QUOTES = re.compile(rb'"[^"\n]*,[^"\n]*"')
 _IN_QUOTES = re.compile(rb'(?m)(?:,"[^"\n]*,[^"\n]*"[ ]*(?=,|$)|^"[^"\n]*,[^"\n]*"[ ]*(?=,))')
 """A field in quotes that holds a comma, beside a comma between fields."""
@@ -50,9 +44,7 @@ _FLOAT = re.compile(
 )
 """What numpy's reader takes for a number."""
 
-_FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")
-"""The exponent of a double in Fortran."""
-
+_FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")  # the exponent of a double in Fortran
 _COMMA = bytes.maketrans(b",.", b".'")
 _BACK = str.maketrans(".'", ",.")
 """With decimal commas a point is not part of a number: it becomes a mark that none can have, and back."""

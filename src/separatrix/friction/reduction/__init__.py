@@ -20,20 +20,11 @@ from separatrix.units import Array, format_number
 
 __all__ = ["Reduction", "ReductionOptions", "TestFriction", "reduce_log", "reduction", "with_outliers"]
 
-GIVEN = "given"
-"""How the end of running-in was found, if a user gave it."""
-
-PREFERRED = ("distance", "time", "cycles")
-"""Abscissae in the order in which one is chosen for ends and drift."""
-
-FEWEST_TESTS = 4
-"""Tests from which an outlier can be detected."""
-
-OUTLIER = 1.5
-"""Friction over the median of the others, or the reverse, from which a test may be an outlier."""
-
-FAR = 5.0
-"""Distance from that median over the usual one, in standard deviations."""
+GIVEN = "given"  # how the end of running-in was found, if a user gave it
+PREFERRED = ("distance", "time", "cycles")  # abscissae in the order in which one is chosen for ends and drift
+FEWEST_TESTS = 4  # tests from which an outlier can be detected
+OUTLIER = 1.5  # friction over the median of the others, or the reverse, from which a test may be an outlier
+FAR = 5.0  # distance from that median over the usual one, in standard deviations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,23 +12,12 @@ from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.friction.reduction.steady import oscillation
 from separatrix.units import Array, format_number
 
-MOST = 256
-"""Spans into which a test is divided for its statistics, at most."""
-
-FEWEST = 12
-"""Spans, where no cycle is known and there are as many rows."""
-
-FEWEST_ROWS = 4
-"""Rows without which there are no statistics."""
-
-FEWEST_CYCLES = 4
-"""Whole cycles below which means are over rows instead, which is reported."""
-
-ROWS_OF_A_SPAN = 3
-"""Rows in a span, at least, where no cycle is known."""
-
-ROWS_OF_A_CYCLE = 4.0
-"""Rows in a cycle below which its mean is not a mean over the turn."""
+MOST = 256  # spans into which a test is divided for its statistics, at most
+FEWEST = 12  # spans, where no cycle is known and there are as many rows
+FEWEST_ROWS = 4  # rows without which there are no statistics
+FEWEST_CYCLES = 4  # whole cycles below which means are over rows instead, which is reported
+ROWS_OF_A_SPAN = 3  # rows in a span, at least, where no cycle is known
+ROWS_OF_A_CYCLE = 4.0  # rows in a cycle below which its mean is not a mean over the turn
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

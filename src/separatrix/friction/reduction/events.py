@@ -14,31 +14,17 @@ from separatrix.friction.reduction.cycles import FEWEST, Spans
 from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.units import Array
 
-SMOOTHED = 5
-"""Rows of the running median: fewer in a row are not an event."""
-
-LASTING = 0.1
-"""Share of the rows through which a state must last to count as staying, if not to the end."""
-
-CHUNKS = 256
-"""Stretches from whose means the usual friction is taken."""
-
-NOISE = 7.0
-"""Standard deviations above its mean that noise does not reach."""
-
-ONSET = 0.1
-"""Share of the rise to the limit at which a seizure begins."""
-
+SMOOTHED = 5  # rows of the running median: fewer in a row are not an event
+LASTING = 0.1  # share of the rows through which a state must last to count as staying, if not to the end
+CHUNKS = 256  # stretches from whose means the usual friction is taken
+NOISE = 7.0  # standard deviations above its mean that noise does not reach
+ONSET = 0.1  # share of the rise to the limit at which a seizure begins
 STEP_GAIN, STEP_SIZE = 0.4, 0.1
 """A step leaves less than this share of the scatter around a straight line, and is larger than this share
 of the mean."""
 
-EDGE = 0.05
-"""Share of the steady part at its ends, or three spans, within which no step is reported."""
-
-RISE = 2.0
-"""Steady friction over that before a rise in running-in from which the rise is reported."""
-
+EDGE = 0.05  # share of the steady part at its ends, or three spans, within which no step is reported
+RISE = 2.0  # steady friction over that before a rise in running-in from which the rise is reported
 JUMP = 10.0
 """A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
 

@@ -19,29 +19,14 @@ if TYPE_CHECKING:
 RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
 """Size and words of the unit of a drift, by the abscissa."""
 
-CHANCE = 0.01
-"""Probability without any drift below which a drift is reported."""
-
-CLEAR = 0.25
-"""Power of an oscillation over that of all the rest from which it is reported."""
-
-HALF = 0.5
-"""Share of a test beyond which running-in is reported as long."""
-
-FEW_ROWS = 36
-"""Rows below which running-in cannot be judged."""
-
-RESOLVED = 5.0
-"""Rows an oscillation below which it may be the image of a faster one."""
-
-MOSTLY = 1.4
-"""Standard error over that by noise from which most of it is what may be left of running-in."""
-
-HIGH = 1.0
-"""Friction above which a wrong column or unit is likelier than a contact."""
-
-GAP = 0.05
-"""Share of the steady part without a row that is reported."""
+CHANCE = 0.01  # probability without any drift below which a drift is reported
+CLEAR = 0.25  # power of an oscillation over that of all the rest from which it is reported
+HALF = 0.5  # share of a test beyond which running-in is reported as long
+FEW_ROWS = 36  # rows below which running-in cannot be judged
+RESOLVED = 5.0  # rows an oscillation below which it may be the image of a faster one
+MOSTLY = 1.4  # standard error over that by noise from which most of it is what may be left of running-in
+HIGH = 1.0  # friction above which a wrong column or unit is likelier than a contact
+GAP = 0.05  # share of the steady part without a row that is reported
 
 
 def flags(one: Reduction) -> Iterator[str]:

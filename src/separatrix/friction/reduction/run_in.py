@@ -29,47 +29,28 @@ from separatrix.units import Array, Ratio
 
 METHOD = "longest tail whose mean agrees with that of each later part"
 
-PLACES = 96
-"""Places where the steady part may begin, at most."""
-
-LATEST = 0.75
-"""Share of the test beyond which no steady part begins."""
-
-COSINES = 8
-"""Cosines from which the noise of a tail is estimated."""
-
+PLACES = 96  # places where the steady part may begin, at most
+LATEST = 0.75  # share of the test beyond which no steady part begins
+COSINES = 8  # cosines from which the noise of a tail is estimated
 CHANCE = 1e-3
 """Probability with which the difference of two tails exceeds noise on one side without running-in."""
 
-WORTH = 0.0075
-"""Change of the mean, as a share of it, for which nothing is cut."""
-
+WORTH = 0.0075  # change of the mean, as a share of it, for which nothing is cut
 SEEN = 0.05
 """Deviation of the first part of a tail, as a share of friction, that is cut however short that part is."""
 
-STRETCH = 1.3
-"""Factor by which the place found may move up to where the differences are noise alone."""
-
-NOISE = 2.0
-"""Squares of standard errors that are noise in a difference: the rest of it is what may be left."""
-
-LEVEL = 0.02
-"""What may be left, as a share of the mean, from which a steady part is not level."""
-
+STRETCH = 1.3  # factor by which the place found may move up to where the differences are noise alone
+NOISE = 2.0  # squares of standard errors that are noise in a difference: the rest of it is what may be left
+LEVEL = 0.02  # what may be left, as a share of the mean, from which a steady part is not level
 OUTLIER = 6.0
 """Standard deviations from its neighbours at which a single span is a spike, which is not running-in."""
 
-DRIFT = 0.01
-"""Probability without a drift below which a tail still drifts."""
-
+DRIFT = 0.01  # probability without a drift below which a tail still drifts
 EVEN = 3.0
 """Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
 
-FEWEST = 12
-"""Spans below which running-in is not looked for."""
-
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
+FEWEST = 12  # spans below which running-in is not looked for
+ROUNDING = 1e-12  # share of friction below which differences are those of rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

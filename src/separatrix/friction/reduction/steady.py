@@ -29,33 +29,20 @@ from scipy.special import gammaincc, stdtr, stdtrit
 
 from separatrix.units import Array, Ratio
 
-LEVEL = 0.95
-"""Of the interval."""
-
+LEVEL = 0.95  # of the interval
 CORNERS = np.geomspace(2.0, 4096.0, 34)
 """Half turns of the stretch at which the correlated part has fallen to half: from a sixth of the
 stretch to none."""
 
-FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])
-"""White part of the spectrum at zero frequency."""
-
-FLAT = 0.75
-"""A cosine counts if the fitted spectrum has at least this share of its height at zero there."""
-
+FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])  # white part of the spectrum at zero frequency
+FLAT = 0.75  # A cosine counts if the fitted spectrum has at least this share of its height at zero there
 FEWEST_COSINES, MOST_COSINES = 6, 60
 
-LONG = 4.5
-"""Corner below which the correlation is too long for the stated interval: 7 % of the stretch."""
+LONG = 4.5  # corner below which the correlation is too long for the stated interval: 7 % of the stretch
 
-
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
-
-MIXED = 0.2
-"""White part from which the correlated one is only a guess."""
-
-LIKELY = 0.5
-"""Weight of the spectra of a long correlation from which it counts as long: more likely than not."""
+ROUNDING = 1e-12  # share of friction below which differences are those of rounding
+MIXED = 0.2  # white part from which the correlated one is only a guess
+LIKELY = 0.5  # weight of the spectra of a long correlation from which it counts as long: more likely than not
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -200,26 +187,15 @@ def _places(count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) / count - 0.5, dtype=float)
 
 
-SEGMENTS = 8
-"""Parts of the test whose spectra are averaged, overlapping by half."""
-
-LONGEST, SHORTEST = 4096, 64
-"""Rows of a segment."""
-
-CHANCE = 1e-4
-"""Probability with which noise alone would show a line as strong somewhere in the spectrum."""
-
-BESIDE = 8
-"""Places on each side of a line from which the noise is estimated; the two next to it are left out."""
-
+SEGMENTS = 8  # parts of the test whose spectra are averaged, overlapping by half
+LONGEST, SHORTEST = 4096, 64  # rows of a segment
+CHANCE = 1e-4  # probability with which noise alone would show a line as strong somewhere in the spectrum
+BESIDE = 8  # places on each side of a line from which the noise is estimated; the two next to it are left out
 LOWEST = 12
 """First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
 
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
-
-HARMONICS = 12
-"""Multiples of the cycle that are its own."""
+ROUNDING = 1e-12  # share of friction below which differences are those of rounding
+HARMONICS = 12  # multiples of the cycle that are its own
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
