@@ -112,7 +112,7 @@ def odd_cells(path: Path, sheet: str, label: str) -> OddCells:
             reader.read_manifest()
             reader.read_workbook()
             apply_stylesheet(reader.archive, reader.wb)
-            holder = SimpleNamespace(parent=reader.wb)
+            holder: Any = SimpleNamespace(parent=reader.wb)
             styles = [
                 ReadOnlyCell(holder, 1, 1, None, style_id=i) for i in range(len(reader.wb._cell_styles))
             ]

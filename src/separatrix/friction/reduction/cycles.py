@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.friction.reduction.steady import oscillation
 from separatrix.units import Array, format_number
 
@@ -93,10 +92,6 @@ class Stretch:
         first, last = self.cycles(start)
         return last - first >= FEWEST_CYCLES
 
-    def of_rows(self) -> Stretch:
-        """Return the same rows, with means over rows and not over whole cycles."""
-        return replace(self, done=None)
-
     def cycles(self, start: float | None = None) -> tuple[int, int]:
         """Return the first whole cycle from a place of the ruler on, and the one after the last.
 
@@ -131,19 +126,16 @@ class Stretch:
         return float(self.along[min(int(np.searchsorted(self.done, ruled)), self.along.size - 1)])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Clock:
-    """What is known of the cycle of a test."""
+def clock(
+    log: RawLog, along: Array, *, whole_cycles: bool, find_cycle: bool
+) -> tuple[Array | None, float | None, tuple[str, ...]]:
+    """Return the cycles of a log: by its column, by the time of one cycle, or in its spectrum.
 
-    done: Array | None
-    """Cycles done at each row, shape (row,), if means are over whole ones."""
-    cycle: float | None
-    """Length of a cycle in the unit of the abscissa."""
-    notes: tuple[str, ...] = ()
-
-
-def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
-    """Return the cycle of a log: by its column, by the time of one cycle, or in its spectrum.
+    Returns
+    -------
+    tuple
+        Cycles done at each row, shape (row,), if means are over whole ones; length of a cycle in the unit of
+        the abscissa; notes. None where that is not known.
 
     Raises
     ------
@@ -157,7 +149,7 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
     elif log.time is not None and log.conditions.cycle_time is not None:
         time = rising(log, "time")
         done = np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
-    elif options.find_cycle:  # the strongest line in the second half of the test
+    elif find_cycle:  # the strongest line in the second half of the test
         half = along.size // 2
         frequency = oscillation(along[half:], log.friction[half:], None).frequency
         notes = ("No line exceeds the noise of the spectrum: no cycle was found, and none is averaged over.",)
@@ -166,16 +158,14 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
             rate = format_number(1.0 / frequency)
             notes = (f"The cycle was found in the spectrum: one in {rate} of the abscissa's SI unit.",)
     if done is None or done[-1] <= done[0]:
-        return Clock(done=None, cycle=None, notes=notes)
+        return None, None, notes
     cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
-    if not options.whole_cycles:
-        return Clock(done=None, cycle=cycle, notes=notes)
     rows = float(done.size / max(done[-1] - done[0], 1e-300))
-    if rows < ROWS_OF_A_CYCLE:
+    if whole_cycles and rows < ROWS_OF_A_CYCLE:
         count = format_number(rows, 2)
         note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
-        return Clock(done=None, cycle=cycle, notes=(*notes, note))
-    return Clock(done=done, cycle=cycle, notes=notes)
+        return None, cycle, (*notes, note)
+    return (done if whole_cycles else None), cycle, notes
 
 
 def rising(log: RawLog, axis: str) -> Array:
@@ -203,16 +193,9 @@ def rising(log: RawLog, axis: str) -> Array:
 
 
 def means(abscissa: Array, values: Array, start: float, end: float, count: int) -> Spans:
-    """Return the means over `count` equal spans from `start` to `end`.
+    """Return the means over `count` equal spans from `start` to `end`; the abscissa, shape (row,), rises.
 
-    Parameters
-    ----------
-    abscissa, values : ndarray
-        Shape (row,) each; the abscissa rises.
-    start, end : float
-        Limits; a row at `end` itself belongs to the last span only if it is the last row.
-    count : int
-        Spans.
+    A row at `end` itself belongs to the last span only if it is the last row.
     """
     first, last = np.searchsorted(abscissa, (start, end), side="left")
     if abscissa[-1] == end:

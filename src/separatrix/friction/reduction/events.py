@@ -11,8 +11,7 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.cycles import FEWEST, Spans
-from separatrix.friction.reduction.records import ReductionOptions
-from separatrix.units import Array
+from separatrix.units import Ratio
 
 SMOOTHED = 5  # rows of the running median: fewer in a row are not an event
 LASTING = 0.1  # share of the rows through which a state must last to count as staying, if not to the end
@@ -45,9 +44,9 @@ class Event:
     """What it is compared with."""
 
 
-def row_events(log: RawLog, options: ReductionOptions) -> tuple[Event, ...]:
+def row_events(log: RawLog, seizure_ratio: Ratio, force_loss: Ratio) -> tuple[Event, ...]:
     """Return what single rows show: loading, seizure, spikes, lost load; in the order of the rows."""
-    found = [*_force_events(log, options), *_friction_events(log, options)]
+    found = [*_force_events(log, force_loss), *_friction_events(log, seizure_ratio)]
     return tuple(sorted(found, key=lambda event: event.row))
 
 
@@ -58,54 +57,39 @@ def kept_rows(events: tuple[Event, ...], rows: int) -> tuple[int, int]:
     return start, min([row for row in ends if row > start], default=rows)
 
 
-def usual_friction(friction: Array) -> float:
-    """Return the level that a fifth of the stretches of a test stay below: no seizure can lift it."""
-    size = max(SMOOTHED, -(-friction.size // CHUNKS))
-    starts = np.arange(0, friction.size, size)
-    means = np.add.reduceat(friction, starts) / np.diff(np.append(starts, friction.size))
-    return float(np.percentile(means, 20.0))
-
-
-def _friction_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
-    usual = usual_friction(log.friction)
+def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
+    # the level that a fifth of the stretches of a test stay below: no seizure can lift it
+    size = max(SMOOTHED, -(-log.rows // CHUNKS))
+    starts = np.arange(0, log.rows, size)
+    means = np.add.reduceat(log.friction, starts) / np.diff(np.append(starts, log.rows))
+    usual = float(np.percentile(means, 20.0))
     if usual <= 0.0 or log.rows < 4 * SMOOTHED:
         return
     smooth = median_filter(log.friction, SMOOTHED, mode="nearest")
-    for first, last in _stretches(smooth > max(options.seizure_ratio * usual, _reach_of_noise(smooth))):
+    # what noise does not reach, from the lower fifth, which no seizure can lift: the quantiles of 2.5 % and
+    # 20 % of a normal distribution are 1.96 and 0.84 standard deviations below its mean
+    low, fifth = np.percentile(smooth, (2.5, 20.0))
+    noise = float(fifth + (0.84 + NOISE) * (fifth - low) / (1.96 - 0.84))
+    for first, last in _stretches(smooth > max(seizure_ratio * usual, noise)):
         if first == 0 or last - first < SMOOTHED:
             continue
         stays = last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows
         row = first
         if stays:
-            calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (options.seizure_ratio - 1.0)))
+            calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (seizure_ratio - 1.0)))
             row = int(calm[-1]) + 1 if calm.size else first
-        yield Event(
-            kind="seizure" if stays else "spike",
-            row=row,
-            until=last,
-            size=float(smooth[first:last].max()),
-            usual=usual,
-        )
+        kind = "seizure" if stays else "spike"
+        yield Event(kind=kind, row=row, until=last, size=float(smooth[first:last].max()), usual=usual)
         if stays:
             return
 
 
-def _reach_of_noise(smooth: Array) -> float:
-    """Return the friction that noise does not reach, estimated from the lower fifth: no seizure can lift it.
-
-    The quantiles of 2.5 % and 20 % of a normal distribution are 1.96 and 0.84 standard deviations below
-    its mean.
-    """
-    low, fifth = np.percentile(smooth, (2.5, 20.0))
-    return float(fifth + (0.84 + NOISE) * (fifth - low) / (1.96 - 0.84))
-
-
-def _force_events(log: RawLog, options: ReductionOptions) -> Iterator[Event]:
+def _force_events(log: RawLog, force_loss: Ratio) -> Iterator[Event]:
     force = log.normal_force
     if force is None or not np.isfinite(force).any():
         return
     usual = float(np.nanmedian(np.abs(force)))
-    low = np.abs(force) < options.force_loss * usual
+    low = np.abs(force) < force_loss * usual
     for first, last in _stretches(low):
         least = float(np.nanmin(np.abs(force[first:last])))
         if first == 0:

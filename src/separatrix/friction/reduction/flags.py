@@ -31,17 +31,8 @@ GAP = 0.05  # share of the steady part without a row that is reported
 
 def flags(one: Reduction) -> Iterator[str]:
     """Yield what a reader should know about a test."""
-    yield from _events(one)
-    yield from _run_in(one)
-    yield from _rise(one)
-    yield from _drift(one)
-    yield from _oscillation(one)
-    yield from _spikes(one)
-    yield from _steps(one)
-    yield from _length(one)
-    yield from _range(one)
-    yield from _digits(one)
-    yield from _gap(one)
+    for part in (_ends, _run_in, _drift, _oscillation, _changes, _length, _size, _rows):
+        yield from part(one)
 
 
 def _at_row(one: Reduction, row: int) -> str:
@@ -54,7 +45,7 @@ def _at(one: Reduction, ruled: float) -> str:
     return in_words(one.stretch.place(ruled), one.test.run_in_axis)
 
 
-def _events(one: Reduction) -> Iterator[str]:
+def _ends(one: Reduction) -> Iterator[str]:
     """Report what begins or ends the test."""
     for event in one.events:
         place, usual = _at_row(one, event.row), format_number(event.usual, 3)
@@ -71,7 +62,7 @@ def _events(one: Reduction) -> Iterator[str]:
 
 
 def _run_in(one: Reduction) -> Iterator[str]:
-    """Report running-in that is long or does not end, and a steady part that is not level."""
+    """Report running-in that is long, does not end, or ends far above where it began."""
     test, found, start = one.test, one.run_in, float(one.stretch.along[0])
     share = (test.run_in_end - start) / (test.steady_end - start)
     end = in_words(test.run_in_end, test.run_in_axis)
@@ -89,20 +80,14 @@ def _run_in(one: Reduction) -> Iterator[str]:
         )
     if share > HALF and (found is None or found.ends):
         yield f"Running-in takes {100 * share:.0f} % of the test, up to {end}."
-
-
-def _rise(one: Reduction) -> Iterator[str]:
-    """Report running-in that ends far above where it began."""
-    rise = run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)
-    if rise is None:
-        return
-    low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
-    cut = "" if one.run_in is None else "if running-in ends elsewhere, write run_in_end in the column map; "
-    yield (
-        f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
-        f"running-in: a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
-        "use the log only up to the rise."
-    )
+    if (rise := run_in_rise(one.stretch.spans(), one.spans.start, test.friction)) is not None:
+        low, high = format_number(rise[1], 3), format_number(test.friction, 3)
+        cut = "if running-in ends elsewhere, write run_in_end in the column map; "
+        yield (
+            f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
+            f"running-in: a failed film, or a genuine rise. Look at the plot; {cut if found else ''}if the "
+            "film failed, use the log only up to the rise."
+        )
 
 
 def _drift(one: Reduction) -> Iterator[str]:
@@ -144,8 +129,8 @@ def _oscillation(one: Reduction) -> Iterator[str]:
     )
 
 
-def _spikes(one: Reduction) -> Iterator[str]:
-    """Report friction that rises far in the steady part and comes back."""
+def _changes(one: Reduction) -> Iterator[str]:
+    """Report friction that rises far in the steady part and comes back, and steps in friction or wear."""
     low, high = one.test.run_in_end, one.test.steady_end
     spikes = [e for e in one.events if e.kind == "spike" and low <= one.along[e.row] <= high]
     if spikes:
@@ -153,10 +138,6 @@ def _spikes(one: Reduction) -> Iterator[str]:
         often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
         sizes = f"{format_number(spikes[0].usual, 3)} to {format_number(largest.size, 3)}"
         yield f"Friction spikes {often} at {_at_row(one, largest.row)}: from {sizes}, and comes back."
-
-
-def _steps(one: Reduction) -> Iterator[str]:
-    """Report steps in friction or wear depth."""
     if (step := friction_step(one.spans)) is not None:
         word = f"{'rises' if step[1] > 0 else 'falls'} in one step by {format_number(abs(step[1]), 2)}"
         yield f"Friction {word} at {_at(one, step[0])}: a wear event, or a new surface."
@@ -189,7 +170,7 @@ def _length(one: Reduction) -> Iterator[str]:
         )
 
 
-def _range(one: Reduction) -> Iterator[str]:
+def _size(one: Reduction) -> Iterator[str]:
     """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
     mean = one.test.friction
     low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
@@ -206,8 +187,8 @@ def _range(one: Reduction) -> Iterator[str]:
         )
 
 
-def _digits(one: Reduction) -> Iterator[str]:
-    """Report friction whose noise is lost in the last digit of the log."""
+def _rows(one: Reduction) -> Iterator[str]:
+    """Report noise that is lost in the last digit of the log, and a stretch without rows."""
     step, error = one.last_digit
     if step == 0.0:
         yield (
@@ -219,10 +200,6 @@ def _digits(one: Reduction) -> Iterator[str]:
             f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
             f"makes a standard error of {format_number(error, 2)}."
         )
-
-
-def _gap(one: Reduction) -> Iterator[str]:
-    """Report a stretch without rows in the steady part."""
     longest = current = 0
     for count in one.spans.counts:
         current = current + 1 if count == 0 else 0

@@ -90,13 +90,7 @@ def half_width(standard_error: float, degrees_of_freedom: int) -> float:
 
 
 def steady_mean(values: Array) -> SteadyMean:
-    """Return the mean of a stretch with its standard error.
-
-    Parameters
-    ----------
-    values : ndarray
-        Means over equal spans, shape (span,), at least twelve.
-    """
+    """Return the mean of a stretch with its standard error, from means over equal spans, shape (span,)."""
     power = cosines(values) ** 2
     shapes, weights, best = fitted_shapes(power)
     flat = 1 + int((shapes[best] >= FLAT).sum())
@@ -134,11 +128,6 @@ def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
     """Return spectra that may be, one at zero frequency, how likely each is, and the most likely one's place.
 
     The first cosine is left out, for the straight line has taken it.
-
-    Parameters
-    ----------
-    power : ndarray
-        Squares of the projections on cosines 1, 2, ..., shape (cosine,).
 
     Returns
     -------
@@ -194,7 +183,6 @@ BESIDE = 8  # places on each side of a line from which the noise is estimated; t
 LOWEST = 12
 """First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
 
-ROUNDING = 1e-12  # share of friction below which differences are those of rounding
 HARMONICS = 12  # multiples of the cycle that are its own
 
 
@@ -219,14 +207,9 @@ NONE = Oscillation(
 
 
 def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
-    """Return the strongest oscillation that is not one of the cycle's.
+    """Return the strongest oscillation of rows, shape (row,), that is not one of the cycle's.
 
-    Parameters
-    ----------
-    along, friction : ndarray
-        Abscissa and friction of the steady rows, shape (row,) each.
-    cycle : float or None
-        Length of a cycle in the unit of the abscissa.
+    The length of the cycle is in the unit of the abscissa; None where it is not known.
     """
     span = float(along[-1] - along[0])
     if span <= 0.0 or along.size < SHORTEST:
