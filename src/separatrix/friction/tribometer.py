@@ -14,7 +14,7 @@ from separatrix.errors import InputError, together
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.log import RawLog, by_series, in_order, joined
+from separatrix.friction.logs.log import RawLog, in_order, joined
 from separatrix.friction.records import NAMES, FrictionTest
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
 from separatrix.units import printable
@@ -207,8 +207,15 @@ def _tests_of(
         for path, logs in files:
             folders.setdefault(path.absolute().parent, []).extend(logs)
         return [(home[parts[0].source], joined(parts)) for parts in folders.values()]
-    groups = by_series([log for _, logs in files for log in logs])
-    tests = [(home[parts[0].source], joined(parts)) for parts in groups]
+    series: dict[tuple[str, int], list[RawLog]] = {}
+    for i, log in enumerate(log for _, logs in files for log in logs):
+        series.setdefault((log.series, 0 if log.series else i), []).append(log)
+    tests = []
+    for parts in series.values():  # those of one series in several files are one test
+        several = len({part.checksum for part in parts}) > 1
+        tests += [
+            (home[one[0].source], joined(one)) for one in ([parts] if several else [[p] for p in parts])
+        ]
     counts = Counter(log.series for _, log in tests if log.series)
     found = []
     for path, log in tests:

@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK
 from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
 from separatrix.friction.logs.columns import Understood, understand
-from separatrix.friction.logs.formats import Layout, layout_of
-from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, ColumnRead, Conditions, RawLog, RawTable
+from separatrix.friction.logs.dialect import CLOCK
+from separatrix.friction.logs.header import Layout, layout_of
+from separatrix.friction.logs.log import ColumnRead, Conditions, RawLog, RawTable
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
 from separatrix.friction.logs.raw import raw_log
 from separatrix.friction.logs.sliding import motion_columns
 from separatrix.regular_file import size_of, unreadable

@@ -11,8 +11,7 @@ from typing import Any
 from separatrix import units
 from separatrix.errors import InputError
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
-from separatrix.friction.logs.log import MEANINGS
-from separatrix.friction.logs.names import known_units, scale_of
+from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
 from separatrix.friction.records import place
 from separatrix.toml_text import Kind, read_toml
 from separatrix.units import printable, shown

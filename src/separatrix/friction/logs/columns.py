@@ -6,12 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK
 from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
-from separatrix.friction.logs.formats import PLAIN, Layout
-from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, ColumnRead
+from separatrix.friction.logs.dialect import CLOCK
+from separatrix.friction.logs.header import PLAIN, Layout
+from separatrix.friction.logs.log import ColumnRead
 from separatrix.friction.logs.names import (
+    ABSCISSAE,
     CLOCKS,
+    MEANINGS,
     Scale,
     header_parts,
     known_units,

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.formats import layout_of
+from separatrix.friction.logs.header import layout_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts, ranks
 from separatrix.regular_file import size_of, unreadable

@@ -11,20 +11,22 @@ from itertools import pairwise
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK, SHORT_CLOCKS, is_clock, seconds
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import (
+    CLOCK,
     MISSING,
     NO_MOMENTS,
     QUOTED,
+    SHORT_CLOCKS,
     Dialect,
     dialect_of,
     fields,
+    is_clock,
     is_moment,
     is_number,
+    seconds,
 )
-from separatrix.friction.logs.formats import Layout
-from separatrix.friction.logs.header import Header, find_header, header_at, is_names, metadata_of
+from separatrix.friction.logs.header import Header, Layout, find_header, header_at, is_names, metadata_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts
 from separatrix.units import Array, printable
