@@ -13,8 +13,8 @@ import pytest
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.dialect import is_clock, seconds
 from separatrix.friction.logs.column_map import column_map
+from separatrix.friction.logs.dialect import is_clock, seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 
 ROWS = 240

@@ -200,23 +200,6 @@ def exists_already(path: Path) -> InputError:
     return InputError(f"--out {path}", "exists already, and was not touched", cure=cure)
 
 
-def write_friction(tests: Sequence[FrictionTest], path: Path) -> None:
-    """Write a friction file; what is read back is the same to the last bit.
-
-    Raises
-    ------
-    InputError
-        There is something of that name already, or it cannot be written.
-    """
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(friction_text(tests))
-    except FileExistsError:
-        raise exists_already(path) from None
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written ({error.strerror or error})") from None
-
-
 def friction_text(tests: Sequence[FrictionTest]) -> str:
     """Content of a friction file that a person can read and change."""
     return "\n".join([HEADER, *("\n".join(["[[test]]", *_lines(test), ""]) for test in tests)])

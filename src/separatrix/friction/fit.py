@@ -24,7 +24,7 @@ from separatrix.friction.law import (
     tested_range,
     values_of,
 )
-from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
+from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.scatter import (
     LinearModel,
     Posterior,
@@ -32,6 +32,7 @@ from separatrix.friction.scatter import (
     posteriors,
     variance_components,
 )
+from separatrix.measured_friction import Prediction
 from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
 
-from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest, Prediction
+from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest
+from separatrix.measured_friction import Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
 
 LEAST_SPAN = 1.2

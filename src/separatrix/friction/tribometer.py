@@ -34,24 +34,16 @@ MOST_FILES = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ReducedLogs:
-    """What logs of tribometers show: each test, and the friction of each material from all of them.
-
-    Attributes
-    ----------
-    reductions : tuple of Reduction
-        One for each test, with its log, its friction and the series behind it.
-    friction_tests : tuple of FrictionTest or None
-        The tests as a friction file keeps them; None where some do not state what slid on what.
-    fit : FrictionFit or None
-        Friction of each material over the conditions; None as above.
-    notes : tuple of str
-        What concerns all of them together.
-    """
+    """What logs of tribometers show: each test, and the friction of each material from all of them."""
 
     reductions: tuple[Reduction, ...]
+    """One for each test, with its log, its friction and the series behind it."""
     friction_tests: tuple[FrictionTest, ...] | None
+    """The tests as a friction file keeps them; None where some do not state what slid on what."""
     fit: FrictionFit | None
+    """Friction of each material over the conditions; None as above."""
     notes: tuple[str, ...] = ()
+    """What concerns all of them together."""
 
     @property
     def logs(self) -> list[RawLog]:
@@ -106,15 +98,22 @@ def tribometer(
     options = ReductionOptions(run_in_end=run_in)
     with _threads(jobs) as pool:
         read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
-        _refuse_copies(files, read)
         tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, options), tests, progress, 500)
     reductions = with_outliers(reduced)
-    friction_tests = _friction_tests(reductions, complete=complete)
+    friction_tests: list[FrictionTest] = []
+    wrong: list[InputError] = []
+    for one in reductions:
+        try:
+            friction_tests.append(friction_test(one.test))
+        except InputError as error:
+            wrong.append(error)
+    if wrong and complete:
+        raise _with_others(wrong)
     return ReducedLogs(
         reductions=tuple(reductions),
-        friction_tests=friction_tests,
-        fit=None if friction_tests is None else fit_friction(friction_tests),
+        friction_tests=None if wrong else tuple(friction_tests),
+        fit=None if wrong else fit_friction(friction_tests),
         notes=tuple(f"{one} A friction file is not written with it." for one in idle),
     )
 
@@ -186,21 +185,20 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     return first.at(first.path, cure=f"{first.cure} {more}".strip())
 
 
-def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> None:
-    """Refuse the same content in two files: it would count as a repeated test."""
-    first: dict[str, Path] = {}
-    for path, (one, *_) in zip(paths, found, strict=True):
-        if one.checksum in first:
-            same = printable(str(first[one.checksum]), 200)
-            cure = "A test counts once; leave one of them out."
-            raise InputError(printable(str(path), 200), f"has the same content as {same}", cure=cure)
-        first[one.checksum] = path
-
-
 def _tests_of(
     files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
 ) -> list[tuple[Path, RawLog]]:
-    """Logs of tests, each with its first file: parts joined on request, or as their headers state."""
+    """Logs of tests, each with its first file: parts joined on request, or as their headers state.
+
+    The same content in two files is refused: it would count as a repeated test.
+    """
+    first: dict[str, Path] = {}
+    for path, (log, *_) in files:
+        if log.checksum in first:
+            rule = f"has the same content as {printable(str(first[log.checksum]), 200)}"
+            cure = "A test counts once; leave one of them out."
+            raise InputError(printable(str(path), 200), rule, cure=cure)
+        first[log.checksum] = path
     home = {log.source: path for path, logs in files for log in logs}
     if join:
         folders: dict[Path, list[RawLog]] = {}
@@ -235,20 +233,6 @@ def _reduced(path: Path, log: RawLog, chosen: ColumnMap, options: ReductionOptio
         if not error.path.startswith("ReductionOptions."):
             raise
         raise error.at(f"{printable(path.name, 150)}: the end of running-in") from None
-
-
-def _friction_tests(reductions: Sequence[Reduction], *, complete: bool) -> tuple[FrictionTest, ...] | None:
-    """Tests as a friction file keeps them; None where some do not state what slid on what."""
-    found: list[FrictionTest] = []
-    wrong: list[InputError] = []
-    for one in reductions:
-        try:
-            found.append(friction_test(one.test))
-        except InputError as error:
-            wrong.append(error)
-    if wrong and complete:
-        raise _with_others(wrong)
-    return None if wrong else tuple(found)
 
 
 def friction_test(test: TestFriction) -> FrictionTest:

@@ -46,8 +46,7 @@ class ColumnChoice:
     name: str | None = None
     number: int | None = None
     unit: str | None = None
-    sign: int = 1
-    """-1 where compression counts negative."""
+    sign: int = 1  # -1 where compression counts negative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,8 +60,7 @@ class TextFormat:
     units_line: int | None = None
     missing: frozenset[str] = frozenset()
     """Texts that mean a missing value besides `MISSING`, in small letters."""
-    tables: tuple[str, ...] = ()
-    """Names of the tables (sheets, steps) to read; all of them if empty."""
+    tables: tuple[str, ...] = ()  # names of the tables (sheets, steps) to read; all of them if empty
 
     @property
     def begin(self) -> int:

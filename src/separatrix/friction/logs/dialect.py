@@ -52,8 +52,7 @@ NO_MOMENTS = (
 class Dialect:
     """How a file writes a row of numbers."""
 
-    separator: str
-    """One character; a blank means runs of blanks and tabs."""
+    separator: str  # one character; a blank means runs of blanks and tabs
     decimal: str
     missing: frozenset[str] = MISSING
 

@@ -189,10 +189,8 @@ class Layout:
     """Facts of one format that its files do not state themselves."""
 
     name: str
-    recognised: Callable[[str], object]
-    """From the first 20 000 characters of the file."""
-    rename: Callable[[str], str] = str.strip
-    """A header in the words of the published table of names."""
+    recognised: Callable[[str], object]  # from the first 20 000 characters of the file
+    rename: Callable[[str], str] = str.strip  # A header in the words of the published table of names
     units: Mapping[str, str] = field(default_factory=dict)
     """Unit of a header, as `rename` returns it, where the file writes none."""
     spellings: Mapping[tuple[str, str], str] = field(default_factory=dict)
@@ -201,14 +199,12 @@ class Layout:
     """Lines that may appear between rows of the table and are not part of it."""
     heading: re.Pattern[bytes] | None = None
     """Blocks of lines that are never rows, however many numbers they hold."""
-    keys_above: bool = False
-    """A line of keys is above one of values, even if there are only two of them."""
+    keys_above: bool = False  # A line of keys is above one of values, even if there are only two of them
     numbered: Mapping[str, re.Pattern[str]] = field(default_factory=dict)
     """Lines before a table that number it, by the word for its name: ``run 1, step 2``."""
     series: Callable[[str], str] = lambda _: ""
     """What the head of a file states about the test that it is a part of."""
-    same: tuple[str, ...] = ()
-    """Keys of metadata whose values, but for the sign, all parts of a test share."""
+    same: tuple[str, ...] = ()  # keys of metadata whose values, but for the sign, all parts of a test share
     split_by: tuple[str, ...] = ()
     """Headers, as the file writes them, whose change begins a new table; the first that exists counts."""
 

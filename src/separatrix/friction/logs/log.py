@@ -63,23 +63,18 @@ class ColumnRead:
     """How one column of a file was understood."""
 
     header: str
-    meaning: str | None
-    """A key of `MEANINGS`; None where the column is not used."""
-    unit: str
-    """As the file or the column map writes it; empty where there is none."""
-    why: str
-    """For instance ``"its name"`` or ``"column map"``."""
+    meaning: str | None  # A key of `MEANINGS`; None where the column is not used
+    unit: str  # as the file or the column map writes it; empty where there is none
+    why: str  # for instance ``"its name"`` or ``"column map"``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RawTable:
     """One table as a file holds it, before its columns have a meaning."""
 
-    name: str
-    """Of the sheet, channel group or section; empty where the file has one table only."""
+    name: str  # of the sheet, channel group or section; empty where the file has one table only
     headers: tuple[str, ...]
-    units: tuple[str, ...]
-    """As written; empty where the table has none."""
+    units: tuple[str, ...]  # as written; empty where the table has none
     columns: list[Array]
     """One per header, shape (row,) each, in the units written; NaN where the file has nothing."""
     metadata: Mapping[str, str] = field(default_factory=dict)

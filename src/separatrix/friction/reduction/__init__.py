@@ -129,21 +129,15 @@ class Reduction:
     log: RawLog
     test: TestFriction
     options: ReductionOptions
-    rows: slice
-    """Rows between loading and the end of the test."""
-    along: Array
-    """Abscissa of every row of the log, shape (row,)."""
-    stretch: cycles.Stretch
-    """Rows in which the contact slid under its load."""
-    cycle: float | None
-    """Length of a cycle in the unit of the abscissa; None where it is not known."""
-    run_in: RunIn | None
-    """How the end of running-in was found; None where it was given."""
+    rows: slice  # rows between loading and the end of the test
+    along: Array  # abscissa of every row of the log, shape (row,)
+    stretch: cycles.Stretch  # rows in which the contact slid under its load
+    cycle: float | None  # length of a cycle in the unit of the abscissa; None where it is not known
+    run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
-    steady_friction: Array
-    """Friction of the rows of the steady part, shape (row,)."""
+    steady_friction: Array  # friction of the rows of the steady part, shape (row,)
     last_digit: tuple[float, float]
     """Step in which friction is written, and the standard error that it causes."""
     cycle_means: Array

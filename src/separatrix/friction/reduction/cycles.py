@@ -25,10 +25,8 @@ class Spans:
 
     start: float
     width: float
-    means: Array
-    """Shape (span,); where a span holds no row, the straight line between its neighbours."""
-    counts: Array
-    """Rows in each span, shape (span,)."""
+    means: Array  # shape (span,); where a span holds no row, the straight line between its neighbours
+    counts: Array  # rows in each span, shape (span,)
 
     @property
     def centres(self) -> Array:
@@ -46,12 +44,9 @@ class Stretch:
     """Rows of a log in which the contact slid under its load, with what their means are taken over."""
 
     source: str
-    along: Array
-    """Abscissa of ends and drift, shape (row,); it does not fall."""
-    friction: Array
-    """Shape (row,) [-]."""
-    done: Array | None
-    """Cycles done, shape (row,) [-]; None where means are not over whole cycles."""
+    along: Array  # abscissa of ends and drift, shape (row,); it does not fall
+    friction: Array  # shape (row,) [-]
+    done: Array | None  # cycles done, shape (row,) [-]; None where means are not over whole cycles
 
     @property
     def ruler(self) -> Array:

@@ -34,14 +34,10 @@ class Event:
 
     kind: str
     """``"loading"``, ``"seizure"``, ``"force lost"``, ``"spike"``, ``"friction step"`` or ``"wear step"``."""
-    row: int
-    """First row of it; of ``"loading"`` the first row after it."""
-    until: int
-    """Row after its last one."""
-    size: float
-    """Largest friction, lowest force [N], or the step: friction or depth [m]."""
-    usual: float
-    """What it is compared with."""
+    row: int  # first row of it; of ``"loading"`` the first row after it
+    until: int  # row after its last one
+    size: float  # largest friction, lowest force [N], or the step: friction or depth [m]
+    usual: float  # what it is compared with
 
 
 def row_events(log: RawLog, seizure_ratio: Ratio, force_loss: Ratio) -> tuple[Event, ...]:

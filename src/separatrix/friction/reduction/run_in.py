@@ -62,8 +62,7 @@ class RunIn:
     """Largest difference between the mean behind the end and that of a later part, less its noise [-]."""
     ends: bool
     """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
-    level: bool
-    """Whether what may be left is at most `LEVEL` of the mean."""
+    level: bool  # whether what may be left is at most `LEVEL` of the mean
 
 
 def run_in(values: Array) -> RunIn:

@@ -52,20 +52,14 @@ class SteadyMean:
     mean: Ratio
     standard_error: Ratio
     degrees_of_freedom: int
-    change: Ratio
-    """Of the straight line, from one end of the stretch to the other."""
-    change_error: Ratio
-    """Standard error of `change`."""
+    change: Ratio  # of the straight line, from one end of the stretch to the other
+    change_error: Ratio  # standard error of `change`
     corner: float
     """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
-    floor: Ratio
-    """White part of the spectrum at zero frequency."""
-    long_chance: Ratio
-    """Weight of all spectra whose correlation is too long for the stated interval."""
-    power: Array
-    """Squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]."""
-    density: float
-    """Spectral density at zero frequency, in units of `power`."""
+    floor: Ratio  # white part of the spectrum at zero frequency
+    long_chance: Ratio  # weight of all spectra whose correlation is too long for the stated interval
+    power: Array  # squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]
+    density: float  # spectral density at zero frequency, in units of `power`
 
     @property
     def change_chance(self) -> float:
@@ -190,15 +184,11 @@ HARMONICS = 12  # multiples of the cycle that are its own
 class Oscillation:
     """The strongest line of the spectrum of friction."""
 
-    frequency: float
-    """In cycles per SI unit of the abscissa; 0 if no line exceeds the noise."""
-    amplitude: Ratio
-    """Peak to peak of the sine with its power [-]; 0 if no line exceeds the noise."""
-    signal_to_noise: float
-    """Its power over all other power but the cycle's."""
+    frequency: float  # in cycles per SI unit of the abscissa; 0 if no line exceeds the noise
+    amplitude: Ratio  # peak to peak of the sine with its power [-]; 0 if no line exceeds the noise
+    signal_to_noise: float  # its power over all other power but the cycle's
     frequencies: Array
-    density: Array
-    """Spectral density of friction at the frequencies."""
+    density: Array  # spectral density of friction at the frequencies
 
 
 NONE = Oscillation(
