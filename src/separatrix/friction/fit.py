@@ -111,10 +111,7 @@ class MaterialFit:
     def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
         """Logarithm of the mean that `at` predicts, for many conditions, each limited to its tested range.
 
-        Parameters
-        ----------
-        slip_speed, pressure : ndarray
-            Shape (sample,) [m/s, Pa].
+        Slip speed [m/s] and pressure [Pa] have the shape (sample,).
         """
         known = {"slip_speed": slip_speed, "pressure": pressure}
         known = {name: np.clip(x, *r) for name, x in known.items() if (r := self.ranges[name]) is not None}
@@ -160,12 +157,7 @@ class FrictionFit:
 def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT_SCATTER) -> FrictionFit:
     """Fit friction over conditions to tests, each material in each environment by itself.
 
-    Parameters
-    ----------
-    tests : sequence of FrictionTest
-        In any order; the same ones are fitted once.
-    default_scatter : float
-        Relative standard deviation that an unrepeated test is assumed to have [-].
+    An unrepeated test is assumed to have the default scatter, a relative standard deviation [-].
 
     Raises
     ------

@@ -161,14 +161,7 @@ def limited(
 ) -> Limited:
     """Conditions, each limited to its tested range; then also pV, where speed and pressure are both known.
 
-    Parameters
-    ----------
-    conditions : mapping
-        Condition to its value, or None where it is not known.
-    ranges : mapping
-        Condition to the tested range, or None where no test states it.
-    exponents : mapping
-        Condition to the exponent of the widening, where it is not that of `EXPONENTS`.
+    The exponent of the widening is that of `EXPONENTS`, or the given one where it is larger.
     """
     values: dict[str, float] = {}
     sentences, widening = [], 0.0

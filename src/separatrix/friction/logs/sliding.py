@@ -59,18 +59,9 @@ def motion_columns(headers: Sequence[str], units: Sequence[str]) -> list[int]:
 
 
 def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
-    """Rows of steady sliding, and a sentence on the others; empty where all rows slide.
+    """Rows of steady sliding of those kept, and a sentence on the others; empty where all rows slide.
 
-    Parameters
-    ----------
-    table : RawTable
-        As read; its columns of speed, position and force are looked at.
-    friction : ndarray
-        With its sign if the log has one, shape (row,).
-    time : ndarray or None
-        Shape (row,) [s].
-    kept : ndarray
-        Rows that have friction and abscissa; the others do not count.
+    Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
     """
     rows, words = next(_signals(table, friction, time, kept), (kept, ""))
     out = int(kept.sum() - (kept & rows).sum())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from io import BytesIO
 from itertools import pairwise
 
@@ -69,22 +70,10 @@ class _Found:
 def read_tables(
     text: bytes, source: str, form: TextFormat, layout: Layout, wanted: Wanted, *, headless: bool = False
 ) -> tuple[list[RawTable], Dialect]:
-    """Every table of a text, and the dialect it is written in.
+    """Every table of a text (UTF-8 with line feeds), and the dialect it is written in.
 
-    Parameters
-    ----------
-    text : bytes
-        UTF-8 with line feeds.
-    source : str
-        Names the file in a refusal.
-    form : TextFormat
-        What the column map states about the text.
-    layout : Layout
-        What is known of the instrument's format.
-    wanted : callable
-        From headers and units to the numbers of the columns to read; the others are left NaN.
-    headless : bool
-        The columns are known by their numbers, so that a table may lack headers.
+    Columns that are not wanted are left NaN. Where the columns are known by their numbers (`headless`), a
+    table may lack headers.
 
     Raises
     ------
@@ -108,7 +97,26 @@ class _Text:
         self.source, self.form, self.layout = source, form, layout
         self.ends = np.flatnonzero(np.frombuffer(self.text, np.uint8) == 10)
         self.starts = np.concatenate([[0], self.ends[:-1] + 1])
-        self.dialect = self._dialect()
+        if form.begin >= len(self):
+            where = f"{source}: header_line = {form.header_line}"
+            raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
+        dialect = partial(
+            dialect_of,
+            source=source,
+            separator=form.separator,
+            decimal=form.decimal,
+            missing=MISSING | form.missing,
+        )
+        # of the head; where that holds no rows yet, of ten times as many lines
+        heads = [
+            [self[i] for i in range(form.begin, min(len(self), form.begin + n))] for n in (HEAD, 10 * HEAD)
+        ]
+        try:
+            self.dialect = dialect(heads[0])
+        except InputError:
+            if len(heads[0]) == len(heads[1]):
+                raise
+            self.dialect = dialect(heads[1])
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -116,28 +124,15 @@ class _Text:
     def __getitem__(self, i: int) -> str:
         return self.text[self.starts[i] : self.ends[i]].decode()
 
-    def _dialect(self) -> Dialect:
-        """Dialect of the head; where that holds no rows yet, of ten times as many lines."""
-        form, begin = self.form, self.form.begin
-        if begin >= len(self):
-            where = f"{self.source}: header_line = {form.header_line}"
-            raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
-        given = {"separator": form.separator, "decimal": form.decimal}
-        heads = [[self[i] for i in range(begin, min(len(self), begin + n))] for n in (HEAD, 10 * HEAD)]
-        try:
-            return dialect_of(heads[0], self.source, missing=MISSING | form.missing, **given)
-        except InputError:
-            if len(heads[0]) == len(heads[1]):
-                raise
-            return dialect_of(heads[1], self.source, missing=MISSING | form.missing, **given)
-
     def found(self, *, headless: bool) -> list[_Found]:
         """The tables of two rows or more; one row under names is metadata of the next table."""
         found: list[_Found] = []
         before: list[int] = []
         for start, stop, n in self._stretches():
             if n < 1:
-                before += self._other_lines(start, stop, inside=bool(found))
+                known = self.layout.interruption if found else None
+                others = [i for i in range(start, stop) if self[i].strip()]
+                before += [i for i in others if not (known and known.match(self[i]))]
             elif found and not before:
                 if n != found[-1].separators:
                     raise self._wrong_row(start, found[-1])
@@ -227,11 +222,6 @@ class _Text:
         """The first row of the table in these lines."""
         near = range(start, min(stop, start + HEAD))
         return next((i for i in near if self.dialect.is_data(self[i])), stop)
-
-    def _other_lines(self, start: int, stop: int, *, inside: bool) -> list[int]:
-        """Lines that are neither empty nor known to be between rows."""
-        known = self.layout.interruption if inside else None
-        return [i for i in range(start, stop) if self[i].strip() and not (known and known.match(self[i]))]
 
     def _header(self, before: list[int], n: int, *, headless: bool) -> Header | None:
         if self.form.header_line is not None:

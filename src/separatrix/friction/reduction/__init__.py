@@ -12,8 +12,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.records import UNITS, in_words, place
 from separatrix.friction.reduction import cycles, steady
-from separatrix.friction.reduction.events import Event, kept_rows, row_events
-from separatrix.friction.reduction.flags import flags
+from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
 from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
 from separatrix.units import Array, Ratio, format_number
 
