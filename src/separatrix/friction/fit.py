@@ -141,13 +141,7 @@ class FrictionFit:
         return variance_components([linear_model(one.tests, one.covariates) for one in self.groups.values()])
 
     def of(self, material: str, environment: str) -> MaterialFit:
-        """Fit of one material in one environment.
-
-        Raises
-        ------
-        InputError
-            It has no test.
-        """
+        """Fit of one material in one environment."""
         if (material, environment) not in self.groups:
             rule = f'holds no test of "{material}" in "{environment}"'
             raise InputError("The friction file", rule)
@@ -158,11 +152,6 @@ def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT
     """Fit friction over conditions to tests, each material in each environment by itself.
 
     An unrepeated test is assumed to have the default scatter, a relative standard deviation [-].
-
-    Raises
-    ------
-    InputError
-        There is no test, or the scatter is out of range.
     """
     if not tests:
         raise InputError("The friction file", "holds no test")

@@ -21,11 +21,6 @@ _CYCLES = re.compile(r"\s*([0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]{1,2})?)\s*cycles
 def place(value: Any, where: str) -> tuple[str, float]:
     """Read abscissa and place from a text such as ``"200 m"``, ``"10 min"`` or ``"500 cycles"``.
 
-    Raises
-    ------
-    InputError
-        It is none of these.
-
     Examples
     --------
     >>> place("10 min", ""), place("200 m", ""), place("500 cycles", "")

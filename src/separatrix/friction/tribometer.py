@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -96,10 +95,13 @@ def tribometer(
     if idle and complete:
         raise together(idle)
     options = ReductionOptions(run_in_end=run_in)
-    with _threads(jobs) as pool:
+    pool = ThreadPoolExecutor(jobs)
+    try:
         read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
         tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, options), tests, progress, 500)
+    finally:  # nothing new is begun once the work is interrupted
+        pool.shutdown(wait=True, cancel_futures=True)
     reductions = with_outliers(reduced)
     friction_tests: list[FrictionTest] = []
     wrong: list[InputError] = []
@@ -142,16 +144,6 @@ def _files(paths: Sequence[str | Path]) -> list[Path]:
             raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
         known.add(path.resolve())
     return found
-
-
-@contextmanager
-def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
-    """Threads that begin nothing new once the work is interrupted."""
-    pool = ThreadPoolExecutor(jobs)
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _each(

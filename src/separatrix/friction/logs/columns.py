@@ -68,11 +68,6 @@ def understand(
     """Meaning of each column; `[columns]` of the column map goes first.
 
     With a constant normal force the tangential force alone determines the friction.
-
-    Raises
-    ------
-    InputError
-        Friction or its abscissa cannot be identified; which columns could be it, and the line to write.
     """
     table = _Table(headers, units, source, layout)
     given: dict[str, Meant] = {}

@@ -185,11 +185,6 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
 
     A byte order mark decides; without one, UTF-16 is known by the NUL bytes that its Latin letters have in
     every second place, UTF-8 by being valid, and what is left is Windows-1252 if no byte is undefined in it.
-
-    Raises
-    ------
-    InputError
-        Not a text file, or none of these encodings.
     """
     for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
         if raw.startswith(magic):

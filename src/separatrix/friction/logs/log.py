@@ -181,11 +181,6 @@ def conditions_of(
 
     The slip speed is the rotational speed times the radius of the track, the time of a cycle that of one
     turn, and the pressure the normal force over the area of the pin, where these are known.
-
-    Raises
-    ------
-    InputError
-        Two ways to the same condition differ by more than `AGREE`.
     """
     found: Found = {key: (value, MAP) for key, value in given.items()}
     notes = [note for key, text in metadata.items() if text and (note := _from_metadata(key, text, found))]
@@ -278,13 +273,7 @@ def in_order(name: str) -> list[tuple[int, str]]:
 
 
 def joined(parts: Sequence[RawLog]) -> RawLog:
-    """Return one log of the parts of a test, one after the other; time goes on from one to the next.
-
-    Raises
-    ------
-    InputError
-        The parts have no abscissa in common, or were run under different conditions.
-    """
+    """Return one log of the parts of a test, one after the other; time goes on from one to the next."""
     if len(parts) == 1:
         return parts[0]
     parts = sorted(parts, key=lambda part: in_order(part.source))

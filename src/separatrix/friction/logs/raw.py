@@ -34,14 +34,7 @@ def raw_log(
     columns: ColumnMap,
     given: Mapping[str, str | float],
 ) -> RawLog:
-    """Log of one table, with the conditions that the column map states for its file.
-
-    Raises
-    ------
-    InputError
-        A column that is needed cannot be identified or has no unit, time runs backwards, fewer than two
-        complete rows: file, line and cure.
-    """
+    """Log of one table, with the conditions that the column map states for its file."""
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
     understood = understand(

@@ -36,13 +36,7 @@ _BLANKS = str.maketrans("\t\r\n", "   ")
 
 
 def sheets_as_text(path: Path, label: str) -> dict[str, bytes]:
-    """Return the text of each sheet that holds a table of numbers, by its name.
-
-    Raises
-    ------
-    InputError
-        It is not a workbook that can be read safely, or no sheet has two rows of numbers.
-    """
+    """Return the text of each sheet that holds a table of numbers, by its name."""
     import python_calamine
 
     refuse_unsafe(path, label)
@@ -162,23 +156,8 @@ def checked(
 ) -> RawTable:
     """Return a table of a sheet, its columns of percent in percent where their cells hold fractions.
 
-    Parameters
-    ----------
-    table : RawTable
-        As the reader of text returns it.
-    odd : OddCells
-        Of its sheet.
-    where : str
-        Names the workbook and the sheet in a refusal.
-    read, percent : sequence of int
-        Columns that are read, and those of them that are in percent by their name or the column map.
-    form : TextFormat
-        Its `missing` names the errors that mean a missing value.
-
-    Raises
-    ------
-    InputError
-        In a column that is read, a cell has an error or no value, or is the only percentage, or is not one.
+    `where` names the workbook and the sheet in a refusal, `percent` the columns that are in percent by their
+    name or the column map. An error that `form` names means a missing value.
     """
     from openpyxl.utils import get_column_letter
 

@@ -74,11 +74,6 @@ def read_tables(
 
     Columns that are not wanted are left NaN. Where the columns are known by their numbers (`headless`), a
     table may lack headers.
-
-    Raises
-    ------
-    InputError
-        No table, a row of another length, text in a column of numbers: file, line and cure.
     """
     quoted = form.separator in (None, ",") and _COMMA_IN_QUOTES.search(text) and _IN_QUOTES.search(text)
     if quoted:  # a sign of our own for the commas between fields

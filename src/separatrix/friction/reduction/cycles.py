@@ -59,11 +59,6 @@ class Stretch:
         As many spans as the rows fill, up to `MOST`; of few rows, one each. Where cycles are known, the last
         span ends where they do; those that fill no span of their own are left out at the start, where a test
         is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
-
-        Raises
-        ------
-        InputError
-            There are too few rows.
         """
         if self.done is None:
             begin, end = float(self.along[0]) if start is None else start, float(self.along[-1])
@@ -131,11 +126,6 @@ def clock(
     tuple
         Cycles done at each row, shape (row,), if means are over whole ones; length of a cycle in the unit of
         the abscissa; notes. None where that is not known.
-
-    Raises
-    ------
-    InputError
-        The column of cycles falls.
     """
     done: Array | None = None
     notes: tuple[str, ...] = ()
@@ -164,13 +154,7 @@ def clock(
 
 
 def rising(log: RawLog, axis: str) -> Array:
-    """Return an abscissa of a log, shape (row,).
-
-    Raises
-    ------
-    InputError
-        It falls, is not finite, or does not move.
-    """
+    """Return an abscissa of a log, shape (row,)."""
     values = np.asarray(getattr(log, axis), dtype=float)
     where = f"{log.source}: {axis}"
     if not np.isfinite(values).all():
