@@ -78,7 +78,7 @@ class _Places:
         return self.label if line is None else f"{self.label}, line {line}"
 
 
-def _items(data: Mapping[str, Any], file: _Places) -> list[Any]:
+def _items(data: Mapping[str, object], file: _Places) -> list[object]:
     for key in data:
         if key not in ("title", "test"):
             where = f"{file.of(key, f'{key}.0')}: {printable(key)}"
@@ -95,7 +95,7 @@ def _items(data: Mapping[str, Any], file: _Places) -> list[Any]:
     return items
 
 
-def _test(item: Any, number: int, file: _Places) -> FrictionTest:
+def _test(item: object, number: int, file: _Places) -> FrictionTest:
     """One test; what its record or its readers refuse has the line of its key."""
     where = f"{file.of(f'test.{number}', 'test')}: [[test]]"
     if not isinstance(item, dict):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from separatrix import _check, units
 from separatrix.errors import InputError
@@ -18,7 +17,7 @@ UNITS = {"time": "s", "distance": "m", "cycles": "cycles"}
 _CYCLES = re.compile(r"\s*([0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]{1,2})?)\s*cycles?\s*")
 
 
-def place(value: Any, where: str) -> tuple[str, float]:
+def place(value: object, where: str) -> tuple[str, float]:
     """Read abscissa and place from a text such as ``"200 m"``, ``"10 min"`` or ``"500 cycles"``.
 
     Examples

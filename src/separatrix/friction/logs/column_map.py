@@ -128,7 +128,7 @@ def read_column_map(path: str | Path) -> ColumnMap:
     return column_map(document, printable(path.name or str(path), 100))
 
 
-def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
+def column_map(document: Mapping[str, object], source: str = "column map") -> ColumnMap:
     """Column map of a parsed TOML document."""
     sections = ("columns", "format", "test", "files")
     _known(document, sections, source, "section")
@@ -150,7 +150,7 @@ def column_map(document: Mapping[str, Any], source: str = "column map") -> Colum
     )
 
 
-def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: str) -> None:
+def _known(given: Mapping[str, object], names: tuple[str, ...], where: str, kind: str) -> None:
     for name in given:
         if name not in names:
             near = get_close_matches(name, names, 1, 0.6)
@@ -158,7 +158,7 @@ def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: s
             raise InputError(where, f"has no {kind} of that name", shown(name), cure)
 
 
-def _table(value: object, where: str) -> Mapping[str, Any]:
+def _table(value: object, where: str) -> Mapping[str, object]:
     if not isinstance(value, dict):
         raise InputError(where, "must be a section of the file", shown(value))
     return value
@@ -183,7 +183,7 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     return ColumnChoice(number=name, unit=unit, sign=sign)
 
 
-def _format(given: Mapping[str, Any], where: str) -> TextFormat:
+def _format(given: Mapping[str, object], where: str) -> TextFormat:
     _known(given, tuple(f.name for f in fields(TextFormat)), where, "key")
     options = {"separator": SEPARATORS, "decimal": _DECIMALS, "encoding": {name: name for name in ENCODINGS}}
     found: dict[str, Any] = {}
@@ -211,7 +211,7 @@ def _format(given: Mapping[str, Any], where: str) -> TextFormat:
     return TextFormat(**found)
 
 
-def _conditions(given: Mapping[str, Any], where: str) -> dict[str, str | float]:
+def _conditions(given: Mapping[str, object], where: str) -> dict[str, str | float]:
     _known(given, (*TEXTS, *QUANTITIES, RUN_IN_END), where, "condition")
     return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
 
