@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import openpyxl
 import pytest
-from minimal_xlsx import Fault, Formula, Shown, sheet, workbook, zipped
+from minimal_xlsx import STYLES, Fault, Formula, Shown, sheet, workbook, zipped
 
 from separatrix.errors import InputError
 from separatrix.friction.logs import read_log, tdms
@@ -99,10 +99,18 @@ def test_a_sign_of_percent_that_is_only_text_does_not_scale(tmp_path, code):
     assert read_log(tmp_path / "log.xlsx")[0].friction.tolist() == [0.12] * 5
 
 
-def test_the_name_of_a_workbook_does_not_matter(tmp_path):
-    """Nor does its ending."""
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"xl__styles_dot_xml": STYLES.replace("</styleSheet>", "<fills><fill/></fills></styleSheet>")},
+        {"xl__worksheets___rels__sheet1_dot_xml_dot_rels": "<broken"},
+    ],
+)
+def test_the_name_of_a_workbook_and_its_other_parts_do_not_matter(tmp_path, changes):
+    """Nor does its ending; a fill without a pattern stops openpyxl, and is none of our business."""
     rows = [["Time [s]", "COF [%]"], *([float(i), Shown(0.12, 2)] for i in range(5))]
-    (tmp_path / "log.dat").write_bytes(workbook({"a": rows}))
+    (tmp_path / "log.dat").write_bytes(workbook({"a": rows}, **changes))
     assert read_log(tmp_path / "log.dat")[0].friction.tolist() == [0.12] * 5
 
 

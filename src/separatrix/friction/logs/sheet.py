@@ -7,12 +7,12 @@ written as such.
 from __future__ import annotations
 
 import datetime
+import posixpath
 import re
-import warnings
+import zipfile
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import IO, Any
 
 import numpy as np
@@ -94,30 +94,47 @@ def odd_cells(path: Path, sheet: str, label: str) -> OddCells:
     calamine returns neither formats nor errors, and openpyxl takes a minute for a million rows: the XML is
     searched for such cells.
     """
-    from openpyxl.cell.read_only import ReadOnlyCell
-    from openpyxl.reader.excel import ExcelReader
-    from openpyxl.styles.stylesheet import apply_stylesheet
-
     found = OddCells()
     try:
-        with path.open("rb") as file, warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # about parts of the workbook that are not read
-            reader: Any = ExcelReader(file, read_only=True, keep_links=False)
-            reader.read_manifest()
-            reader.read_workbook()
-            apply_stylesheet(reader.archive, reader.wb)
-            holder: Any = SimpleNamespace(parent=reader.wb)
-            styles = [
-                ReadOnlyCell(holder, 1, 1, None, style_id=i) for i in range(len(reader.wb._cell_styles))
-            ]
-            shown_as = [_LITERAL.sub("", style.number_format or "") for style in styles]
-            percent = {str(i) for i, text in enumerate(shown_as) if "%" in text}
-            target = next(link.target for one, link in reader.parser.find_sheets() if one.name == sheet)
-            with reader.archive.open(target) as part:
+        with zipfile.ZipFile(path) as archive:
+            target, percent = _part_and_percentages(archive, sheet)
+            with archive.open(target) as part:
                 _search(part, percent, found)
-    except (OSError, LookupError, ValueError, StopIteration) as error:
+    except (OSError, LookupError, ValueError, SyntaxError) as error:  # SyntaxError: of XML
         raise _unreadable(label, error) from None
     return found
+
+
+def _part_and_percentages(archive: zipfile.ZipFile, sheet: str) -> tuple[str, set[str]]:
+    """Return the part that holds a sheet, and the numbers of the cell styles that show percentages."""
+    from openpyxl.xml.functions import fromstring
+
+    names = {name.casefold(): name for name in archive.namelist()}
+
+    def read(part: str) -> Any:
+        return fromstring(archive.read(names[part.casefold()]))
+
+    def related(part: str) -> tuple[dict[str, str], dict[str, str]]:
+        """Return the parts that a part names, by their identifiers and by their kinds."""
+        folder, _, name = part.rpartition("/")
+        links = list(read(f"{folder}/_rels/{name}.rels".lstrip("/")))
+        paths = [posixpath.normpath(posixpath.join("/", folder, one.get("Target")))[1:] for one in links]
+        kinds = [one.get("Type").rpartition("/")[2] for one in links]
+        ids = [one.get("Id") for one in links]
+        return dict(zip(ids, paths, strict=True)), dict(zip(kinds, paths, strict=True))
+
+    book = related("")[1]["officeDocument"]
+    paths, kinds = related(book)
+    sheets = {one.get("name"): dict(one.items()) for one in read(book).iterfind("{*}sheets/{*}sheet")}
+    target = paths[next(value for key, value in sheets[sheet].items() if key.endswith("}id"))]
+    if "styles" not in kinds:
+        return names[target.casefold()], set()
+    styles = read(kinds["styles"])
+    formats = {"9": "0%", "10": "0.00%"}  # those that every workbook has
+    formats |= {one.get("numFmtId"): one.get("formatCode") for one in styles.iterfind("{*}numFmts/{*}numFmt")}
+    used = [formats.get(one.get("numFmtId"), "") for one in styles.iterfind("{*}cellXfs/{*}xf")]
+    percent = {str(i) for i, text in enumerate(used) if "%" in _LITERAL.sub("", text)}
+    return names[target.casefold()], percent
 
 
 def _search(part: IO[bytes], percent: Collection[str], found: OddCells) -> None:
@@ -162,8 +179,9 @@ def checked(
     from openpyxl.utils import get_column_letter
 
     units, columns, lines = list(table.units), list(table.columns), np.asarray(table.lines)
+    inside = set(lines.tolist()) if odd.valueless else set()
     for column, row, error in odd.valueless:
-        if column not in read or row not in lines or error.casefold() in form.missing:
+        if column not in read or row not in inside or error.casefold() in form.missing:
             continue
         place = f"{where}, cell {get_column_letter(column + 1)}{row}"
         if not error:
