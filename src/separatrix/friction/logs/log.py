@@ -15,7 +15,8 @@ from separatrix import _check
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
 from separatrix.friction.logs.header import PLAIN, Layout
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, plain, scale_in
+from separatrix.friction.logs.names import ABSCISSAE, header_parts, plain, scale_in
+from separatrix.friction.logs.names import MEANINGS as MEANINGS
 from separatrix.units import (
     Array,
     Kelvin,
