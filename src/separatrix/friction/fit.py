@@ -92,19 +92,19 @@ class MaterialFit:
         steep = {name: sqrt(s.value**2 + s.standard_error**2) for name, s in self.slopes.items()}
         if PRODUCT in steep:
             steep = dict.fromkeys(("slip_speed", "pressure", PRODUCT), steep[PRODUCT])
-        within = limited(conditions, self.ranges, steep)
+        values, sentences, widening = limited(conditions, self.ranges, steep)
         chosen = self.covariates  # conditions that are not given stay at their centre
         middle = {name: exp(centre) for name, centre in zip(chosen.names, chosen.centres, strict=True)}
-        contrast = np.array(chosen.row({**middle, **within.values}))
+        contrast = np.array(chosen.row({**middle, **values}))
         log_mean, error = self.posterior.moments(contrast)
         mean = exp(log_mean)
         media = tuple(dict.fromkeys(test.medium for test in self.tests))
         return Prediction(
             mean=mean,
             standard_error=mean * error,
-            standard_deviation=mean * hypot(self.scatter, within.widening),
-            extrapolation=(*within.sentences, *other_medium(medium, media)),
-            widening=mean * within.widening,
+            standard_deviation=mean * hypot(self.scatter, widening),
+            extrapolation=(*sentences, *other_medium(medium, media)),
+            widening=mean * widening,
             assumed_scatter=self.scatter_source != OWN,
         )
 
@@ -170,13 +170,24 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
     found = posteriors(list(models.values()), default_scatter)
     others = OTHERS if any(model.shows_scatter for model in models.values()) else ASSUMED
-    return FrictionFit(
-        groups={
-            key: _material_fit(grouped[key], chosen[key], one, OWN if model.shows_scatter else others)
-            for (key, model), one in zip(models.items(), found, strict=True)
-        },
-        default_scatter=default_scatter,
-    )
+    groups = {}
+    for (key, model), posterior in zip(models.items(), found, strict=True):
+        estimates = []
+        for contrast in np.eye(1 + len(chosen[key].names)):
+            value, error = posterior.moments(contrast)
+            low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
+            estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
+        groups[key] = MaterialFit(
+            tests=tuple(grouped[key]),
+            covariates=chosen[key],
+            posterior=posterior,
+            intercept=estimates[0],
+            slopes=dict(zip(chosen[key].names, estimates[1:], strict=True)),
+            ranges={name: tested_range(grouped[key], name) for name in (*CONDITIONS, PRODUCT)},
+            scatter=posterior.scatter,
+            scatter_source=OWN if model.shows_scatter else others,
+        )
+    return FrictionFit(groups=groups, default_scatter=default_scatter)
 
 
 def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearModel:
@@ -188,26 +199,6 @@ def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearMod
         design=np.array([chosen.row(values_of(test, chosen.names)) for test in tests]),
         error=np.array([(test.standard_error or 0.0) / test.friction for test in tests]),
         sample=np.array(sample),
-    )
-
-
-def _material_fit(
-    tests: Sequence[FrictionTest], chosen: Covariates, posterior: Posterior, source: str
-) -> MaterialFit:
-    estimates = []
-    for contrast in np.eye(1 + len(chosen.names)):
-        value, error = posterior.moments(contrast)
-        low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
-        estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
-    return MaterialFit(
-        tests=tuple(tests),
-        covariates=chosen,
-        posterior=posterior,
-        intercept=estimates[0],
-        slopes=dict(zip(chosen.names, estimates[1:], strict=True)),
-        ranges={name: tested_range(tests, name) for name in (*CONDITIONS, PRODUCT)},
-        scatter=posterior.scatter,
-        scatter_source=source,
     )
 
 

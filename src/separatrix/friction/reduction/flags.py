@@ -41,7 +41,6 @@ class Event:
     kind: str
     """``"loading"``, ``"seizure"``, ``"force lost"``, ``"spike"``, ``"friction step"`` or ``"wear step"``."""
     row: int  # first row of it; of ``"loading"`` the first row after it
-    until: int  # row after its last one
     size: float  # largest friction, lowest force [N], or the step: friction or depth [m]
     usual: float  # what it is compared with
 
@@ -81,7 +80,7 @@ def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
             calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (seizure_ratio - 1.0)))
             row = int(calm[-1]) + 1 if calm.size else first
         kind = "seizure" if stays else "spike"
-        yield Event(kind=kind, row=row, until=last, size=float(smooth[first:last].max()), usual=usual)
+        yield Event(kind=kind, row=row, size=float(smooth[first:last].max()), usual=usual)
         if stays:
             return
 
@@ -95,9 +94,9 @@ def _force_events(log: RawLog, force_loss: Ratio) -> Iterator[Event]:
     for first, last in _stretches(low):
         least = float(np.nanmin(np.abs(force[first:last])))
         if first == 0:
-            yield Event(kind="loading", row=last, until=last, size=least, usual=usual)
+            yield Event(kind="loading", row=last, size=least, usual=usual)
         elif last - first >= SMOOTHED or last == log.rows:
-            yield Event(kind="force lost", row=first, until=last, size=least, usual=usual)
+            yield Event(kind="force lost", row=first, size=least, usual=usual)
 
 
 def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
