@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from io import BytesIO
 from itertools import pairwise
 
@@ -95,23 +94,17 @@ class _Text:
         if form.begin >= len(self):
             where = f"{source}: header_line = {form.header_line}"
             raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
-        dialect = partial(
-            dialect_of,
-            source=source,
-            separator=form.separator,
-            decimal=form.decimal,
-            missing=MISSING | form.missing,
-        )
-        # of the head; where that holds no rows yet, of ten times as many lines
-        heads = [
-            [self[i] for i in range(form.begin, min(len(self), form.begin + n))] for n in (HEAD, 10 * HEAD)
-        ]
-        try:
-            self.dialect = dialect(heads[0])
-        except InputError:
-            if len(heads[0]) == len(heads[1]):
-                raise
-            self.dialect = dialect(heads[1])
+        missing = MISSING | form.missing
+        for count in (HEAD, 10 * HEAD):  # where the head holds no rows yet, of ten times as many lines
+            head = [self[i] for i in range(form.begin, min(len(self), form.begin + count))]
+            try:
+                self.dialect = dialect_of(
+                    head, source, separator=form.separator, decimal=form.decimal, missing=missing
+                )
+                break
+            except InputError:
+                if len(head) < count or count > HEAD:
+                    raise
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -141,9 +134,8 @@ class _Text:
                     raise self._no_header(before, start, n, found)
                 found.append(_Found(header, [self[i] for i in before], n, [(start, stop)]))
                 if len(found) > MOST_TABLES:
-                    raise InputError(
-                        self.source, f"has more than {MOST_TABLES} tables", cure="Split the file."
-                    )
+                    rule = f"has more than {MOST_TABLES} tables"
+                    raise InputError(self.source, rule, cure="Split the file.")
                 before = []
         for i in before if found else []:  # a last row that was cut off is not a closing remark
             if all(is_number(part) for part in self.dialect.fields(self[i]) if part):

@@ -185,10 +185,10 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
-    found_line = steady.oscillation(stretch.along[first : first + friction.size], friction, cycle)
+    strongest = steady.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
-        test=_test(log, axis, stretch, spans, mean, found, found_line),
+        test=_test(log, axis, stretch, spans, mean, found, strongest),
         options=options,
         rows=kept,
         along=along,
@@ -200,7 +200,7 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
         steady_friction=friction,
         last_digit=steady.last_digit(friction),
         cycle_means=stretch.cycle_means(spans),
-        oscillation=found_line,
+        oscillation=strongest,
         events=events,
     )
     return replace(one, test=replace(one.test, flags=(*flags(one), *notes, *more)))
