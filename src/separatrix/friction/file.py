@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -66,11 +67,12 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
     return tuple(tests)
 
 
+@dataclass(frozen=True, slots=True)
 class _Places:
     """Where the keys of a file are."""
 
-    def __init__(self, label: str, lines: Mapping[str, int]) -> None:
-        self.label, self.lines = label, lines
+    label: str
+    lines: Mapping[str, int]
 
     def of(self, *keys: str) -> str:
         """Label and line of the first of the keys that the file holds."""

@@ -66,20 +66,20 @@ class RunIn:
 
 
 def run_in(values: Array) -> RunIn:
-    """Return where running-in ends.
-
-    Parameters
-    ----------
-    values : ndarray
-        Means over equal spans, shape (span,).
-    """
+    """Return where running-in ends, from means over equal spans, shape (span,)."""
     n = values.size
     if n < FEWEST or np.ptp(values) <= ROUNDING * np.abs(values).max():
         return RunIn(end=0.0, rest=0.0, ends=True, level=True)
-    values = _without_spikes(values)
+    # spikes of one or two spans are replaced by the median of their neighbours
+    middle = median_filter(values, 5, mode="nearest")
+    excess = np.abs(values - middle)
+    scatter = 1.4826 * float(np.median(excess))
+    values = np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
     line = _without_line(values)
+    power = dct(line, type=2, norm="ortho")[1:] ** 2
+    even = power[:COSINES].mean() <= EVEN * power[COSINES : 4 * COSINES].mean()  # no slow wander, no curve
     straight = _Tails(line, _without_line)
-    if _is_even(line) and straight.first(straight.noise) == 0:
+    if even and straight.first(straight.noise) == 0:
         return straight.from_place(0, abs(float(values.mean())))
     tails = _Tails(values, _without_level)
     first = tails.first(tails.noise + tails.worth)
@@ -130,21 +130,6 @@ class _Tails:
         rest = float(np.sqrt(max(0.0, float(square.max()))))
         ends = place < self.starts.size - 1
         return RunIn(end=float(self.share[place]), rest=rest, ends=ends, level=rest <= LEVEL * mean)
-
-
-def _without_spikes(values: Array) -> Array:
-    """Return the values, spikes of one or two spans replaced by the median of their neighbours."""
-    middle = median_filter(values, 5, mode="nearest")
-    excess = np.abs(values - middle)
-    scatter = 1.4826 * float(np.median(excess))
-    return np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
-
-
-def _is_even(values: Array) -> bool:
-    """Return whether the spectrum does not rise to its low end: no slow wander, no curve."""
-    power = dct(values, type=2, norm="ortho")[1:] ** 2
-    beyond = power[COSINES : 4 * COSINES]
-    return bool(power[:COSINES].mean() <= EVEN * beyond.mean())
 
 
 def _without_level(values: Array) -> Array:
