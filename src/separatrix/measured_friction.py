@@ -15,32 +15,22 @@ LEAST_FRICTION = 1e-5
 """The least that is a measurement: of frictions that scatter the logarithm is taken."""
 
 
-class PredictedFriction(Protocol):
-    """Friction foretold for some conditions, as `separatrix.friction.records.Prediction`."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """Friction that tests predict for stated conditions: log-normal about `mean`."""
+
+    mean: Ratio  # the material's friction, its median
+    standard_error: Ratio  # how well that mean is known from the tests
+    standard_deviation: Ratio  # of a new sample about it, widened where the conditions were not tested
+    extrapolation: tuple[str, ...] = ()  # in what respect the conditions were not tested, in words
+    widening: Ratio = 0.0  # what these add to the standard deviation, in quadrature
+    assumed_scatter: bool = False  # whether no repeated test shows the scatter
 
     @property
-    def mean(self) -> Ratio:
-        """The material's friction."""
-
-    @property
-    def standard_error(self) -> Ratio:
-        """Of that mean."""
-
-    @property
-    def standard_deviation(self) -> Ratio:
-        """Of a new sample about it."""
-
-    @property
-    def extrapolation(self) -> tuple[str, ...]:
-        """In what respect the conditions were not tested, in words."""
-
-    @property
-    def widening(self) -> Ratio:
-        """What of it comes from conditions that were not tested, in quadrature."""
-
-    @property
-    def assumed_scatter(self) -> bool:
-        """Whether no repeated test tells the scatter."""
+    def next_cage(self) -> Ratio:
+        """Standard deviation of the friction of the next cage: of the mean and of a new sample together."""
+        total: Ratio = (self.standard_error**2 + self.standard_deviation**2) ** 0.5
+        return total
 
 
 class FrictionLaw(Protocol):
@@ -53,8 +43,8 @@ class FrictionLaw(Protocol):
         pressure: Pascal | None,
         temperature: Kelvin | None,
         medium: str | Sequence[str] | None,
-    ) -> PredictedFriction:
-        """Friction for these conditions; one that is None is not asked about. The medium by all its names."""
+    ) -> Prediction:
+        """Friction for these conditions; one that is None is not known. The medium by all its names."""
 
 
 _SPREAD = _check.must(_check.not_negative, FRICTION_LIMIT)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction.file import read_friction, write_friction
+from separatrix.friction.file import friction_text, read_friction
 from separatrix.friction.fit import fit_friction
 from separatrix.friction.records import FrictionTest
 from separatrix.ranking.lowest import lowest_of
@@ -39,7 +39,7 @@ def test_what_is_written_is_read(tmp_path_factory, material, sample, flag, frict
         pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag,), run_in_end=end, run_in_axis=axis,
     )  # fmt: skip
     path = tmp_path_factory.mktemp("friction") / "friction.toml"
-    write_friction([test], path)
+    path.write_text(friction_text([test]), encoding="utf-8")
     assert read_friction(path) == (test,)
 
 

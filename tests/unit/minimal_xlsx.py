@@ -36,14 +36,14 @@ class Formula:
     """A formula with the value saved with it, if there is one."""
 
     text: str
-    value: float | None = None
+    value: float | str | None = None
 
 
 @dataclass(frozen=True)
 class Shown:
     """A number in a style: 1 a time of day, 2 a percentage."""
 
-    value: float
+    value: float | None
     style: int
 
 
@@ -88,10 +88,13 @@ def cell(row: int, column: int, value: object) -> str:
     if value is None:
         return ""
     if isinstance(value, Formula):
+        if value.value == "":
+            return f'<c {at} t="str"><f>{escape(value.text)}</f><v></v></c>'
         saved = "" if value.value is None else f"<v>{value.value!r}</v>"
         return f"<c {at}><f>{escape(value.text)}</f>{saved}</c>"
     if isinstance(value, Shown):
-        return f'<c {at} s="{value.style}"><v>{value.value!r}</v></c>'
+        saved = "" if value.value is None else f"<v>{value.value!r}</v>"
+        return f'<c {at} s="{value.style}">{saved}</c>'
     if isinstance(value, Fault):
         return f'<c {at} t="e"><v>{value.text}</v></c>'
     if isinstance(value, bool):

@@ -17,31 +17,24 @@ def anton_paar(
     friction,
     time,
     *,
-    distance=None,
     laps=None,
-    radius: float = 0.015,
-    speed: float = 0.1,
-    load: float = 5.0,
-    temperature: float = 295.15,
     nano: bool = False,
     decimal: str = ".",
     encoding: str = "cp1252",
     newline: str = "\r\n",
-    digits: int = 6,
     missing: str = "",
-    sample: str = "A1",
 ) -> bytes:
     """Anton Paar / CSM TRB: ``key : value [unit]`` lines, one line of headers, tabs between the columns."""
-    distance = time * speed if distance is None else distance
-    laps = distance / (2 * np.pi * radius) if laps is None else laps
+    distance, speed, load = time * 0.1, 0.1, 5.0
+    laps = distance / (2 * np.pi * 0.015) if laps is None else laps
     force, unit = (1e3, "mN") if nano else (1.0, "N")
     head = [
         "Nano Tribometer" if nano else "TRB3 Tribometer",
-        f"Sample name\t: {sample}",
-        f"Radius\t: {radius * 1e3:.2f} [mm]",
-        f"Lin. Speed\t: {speed * 100:.2f} [cm/s]",
+        "Sample name\t: A1",
+        "Radius\t: 15.00 [mm]",
+        "Lin. Speed\t: 10.00 [cm/s]",
         f"Normal load\t: {load * force:.2f} [{unit}]",
-        f"Temperature\t: {temperature - 273.15:.2f} [\u00b0C]",
+        "Temperature\t: 22.00 [\u00b0C]",
         "Single-way mode",
         "",
     ]
@@ -53,7 +46,7 @@ def anton_paar(
     one = np.ones_like(time)
     columns = [time, distance, laps, one, np.floor(laps), speed * one, load * force * one, friction]
     columns += [laps % 1.0 * 360.0, friction * load * force, time * 1e-3]
-    text = rows(columns, "\t", digits, missing)
+    text = rows(columns, "\t", 6, missing)
     head = [line.replace(".", decimal) if ":" in line else line for line in head]
     head[3] = head[3].replace(f"Lin{decimal}", "Lin.")
     return encoded([*head, header, *[line.replace(".", decimal) for line in text]], encoding, newline)
@@ -63,84 +56,58 @@ def rtec(
     friction,
     time,
     *,
-    normal_force=None,
     speed_rpm: float = 120.0,
     steps: Sequence[int] | None = None,
     metadata: bool = True,
-    encoding: str = "utf-8",
-    newline: str = "\r\n",
-    digits: int = 6,
     total: str = "00:01:08.25",
 ) -> bytes:
     """Rtec MFT: a line of keys over one of values, headers and rows that end in a comma, and a total time."""
     one = np.ones_like(time)
-    load = 10.0 * one if normal_force is None else normal_force
     number = one if steps is None else np.asarray(steps, float)
     head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"] if metadata else []
     header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),"
     header += "Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
-    columns = [number, time, number, load, friction * load, friction, speed_rpm * one, time * 1e-4]
-    text = [line + "," for line in rows(columns, ",", digits, "")]
+    columns = [number, time, number, 10.0 * one, friction * 10.0, friction, speed_rpm * one, time * 1e-4]
+    text = [line + "," for line in rows(columns, ",", 6, "")]
     tail = ["TotalTime", total] if total else []
-    return encoded([*head, header, *text, *tail], encoding, newline)
+    return encoded([*head, header, *text, *tail], "utf-8", "\r\n")
 
 
-def umt(
-    friction,
-    time,
-    *,
-    normal_force=None,
-    reciprocating: bool = False,
-    steps: int = 1,
-    unit: str = "g",
-    encoding: str = "utf-8",
-    newline: str = "\r\n",
-    digits: int = 6,
-) -> bytes:
+def umt(friction, time, *, reciprocating: bool = False, steps: int = 1, unit: str = "g") -> bytes:
     """Bruker (CETR) UMT: for each step its keys, headers, a line of units, an empty line, and the rows.
 
     Forces are in gram-force with compression negative; `steps` divides the rows evenly, time begins anew.
     """
     size = {"g": 9.80665e-3, "N": 1.0}[unit]
-    load = np.full_like(time, 2.0) if normal_force is None else normal_force
     head = ["Created by CETR Data Viewer ver.2.19 01/02/26 10:00:00", "Total number of runs - 1"]
     head += [f"Total number of steps = {steps}", "", "Run # 1", "Run date 01 Feb 2026 10:00:00"]
     lines = head
     for i, part in enumerate(np.array_split(np.arange(len(time)), steps), 1):
-        f, t, n = friction[part], time[part] - time[part][0], load[part]
+        f, t = friction[part], time[part] - time[part][0]
+        n = np.full_like(t, 2.0)
         stroke = np.sign(np.sin(2 * np.pi * t + 0.1)) if reciprocating else np.ones_like(t)
         keys = [f"Step No. {i}", "", "Step Type Code: 0", "Radius       = 15.000", "Velocity     = 240"]
         keys += [f"Set Force    = {-n[0] / size:.0f}", f"Data Count   = {len(t)}", ""]
         header = ["Fx,Fz,Z,T,Ff,COF", f"{unit},{unit},mm,sec,{unit},", ""]
         columns = [stroke * f * n / size, -n / size, -t * 1e-3, t, f * n / size, f]
-        lines = [*lines, *keys, *header, *rows(columns, ",", digits, ""), "", ""]
-    return encoded(lines, encoding, newline)
+        lines = [*lines, *keys, *header, *rows(columns, ",", 6, ""), "", ""]
+    return encoded(lines, "utf-8", "\r\n")
 
 
-def compend(
-    friction,
-    time,
-    *,
-    normal_force=None,
-    fast_data_every: int = 0,
-    coefficient: bool = True,
-    encoding: str = "cp1252",
-    newline: str = "\r\n",
-    digits: int = 6,
-) -> bytes:
+def compend(friction, time, *, fast_data_every: int = 0, coefficient: bool = True) -> bytes:
     """Phoenix Compend: rows that begin and end with a tab, with lines naming files of fast data between."""
-    load = np.full_like(time, 20.0) if normal_force is None else normal_force
+    load = np.full_like(time, 20.0)
     names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)"]
     columns = [time, load, friction * load, np.floor(time * 2), 0 * time]
     if coefficient:
         names, columns = [*names, "CoF"], [*columns, friction]
-    text = ["\t" + line + "\t" for line in rows(columns, "\t", digits, "")]
+    text = ["\t" + line + "\t" for line in rows(columns, "\t", 6, "")]
     if fast_data_every:
         for n, i in enumerate(range(len(text) - 1, 0, -fast_data_every)):
             text.insert(i, f'Fast data in \t=HYPERLINK("test-h{n:03d}.tsv")')
     head = ["COMPEND 2000", "Test file\ttest.tsv", "", "Test started at 10:00:00"]
     header = "\t" + "\t".join(names) + "\t"
-    return encoded([*head, header, *text, "Test finished at 11:00:00"], encoding, newline)
+    return encoded([*head, header, *text, "Test finished at 11:00:00"], "cp1252", "\r\n")
 
 
 def plain_csv(

@@ -126,13 +126,6 @@ def test_jobs_do_not_change_the_answer(logs, capsys):
     assert answers[0] == answers[1]
 
 
-def test_the_end_of_running_in_may_be_given(logs, capsys):
-    """--run-in takes the place of what would be found."""
-    assert main(["tribometer", "a.csv", "--json", "--run-in", "5 min"]) == 0
-    (test,) = json.loads(capsys.readouterr().out)["tests"]
-    assert test["run_in_end"] == pytest.approx(300.0, abs=0.5)  # the next row
-
-
 WRONG = {
     "no such file": (["nofile.csv"], ("nofile.csv cannot be read",)),
     "a folder without logs": (["more2"], ("more2 is a folder without a log",)),

@@ -11,8 +11,7 @@ import pytest
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
-from separatrix.friction.file import friction_text, read_friction, write_friction
+from separatrix.friction.file import friction_text, read_friction
 from separatrix.friction.fit import TestedFriction
 from separatrix.friction.records import FrictionTest
 from separatrix.study import Friction, Operation
@@ -65,7 +64,7 @@ def study(folder, text=SMALL, ranking=""):
 def test_a_written_test_is_read_back_to_the_last_bit(tmp_path, axis):
     """Every field, with numbers that no short decimal holds, quotes and backslashes."""
     tests = (whole(run_in_axis=axis), whole(checksum="cd" * 32, flags=(), sample=None))
-    write_friction(tests, tmp_path / "friction.toml")
+    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
 
 
@@ -86,15 +85,6 @@ def test_the_file_is_toml_that_says_what_it_is():
     text = friction_text([whole()])
     assert text.startswith("# Friction of cage materials")
     assert tomllib.loads(text)["test"][0]["run_in_end"] == "12.3 cycles"
-
-
-def test_a_file_that_exists_is_not_overwritten(tmp_path):
-    """Whatever it holds, it stays."""
-    path = tmp_path / "friction.toml"
-    path.write_text("# mine")
-    with pytest.raises(InputError, match="exists already, and was not touched"):
-        write_friction([whole()], path)
-    assert path.read_text() == "# mine"
 
 
 def test_a_study_ranks_the_materials_of_a_friction_file(tmp_path):
@@ -122,7 +112,7 @@ def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
 def test_two_tests_of_one_log_are_two_tests(tmp_path):
     """Sheets and steps of one file share its checksum."""
     tests = (whole(source="a.csv, step 1"), whole(source="a.csv, step 2"))
-    write_friction(tests, tmp_path / "friction.toml")
+    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
 
 

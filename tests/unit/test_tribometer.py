@@ -51,8 +51,6 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     [
         ({"complete": True}, "a2.csv does not state: material, counterface, medium."),
         ({"run_in": "5 N"}, "ReductionOptions.run_in_end must be a time"),
-        ({"run_in": "5 m"}, "a2.csv needs a column of distance"),
-        ({"column_map": "none.toml"}, "none.toml cannot be read: no such file"),
     ],
 )
 def test_a_wrong_call_is_refused(folder, arguments, words):

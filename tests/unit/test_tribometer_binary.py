@@ -1,12 +1,13 @@
 """Logs in workbooks and in LabVIEW files become the numbers, names and units written."""
 
 import builtins
+import re
 import sys
 
 import numpy as np
 import openpyxl
 import pytest
-from minimal_xlsx import Fault, Formula, Shown, workbook, zipped
+from minimal_xlsx import STYLES, Fault, Formula, Shown, sheet, workbook, zipped
 
 from separatrix.errors import InputError
 from separatrix.friction.logs import read_log, tdms
@@ -55,10 +56,10 @@ def test_each_sheet_with_a_table_is_a_log(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "mark", [None, "x", "-", " NaN ", "n/a", Fault("#N/A"), Fault("#DIV/0!"), Formula('IF(A1,"",1)')]
+    "mark", [None, "x", "-", " NaN ", "n/a", "#DIV/0!", Formula('IF(A1,"",1)', ""), Shown(None, 2)]
 )
 def test_a_missing_value_is_left_out(tmp_path, mark):
-    """An empty cell, a mark or an error is not a value; the note counts its row."""
+    """An empty cell, a mark or a formula with an empty text is not a value; the note counts its row."""
     (found,) = logs(tmp_path, changed(5, 1, mark))
     assert (found.rows, found.missing) == (39, 1)
 
@@ -70,6 +71,56 @@ def test_times_of_day_and_dates_become_seconds(tmp_path):
         (found,) = logs(tmp_path, {"a": [["Time", "COF"], *rows]})
         # times of day are read to the microsecond, and rounded at both ends
         assert found.time == pytest.approx(np.arange(5.0), abs=2e-6)
+
+
+def test_an_error_may_mean_a_missing_value(tmp_path):
+    """If the column map says so."""
+    missing = {"format": {"missing": ["#DIV/0!"]}}
+    (found,) = logs(tmp_path, changed(5, 1, Fault("#DIV/0!")), missing)
+    assert (found.rows, found.missing) == (39, 1)
+
+
+def test_only_cells_that_are_read_must_have_a_value(tmp_path):
+    """An error beside the table, above it, or in a column that is not needed does not count."""
+    rows = [[float(i), 0.1, Fault("#REF!"), None, Fault("#N/A")] for i in range(9)]
+    (found,) = logs(tmp_path, {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *rows]})
+    assert found.rows == 9
+
+
+@pytest.mark.parametrize("code", ['0.0"%"', "0\\%"])
+def test_a_sign_of_percent_that_is_only_text_does_not_scale(tmp_path, code):
+    """What shows 12 % by such a format is saved as 12."""
+    book = openpyxl.Workbook()
+    for row in (["Time [s]", "COF [%]"], *([float(i), 12.0] for i in range(5))):
+        book.active.append(row)
+    for cell in book.active["B"][1:4]:
+        cell.number_format = code
+    book.save(tmp_path / "log.xlsx")
+    assert read_log(tmp_path / "log.xlsx")[0].friction.tolist() == [0.12] * 5
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"xl__styles_dot_xml": STYLES.replace("</styleSheet>", "<fills><fill/></fills></styleSheet>")},
+        {"xl__worksheets___rels__sheet1_dot_xml_dot_rels": "<broken"},
+    ],
+)
+def test_the_name_of_a_workbook_and_its_other_parts_do_not_matter(tmp_path, changes):
+    """Nor does its ending; a fill without a pattern stops openpyxl, and is none of our business."""
+    rows = [["Time [s]", "COF [%]"], *([float(i), Shown(0.12, 2)] for i in range(5))]
+    (tmp_path / "log.dat").write_bytes(workbook({"a": rows}, **changes))
+    assert read_log(tmp_path / "log.dat")[0].friction.tolist() == [0.12] * 5
+
+
+def test_the_parts_of_a_sheet_may_have_a_prefix(tmp_path):
+    """Some programs write <x:c s="2" r="B7"> for <c r="B7" s="2">."""
+    rows = [["Time [s]", "COF [%]"], *([float(i), Shown(0.12, 2 * (i < 4))] for i in range(5))]
+    text = re.sub(r"<(/?)(?=[a-z])", r"<\1x:", sheet(rows)).replace("xmlns=", "xmlns:x=")
+    text = re.sub(r' (r="[A-Z0-9]+") (s="2")', r" \2 \1", text)
+    with pytest.raises(InputError, match=r"cell B6 is a plain number among percentages; got 0\.12\."):
+        logs(tmp_path, workbook({"a": rows}, xl__worksheets__sheet1_dot_xml=text))
 
 
 @pytest.mark.parametrize("header", [["Time [s]", "COF [%]"], ["Time [s]", "COF"]])
@@ -166,11 +217,23 @@ def test_what_openpyxl_writes_is_read(tmp_path):
 
 
 AT_B7 = 'log.xlsx, sheet a: row 7, column "COF" must be a number; got '
+IN_B7 = "log.xlsx, sheet a, cell B7 "
 WRONG = {
     "text among numbers": (changed(4, 1, "high"), AT_B7 + '"high". If that means a missing value'),
     "a decimal comma as text": (changed(4, 1, "0,12"), AT_B7 + '"0,12"'),
     "a truth value": (changed(4, 1, True), AT_B7 + '"True"'),
     "a formula never computed": (changed(0, 1, Formula("A5/10")), "cell B3 holds a formula without a saved"),
+    "one further down": (changed(4, 1, Formula("A5/10")), IN_B7 + "holds a formula without a saved value. "),
+    "an error": (changed(4, 1, Fault("#DIV/0!")), IN_B7 + "holds an error; got #DIV/0!. If that means a mis"),
+    "an error of the name of a missing value": (changed(4, 1, Fault("#N/A")), IN_B7 + "holds an error"),
+    "a percentage among plain numbers": (
+        changed(4, 1, Shown(0.12, 2)),
+        IN_B7 + "is a percentage among plain numbers; got 12 %. Format all cells of the column alike.",
+    ),
+    "plain numbers below a percentage": (
+        changed(0, 1, Shown(0.12, 2)),
+        "log.xlsx, sheet a, cell B4 is a plain number among percentages; got 0.101.",
+    ),
     "no names": (
         {"a": NUMBERS},
         "sheet a: row 1 begins a table of 3 columns without a line of 3 column names",

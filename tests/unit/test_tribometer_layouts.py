@@ -7,14 +7,13 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
-import openpyxl
 import pytest
 
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.clock import is_clock, seconds
 from separatrix.friction.logs.column_map import column_map
+from separatrix.friction.logs.dialect import is_clock, seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 
 ROWS = 240
@@ -96,20 +95,6 @@ def test_labview_text_is_read_at_once_and_a_copy_of_a_table_counts_once(tmp_path
     test = reduce_log(log)
     assert test.friction == pytest.approx(0.0205, rel=1e-9)
     assert any("has 6 rows: too few to see running-in" in flag for flag in test.flags)
-
-
-def test_an_srv_workbook_with_units_in_brackets_is_read_at_once(tmp_path):
-    """A row of units [s], [N], [-] below the names."""
-    book = openpyxl.Workbook()
-    sheet = book.active
-    sheet.append(["Time", "Load", "COF", "Temperature"])
-    sheet.append(["[s]", "[N]", "[-]", "[\u00b0C]"])
-    for i in range(60):
-        sheet.append([float(i), 200.0, STEADY + NOISE[i], 50.0])
-    book.save(tmp_path / "srv.xlsx")
-    (log,) = read_log(tmp_path / "srv.xlsx")
-    assert log.conditions.normal_force == 200.0
-    assert log.conditions.temperature == pytest.approx(323.15)
 
 
 def test_rtec_without_step_and_brackets_is_read_at_once(tmp_path):
@@ -247,12 +232,6 @@ def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
     assert len(answer(capsys, "wear")["tests"]) == 3
     assert main(["tribometer", "wear", "--join"]) == 2
     assert "cannot be one test: their normal force differs" in capsys.readouterr().err
-
-
-def test_a_folder_without_a_log_is_refused(tmp_path, capsys):
-    """With its name."""
-    assert main(["tribometer", str(tmp_path)]) == 2
-    assert "is a folder without a log" in capsys.readouterr().err
 
 
 def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):

@@ -214,17 +214,6 @@ def test_a_number_can_mean_missing(tmp_path):
     assert np.isnan(read(tmp_path, content, columns).temperature).sum() == 1
 
 
-@pytest.mark.parametrize("code", [-999.0, 99.99, 9.9e37])
-def test_a_friction_that_none_can_be_is_left_out_and_counted(tmp_path, code):
-    """Codes for a missing value, or a coefficient without load: magnitudes above 5 are no friction."""
-    friction = np.where(np.arange(ROWS) % 20 == 5, code, FRICTION)
-    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": friction}))
-    assert log.missing == 3
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION[np.arange(ROWS) % 20 != 5]))
-    assert log.notes[0].startswith(f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})")
-    assert not any("negative" in note for note in log.notes)
-
-
 @pytest.mark.parametrize("abscissa", ["time [s]", "distance [m]", "cycles"])
 def test_a_row_without_its_abscissa_is_left_out(tmp_path, abscissa):
     """A friction that stands nowhere is of no use."""
@@ -235,64 +224,183 @@ def test_a_row_without_its_abscissa_is_left_out(tmp_path, abscissa):
     np.testing.assert_array_equal(log.friction, as_written(np.delete(FRICTION, 30)))
 
 
-def test_other_columns_may_have_gaps(tmp_path):
-    """A missing temperature costs no row."""
+def csv(columns=None, **options) -> bytes:
+    """A log of time and friction, or of other columns."""
+    return raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION} if columns is None else columns, **options)
+
+
+def lines(head: str, row: str) -> bytes:
+    """A header over rows of the time {t} and the friction {f}, or {e}; in capitals with a comma."""
+    rows = []
+    for t, f in zip(TIME, FRICTION, strict=True):
+        point = {"t": f"{t:.6f}", "f": f"{f:.6f}", "e": f"{10.0 * float(f'{f:.6f}'):.5f}e-01"}
+        comma = {name.upper(): text.replace(".", ",") for name, text in point.items()}
+        rows.append(row.format(**point, **comma))
+    return "\n".join([head, *rows]).encode()
+
+
+NAMES_OF_FRICTION = ("Reibwert \u00b5", "Coefficient of friction, \u00b5", "COF (\u03bc)", "Kinetic COF")
+NAMES_OF_FRICTION += ("mu_k", "Coeff. frott.")
+LONG_HEAD = [f"key {i};value {i}" for i in range(40)] + ["Load [N];Speed [m/s]", "50;2"]
+BARE_HEAD = ["Samples;200;200", "X0;0.0;0.0", "Delta;0.5;0.5", "Unit;N;N"]
+ONE = np.ones(ROWS)
+FORCES = {"tangential_force": {"name": "Fx", "unit": "N"}, "normal_force": {"name": "Fz", "unit": "N"}}
+BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
+FORMAT = {"separator": ";", "decimal": ",", "header_line": 2, "units_line": 4}
+
+THE_SAME: dict[str, tuple[bytes, dict | None]] = {
+    "in quotes, as spreadsheets write": (lines('"time [s]";"COF"', '"{T}";"{F}"'), None),
+    "decimal commas in quotes between commas": (lines('"time, s","COF, -",note', '"{T}","{F}","a, b"'), None),
+    "a remark in quotes leaves the commas of numbers": (
+        csv(separator=";", decimal=",", head=['"Probe 3, zweiter Lauf"', 'Ort;"Halle 2, links"']),
+        None,
+    ),
+    "a typographic minus": (
+        csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": -ONE}).replace(b"-", "\u2212".encode()),
+        None,
+    ),
+    "metadata of as many fields as the table": (csv(separator=";", head=LONG_HEAD), None),
+    "more words than numbers": (lines("sample;phase;time [s];COF;status", "A3;steady;{t};{f};ok"), None),
+    "dates beside the numbers": (lines("date;step;time [s];COF", "2026-02-01 10:00:00;slide;{t};{f}"), None),
+    "German dates beside decimal commas": (lines("Datum;Zeit [s];Reibwert", "01.02.2026;{T};{F}"), None),
+    "closing remarks": (csv(tail=["", "stopped by operator", "Total 12:00"]), None),
+    "empty lines between rows": (csv().replace(b"\n2.0", b"\n\n  \n2.0", 1), None),
+    "lines of fast data between rows": (raw_logs.compend(FRICTION, TIME, fast_data_every=7), None),
+    "numbers above the names, whose line the map states": (
+        csv({"X": TIME, "Fx": FRICTION, "Fz": ONE}, separator=";", head=BARE_HEAD),
+        {"columns": {"time": {"name": "X", "unit": "s"}} | FORCES, "format": {"header_line": 5}},
+    ),
+    "columns by number need no header": (csv().split(b"\n", 1)[1], BY_NUMBER),
+    "forces of the map go before a coefficient": (
+        csv({"time [s]": TIME, "COF": FRICTION * 9, "Fx [N]": FRICTION, "Fz [N]": ONE}),
+        {"columns": {"tangential_force": "Fx"}},
+    ),
+    "lines of names and units by their numbers": (
+        lines("first remark\nZeit;Reibwert\nother remark\ns;-", "{T};{F}"),
+        {"format": FORMAT},
+    ),
+    "the second of two frictions by the map": (
+        csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}),
+        {"columns": {"friction": "mu"}},
+    ),
+    "forces named by words and signs": (
+        csv({"t [s]": TIME, "Reibkraft FR [N]": FRICTION, "Normalkraft FN [N]": ONE}),
+        None,
+    ),
+    "forces named by signs": (csv({"t [s]": TIME, "F_t [N]": FRICTION, "F_n [N]": ONE}), None),
+    **{
+        f"friction named {name}": (csv({"Time [sec.]": TIME, name: FRICTION}, separator=";"), None)
+        for name in NAMES_OF_FRICTION
+    },
+    **{
+        f"{mark} before the names, {separator}": (
+            csv({f"{mark}time [s]": TIME, "COF": FRICTION}, separator=separator),
+            None,
+        )
+        for mark in ("# ", "#", "% ")
+        for separator in (";", "  ")
+    },
+    **{
+        f"exponents with {letter}, {row}": (
+            lines("time [s];COF", row).replace(b"e-01", letter.encode() + b"-01"),
+            None,
+        )
+        for letter in "EDd"
+        for row in ("{t};{e}", "{T};{E}")
+    },
+}
+
+
+@pytest.mark.parametrize("what", THE_SAME)
+def test_the_friction_written_is_read(tmp_path, what):
+    """However it is written, and with whatever beside it, above it and below it."""
+    content, given = THE_SAME[what]
+    log = read(tmp_path, content, given and column_map(given))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+    np.testing.assert_array_equal(log.time, as_written(TIME))
+
+
+def test_what_stands_beside_the_numbers_is_kept(tmp_path):
+    """Lines above, a name without the file's mark of byte order, a measured column with gaps, why not."""
+    assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
+    assert read(tmp_path, csv(head=["# material: Armalon"])).conditions.material == "Armalon"
+    assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
+    assert "comma between quotes, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
-    columns = {"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}
-    log = read(tmp_path, raw_logs.plain_csv(columns))
-    assert log.rows == ROWS
-    assert np.isnan(log.temperature).sum() == 5
-    assert log.conditions.temperature == 293.15
+    log = read(tmp_path, csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}))
+    assert (log.rows, np.isnan(log.temperature).sum(), log.conditions.temperature) == (ROWS, 5, 293.15)
+    log = read(
+        tmp_path,
+        *(
+            csv({"time [s]": TIME, "COF": FRICTION, "mu": FRICTION}),
+            column_map({"columns": {"friction": "mu"}}),
+        ),
+    )
+    assert [one.why for one in log.columns if one.header == "COF"] == ["another column is the friction"]
 
 
-def test_quotes_around_names_and_numbers_are_taken_off(tmp_path):
-    """As spreadsheets write them."""
-    lines = ['"time [s]";"COF"', *(f'"{i},5";"0,{100 + i}"' for i in range(ROWS))]
-    log = read(tmp_path, "\n".join(lines).encode())
-    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
+SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
+LOAD = np.where(np.isin(np.arange(ROWS), (3, 4)), -0.5, 10.0)
+FEW = np.arange(ROWS) % 20 == 5
+TEN = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0}
+MADE = {
+    "percent": (
+        {"time [s]": TIME, "COF [%]": FRICTION * 100.0},
+        None,
+        as_written(FRICTION * 100.0) / 100.0,
+        "",
+    ),
+    "a constant load of the map": (
+        TEN,
+        {"test": {"normal_force": "10 N"}},
+        as_written(FRICTION * 10.0) / 10.0,
+        "friction is |tangential force| / 10 N, the constant given",
+    ),
+    "compression that counts negative": (
+        TEN | {"Fn [N]": -10.0 * ONE},
+        None,
+        as_written(FRICTION * 10.0) / 10.0,
+        "the normal force is negative in the file: compression counts negative there",
+    ),
+    "rows without compression": (
+        TEN | {"Fn [N]": LOAD},
+        None,
+        as_written(FRICTION * 10.0)[LOAD > 0] / 10.0,
+        "2 rows without compression",
+    ),
+    "strokes there and back": (
+        {"time [s]": TIME, "COF": SIGN * FRICTION},
+        None,
+        as_written(FRICTION),
+        "friction is negative in 30 of 60 rows",
+    ),
+    **{
+        f"a code of {code} for a missing value": (
+            {"time [s]": TIME, "COF": np.where(FEW, code, FRICTION)},
+            None,
+            as_written(FRICTION[~FEW]),
+            f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})",
+        )
+        for code in (-999.0, 99.99, 9.9e37)
+    },
+}
 
 
-def test_commas_in_quotes_divide_no_fields(tmp_path):
-    """Decimal commas in a file of commas, and names that hold one: the quotes say which is which."""
-    lines = ['"time, s","COF, -",note', *(f'"{i},5","0,{100 + i}","a, b"' for i in range(ROWS))]
-    log = read(tmp_path, "\n".join(lines).encode())
-    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
-    assert "comma between quotes, decimal comma" in log.format
+@pytest.mark.parametrize("what", MADE)
+def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
+    """With a note on what was done, and the rows left out counted; a code is not called negative."""
+    columns, given, friction, note = MADE[what]
+    log = read(tmp_path, csv(columns), given and column_map(given))
+    np.testing.assert_array_equal(log.friction, friction)
+    assert log.missing == ROWS - len(friction)
+    assert any(one.startswith(note) for one in log.notes) or not note
+    assert any("negative" in one for one in log.notes) == ("negative" in note)
 
 
-def test_a_remark_in_quotes_leaves_the_commas_of_numbers(tmp_path):
-    """One line in quotes above a table with semicolons is no reason to divide 0,5 in two."""
-    head = ['"Probe 3, zweiter Lauf"', 'Ort;"Halle 2, links"']
-    content = raw_logs.plain_csv({"t [s]": TIME, "COF": FRICTION}, separator=";", decimal=",", head=head)
-    np.testing.assert_array_equal(read(tmp_path, content).friction, as_written(FRICTION))
-
-
-@pytest.mark.parametrize("mark", ["# ", "#", "% "])
-@pytest.mark.parametrize("separator", [";", "  "])
-def test_a_mark_of_remarks_before_the_header_is_no_part_of_it(tmp_path, mark, separator):
-    """As numpy and MATLAB write it; lines above the table may have it, too."""
-    columns = {f"{mark}time [s]": TIME, "COF": FRICTION}
-    content = raw_logs.plain_csv(columns, separator=separator, head=[f"{mark}material: Armalon"])
-    log = read(tmp_path, content)
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    assert log.conditions.material == "Armalon"
-
-
-@pytest.mark.parametrize("exponent", ["E", "D", "d"])
-@pytest.mark.parametrize("decimal", [".", ","])
-def test_exponents_are_read(tmp_path, exponent, decimal):
-    """Of ten, and those of double precision in Fortran; with either decimal sign."""
-    rows = [f"{t:.3e};{f:.6e}" for t, f in zip(TIME, FRICTION, strict=True)]
-    text = "\n".join(rows).replace("e", exponent).replace(".", decimal)
-    log = read(tmp_path, f"time [s];COF\n{text}\n".encode())
-    np.testing.assert_array_equal(log.friction, [float(f"{f:.6e}") for f in FRICTION])
-
-
-def test_the_typographic_minus_is_a_minus(tmp_path):
-    """Spreadsheets of some countries write it."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": 0 * TIME - 1.0})
-    log = read(tmp_path, content.replace(b"-", "\u2212".encode()))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
+def test_compend_without_coefficient_uses_its_forces(tmp_path):
+    """Friction (N) over Load (N)."""
+    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 20.0) / 20.0)
 
 
 @pytest.mark.parametrize("units", [(), ("s", "-")])
@@ -317,45 +425,6 @@ def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
         np.testing.assert_array_equal(second.time, as_written(TIME))
 
 
-def test_metadata_may_have_as_many_fields_as_the_table(tmp_path):
-    """Key and value over a table of two columns; a row of numbers under its keys."""
-    head = [f"key {i};value {i}" for i in range(40)] + ["Load [N];Speed [m/s]", "50;2"]
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, separator=";", head=head)
-    log = read(tmp_path, content)
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    assert log.metadata["key 39"] == "value 39"
-
-
-def test_words_beside_the_numbers_may_be_more_than_those(tmp_path):
-    """Sample, phase and status in every row."""
-    lines = ["sample;phase;time [s];COF;status"]
-    lines += [f"A3;steady;{TIME[i]};{FRICTION[i]:.6f};ok" for i in range(ROWS)]
-    np.testing.assert_array_equal(read(tmp_path, "\n".join(lines).encode()).friction, as_written(FRICTION))
-
-
-def test_header_line_of_the_column_map_passes_over_what_stands_above(tmp_path):
-    """Lines of numbers in a long head are no table if the user says where the names are."""
-    head = ["Samples;200;200", "X0;0.0;0.0", "Delta;0.5;0.5", "Unit;N;N"]
-    columns = {"X": TIME, "Fx": FRICTION, "Fz": 0 * TIME + 1.0}
-    content = raw_logs.plain_csv(columns, separator=";", head=head)
-    given = {"time": {"name": "X", "unit": "s"}}
-    given |= {m: {"name": n, "unit": "N"} for m, n in (("tangential_force", "Fx"), ("normal_force", "Fz"))}
-    log = read(tmp_path, content, column_map({"columns": given, "format": {"header_line": 5}}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
-    """The header is shown as the user knows it."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, encoding="utf-8-sig")
-    assert read(tmp_path, content).columns[0].header == "time [s]"
-
-
-def test_friction_in_percent_is_divided(tmp_path):
-    """12 % is 0.12."""
-    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF [%]": FRICTION * 100.0}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 100.0) / 100.0)
-
-
 def test_friction_is_tangential_over_normal_force(tmp_path):
     """Where no coefficient is logged, the magnitude of the ratio, row by row."""
     load = 10.0 + 0.1 * np.cos(TIME)
@@ -365,39 +434,6 @@ def test_friction_is_tangential_over_normal_force(tmp_path):
     np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
     assert (log.tangential_force < 0.0).any()
     assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
-
-
-def test_rows_without_compression_are_left_out_with_their_count(tmp_path):
-    """A normal force of zero or of the other sign gives no friction."""
-    load = np.full(ROWS, 10.0)
-    load[[3, 4]] = (0.0, -0.5)
-    columns = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0, "Fn [N]": load}
-    log = read(tmp_path, raw_logs.plain_csv(columns))
-    assert log.missing == 2
-    assert any(note.startswith("2 rows without compression") for note in log.notes)
-
-
-def test_compression_may_count_negative(tmp_path):
-    """A normal force that is negative in nearly all rows is turned round, and that is said."""
-    columns = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0, "Fn [N]": np.full(ROWS, -10.0)}
-    log = read(tmp_path, raw_logs.plain_csv(columns))
-    np.testing.assert_array_equal(log.normal_force, 10.0)
-    assert "the normal force is negative in the file: compression counts negative there" in log.notes
-
-
-def test_a_constant_load_of_the_column_map_serves_as_normal_force(tmp_path):
-    """A log of the friction force alone needs the load from the user."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "Friction force [N]": FRICTION * 10.0})
-    log = read(tmp_path, content, column_map({"test": {"normal_force": "10 N"}}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 10.0) / 10.0)
-
-
-def test_negative_friction_of_strokes_is_taken_as_magnitude(tmp_path):
-    """The sign of the stroke is no sign of the friction; the note says how many rows it was."""
-    stroke = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
-    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": stroke * FRICTION}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    assert any(note.startswith("friction is negative in 30 of 60 rows") for note in log.notes)
 
 
 def test_umt_forces_are_grams_and_every_step_is_a_log(tmp_path):
@@ -455,81 +491,14 @@ def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
     assert read(tmp_path, content).conditions.sample == "disk 7"
 
 
-def test_compend_lines_of_fast_data_are_not_rows(tmp_path):
-    """They stand between the rows and name other files."""
-    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, fast_data_every=7))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_compend_without_coefficient_uses_its_forces(tmp_path):
-    """Friction (N) over Load (N)."""
-    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 20.0) / 20.0)
-
-
 def test_several_tables_in_a_file_are_several_logs(tmp_path):
     """Each with its own header; named by their order where the file does not name them."""
-    one = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, separator="\t")
+    one = csv(separator="\t")
     two = raw_logs.plain_csv({"temps [min]": TIME, "mu": FRICTION * 2}, separator="\t")
     first, second = read_all(tmp_path, one + b"\n" + two)
     assert first.source == "log.txt, table 1"
     assert second.source == "log.txt, table 2"
     np.testing.assert_array_equal(second.time, as_written(TIME) * 60.0)
-
-
-def test_columns_of_words_and_dates_may_stand_beside_the_numbers(tmp_path):
-    """They are not needed and not read."""
-    lines = ["date;step;time [s];COF"]
-    lines += [f"2026-02-01 10:00:{i % 60:02d};slide;{TIME[i]};{FRICTION[i]:.6f}" for i in range(ROWS)]
-    log = read(tmp_path, "\n".join(lines).encode())
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_german_dates_do_not_hide_the_decimal_comma(tmp_path):
-    """01.02.2026 is a date, not a number with two points."""
-    lines = ["Datum;Zeit [s];Reibwert"]
-    lines += [f"01.02.2026;{i},5;0,{100 + i}" for i in range(ROWS)]
-    log = read(tmp_path, "\n".join(lines).encode())
-    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(ROWS)])
-
-
-def test_closing_remarks_are_not_rows(tmp_path):
-    """Words below the table end it."""
-    content = raw_logs.plain_csv(
-        {"time [s]": TIME, "COF": FRICTION}, tail=["", "stopped by operator", "Total 12:00"]
-    )
-    assert read(tmp_path, content).rows == ROWS
-
-
-def test_empty_lines_between_rows_are_passed_over(tmp_path):
-    """As some loggers write them every hour."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
-    lines = content.split(b"\n")
-    assert read(tmp_path, b"\n".join([*lines[:9], b"", b"  ", *lines[9:]])).rows == ROWS
-
-
-NAMES_OF_FRICTION = [
-    "Reibwert \u00b5",
-    "Coefficient of friction, \u00b5",
-    "COF (\u03bc)",
-    "Kinetic COF",
-    "mu_k",
-    "Coeff. frott.",
-]
-
-
-@pytest.mark.parametrize("name", NAMES_OF_FRICTION)
-def test_a_name_of_friction_may_carry_its_sign(tmp_path, name):
-    """The Greek letter behind the name, or in the place of a unit, changes nothing."""
-    log = read(tmp_path, raw_logs.plain_csv({"Time [sec.]": TIME, name: FRICTION}, separator=";"))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-@pytest.mark.parametrize(("tangential", "normal"), [("Reibkraft FR", "Normalkraft FN"), ("F_t", "F_n")])
-def test_forces_may_be_named_by_their_signs(tmp_path, tangential, normal):
-    """Behind the word, or alone."""
-    columns = {"t [s]": TIME, f"{tangential} [N]": FRICTION, f"{normal} [N]": 1.0 + 0 * TIME}
-    np.testing.assert_array_equal(read(tmp_path, raw_logs.plain_csv(columns)).friction, as_written(FRICTION))
 
 
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
@@ -560,40 +529,6 @@ def test_column_map_says_what_names_do_not(tmp_path):
     assert {column.why for column in log.columns} == {"column map"}
 
 
-def test_column_map_by_number_needs_no_header(tmp_path):
-    """A bare table of numbers."""
-    lines = raw_logs.plain_csv({"a": TIME, "b": FRICTION}).split(b"\n", 1)[1]
-    choices = {"time": {"name": 1, "unit": "s"}, "friction": 2}
-    log = read(tmp_path, lines, column_map({"columns": choices}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_column_map_settles_two_columns_of_friction(tmp_path):
-    """The named one is used; the other is shown as not used."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION, "mu": FRICTION * 2})
-    log = read(tmp_path, content, column_map({"columns": {"friction": "mu"}}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 2))
-    assert [column.why for column in log.columns if column.header == "COF"] == [
-        "another column is the friction"
-    ]
-
-
-def test_column_map_s_forces_go_before_a_logged_coefficient(tmp_path):
-    """Whoever names the tangential force wants the friction from it."""
-    columns = {"time [s]": TIME, "COF": FRICTION * 9, "Fx [N]": FRICTION, "Fz [N]": FRICTION * 0 + 1}
-    log = read(tmp_path, raw_logs.plain_csv(columns), column_map({"columns": {"tangential_force": "Fx"}}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_format_section_overrides_what_rows_would_say(tmp_path):
-    """Lines of header and units by their numbers, separator and decimal sign as given."""
-    lines = ["first remark", "Zeit;Reibwert", "other remark", "s;-"]
-    lines += [f"{10 + i},{100 + i};0,{100 + i}" for i in range(20)]
-    given = {"separator": ";", "decimal": ",", "header_line": 2, "units_line": 4}
-    log = read(tmp_path, "\n".join(lines).encode(), column_map({"format": given}))
-    np.testing.assert_array_equal(log.friction, [float(f"0.{100 + i}") for i in range(20)])
-
-
 def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
     """[test] for all, then each pattern that fits, in the order written."""
     columns = column_map(
@@ -606,7 +541,7 @@ def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
             },
         }
     )
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    content = csv()
     conditions = read(tmp_path, content, columns, "armalon_3_ln2.txt").conditions
     assert conditions.environment == "liquid nitrogen, 440C"
     assert conditions.material == "Armalon"
@@ -616,7 +551,7 @@ def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
 def test_a_pattern_may_name_the_folder(tmp_path):
     """Logs of the same name in folders of their materials."""
     columns = column_map({"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}})
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    content = csv()
     found = []
     for folder in ("armalon", "peek"):
         (tmp_path / folder).mkdir()
@@ -627,7 +562,7 @@ def test_a_pattern_may_name_the_folder(tmp_path):
 
 def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
     """The refusal holds the line that leaves it out, and with that line the others are read."""
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION})
+    content = csv()
     content += b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
     with pytest.raises(InputError, match="has no column that is known to be the friction") as refusal:
         read_all(tmp_path, content)
@@ -639,7 +574,7 @@ def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
 def test_pressure_is_the_force_over_the_pin_s_area(tmp_path):
     """A flat pin of 6 mm under 100 N bears 100 / (9 pi) MPa."""
     columns = column_map({"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}})
-    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}), columns)
+    log = read(tmp_path, csv(), columns)
     assert log.conditions.pressure == pytest.approx(100.0 / (9.0 * math.pi) * 1e6, rel=1e-12)
 
 
@@ -652,7 +587,7 @@ def test_column_map_goes_before_metadata(tmp_path):
 def test_a_condition_that_cannot_be_read_is_said(tmp_path):
     """Known keys whose values are no quantity are shown, and asked for."""
     head = ["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]
-    log = read(tmp_path, raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}, head=head))
+    log = read(tmp_path, csv(head=head))
     assert log.conditions.normal_force == 50.0
     said = 'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its unit under [test]'
     assert said in log.notes

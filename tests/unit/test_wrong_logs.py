@@ -45,198 +45,59 @@ WRONG = {
     "a binary file": (bytes(range(256)) * 20, "is not a text file (it has NUL or control characters)"),
     "a file of NUL bytes": (b"\0" * 5000, "is not a text file"),
     "control characters": (b"time [s],COF\n\x010,1\n", "is not a text file"),
-    "an old Excel file": (
-        b"\xd0\xcf\x11\xe0" + b"\0" * 600,
-        "is an old Excel workbook, not text. Save it as .xlsx",
-    ),
+    "an old Excel file": (b"\xd0\xcf\x11\xe0" + b"\0" * 600, "is an old Excel workbook, not text. Save it as .xlsx"),
     "a compressed file": (b"\x1f\x8b\x08" + b"a" * 99, "is compressed (gzip), not text. Unpack it first."),
     "a PDF": (b"%PDF-1.7 \n", "is a PDF, not text"),
-    "a byte that Windows-1252 lacks": (
-        csv() + b"caf\xe9 \x81\n",
-        "line 22 cannot be read as cp1252 text; got byte 0x81",
-    ),
+    "a byte that Windows-1252 lacks": (csv() + b"caf\xe9 \x81\n", "line 22 cannot be read as cp1252 text; got byte 0x81"),
     "prose": (lines("The pin was 440C.", "It ran well, mostly."), "has no table of numbers"),
     "one column": (lines("COF", "0.1", "0.2", "0.3"), "has no table of numbers with two columns or more"),
-    "no header": (
-        csv().split(b"\n", 1)[1],
-        "line 1 begins a table of 2 columns without a line of 2 column names",
-    ),
-    "a header of other length": (
-        changed(csv(), 1, "a,b,c,d"),
-        "line 2 begins a table of 2 columns without a line",
-    ),
+    "no header": (csv().split(b"\n", 1)[1], "line 1 begins a table of 2 columns without a line of 2 column names"),
+    "a header of other length": (changed(csv(), 1, "a,b,c,d"), "line 2 begins a table of 2 columns without a line"),
     "a row with too few fields": (changed(csv(), 9, "3.5"), 'line 9 breaks the table; got "3.5"'),
-    "a row with too many fields": (
-        changed(csv(), 9, "3.5,0.1,7"),
-        "line 9 has 3 fields where the rows before it have 2",
-    ),
-    "a last row cut off": (
-        csv() + b"10.0",
-        'line 22 has 1 fields where the rows before it have 2; got "10.0"',
-    ),
+    "a row with too many fields": (changed(csv(), 9, "3.5,0.1,7"), "line 9 has 3 fields where the rows before it have 2"),
+    "a last row cut off": (csv() + b"10.0", 'line 22 has 1 fields where the rows before it have 2; got "10.0"'),
     "text among the rows": (changed(csv(), 9, "pump stopped"), 'line 9 breaks the table; got "pump stopped"'),
-    "text in a number column": (
-        changed(csv(), 9, "3.5,abc"),
-        'line 9, column "COF" must be a number; got "abc"',
-    ),
-    "an underscore in a number": (
-        changed(csv(), 9, "3.5,0.1_1"),
-        'line 9, column "COF" must be a number; got "0.1_1"',
-    ),
+    "text in a number column": (changed(csv(), 9, "3.5,abc"), 'line 9, column "COF" must be a number; got "abc"'),
+    "an underscore in a number": (changed(csv(), 9, "3.5,0.1_1"), 'line 9, column "COF" must be a number; got "0.1_1"'),
     "a hexadecimal number": (changed(csv(), 9, "3.5,0x10"), 'line 9, column "COF" must be a number'),
-    "a blank in a number": (
-        changed(csv(), 9, "3.5,1 000"),
-        'line 9, column "COF" must be a number; got "1 000"',
-    ),
-    "a blank that cannot be seen": (
-        changed(csv(), 9, "3.5,\u00a00.1"),
-        'line 9, column "COF" must be a number; got "\\xa00.1"',
-    ),
-    "a decimal comma in one row": (
-        changed(csv(separator=";"), 9, "3,5;0,1"),
-        'has points and commas in its numbers; got "3,5" and "0.000000"',
-    ),
-    "two points in a number": (
-        changed(csv(separator=";"), 9, "3.5;1.000.0"),
-        "has points and commas in its numbers",
-    ),
-    "marks between thousands": (
-        lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))),
-        "Export the file without marks between thousands, or write below [format]: decimal = ...",
-    ),
-    "decimals or thousands": (
-        lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))),
-        'does not show whether its marks are decimal signs or between thousands; got "1,250". Add to the column map, below [format]: decimal = ","',
-    ),
-    "a point among decimal commas far below": (
-        csv(
-            separator=";",
-            decimal=",",
-            columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)},
-        )
-        + b"4000,5;1.234\n",
-        'line 4002, column "COF" must be a number; got "1.234"',
-    ),
-    "comma twice": (
-        lines("time [s],COF", *(f"{i},5,0,12{i}" for i in range(9))),
-        "has 2 names over 4 fields: comma as separator and as decimal sign",
-    ),
-    "time running backwards": (
-        csv(columns={"time [s]": BACK, "COF": FRICTION}),
-        "line 14 time must not run backwards; got 1 s after 5.5 s",
-    ),
-    "distance running backwards": (
-        csv(columns={"distance [mm]": BACK, "COF": FRICTION}),
-        "line 14 distance must not run backwards",
-    ),
-    "two frictions": (
-        csv(columns=TWO),
-        'has 2 columns that could be the friction; got columns "COF", "mu". State which below [columns] in a '
-        'column map: friction = "COF".',
-    ),
-    "the same header twice": (
-        lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))),
-        'could be the friction; got columns "COF", "COF". State which below [columns] in a column map: friction = 2 or 3.',
-    ),
-    "no friction": (
-        csv(columns={"time [s]": TIME, "a": FRICTION}),
-        'no column that is known to be the friction, nor two forces from which it follows; got columns "time [s]", "a"',
-    ),
-    "a friction of unknown name": (
-        csv(columns={"time [s]": TIME, "COF max": FRICTION, "COF min": FRICTION}),
-        'got columns "COF max", "COF min". State which below [columns] in a column map: friction = "COF max".',
-    ),
-    "friction in volts": (
-        csv(columns={"time [s]": TIME, "COF [V]": FRICTION}),
-        'column "COF [V]" has a unit that is not one of the friction (-, %); got "V"',
-    ),
-    "friction that may be a force": (
-        csv(columns={"time [s]": TIME, "friction": FRICTION}),
-        'friction = { name = "friction", unit = "-" } (or tangential_force)',
-    ),
-    "friction in percent without saying so": (
-        csv(columns={"time [s]": TIME, "COF": FRICTION * 100}),
-        "above 5 in more than a tenth of its rows: not a ratio of forces; got a median of 10.95. If it is in percent",
-    ),
-    "a tangential force alone": (
-        csv(columns={"time [s]": TIME, "Ff [N]": FORCE}),
-        'has a tangential force but no normal force. Below [columns] in a column map: normal_force = "..."',
-    ),
-    "two tangential forces": (
-        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Reibkraft [N]": FORCE, "Fz [N]": FORCE}),
-        'has 2 columns that could be the tangential force; got columns "Ff [N]", "Reibkraft [N]"',
-    ),
-    "a normal force without unit": (
-        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz": FORCE}),
-        'column "Fz" has no unit',
-    ),
-    "a normal force in grams": (
-        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}),
-        'column "Fz [g]" has a unit that is not one of the normal force (N, mN, daN, kN, ...); got "g"',
-    ),
-    "a normal force of both signs": (
-        csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}),
-        "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below",
-    ),
-    "no abscissa": (
-        csv(columns={"a": TIME, "COF": FRICTION}),
-        "has no column that is known to be time, distance or cycles",
-    ),
-    "time without unit": (
-        csv(columns={"time": TIME, "COF": FRICTION}),
-        'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the '
-        'true unit: time = { name = "time", unit = "s" }.',
-    ),
-    "time in an unknown unit": (
-        csv(columns={"time [ticks]": TIME, "COF": FRICTION}),
-        'has a unit that is not one of the time (s, ms, us, min, ...); got "ticks"',
-    ),
-    "two units of a column": (
-        csv(columns={"time [min]": TIME, "COF": FRICTION}, units=("s", "-")),
-        'column "time [min]" has a unit that is not one of the time (s, ms, us, min, ...); got "min, s"',
-    ),
-    "frictions of two stations": (
-        csv(columns={"time [s]": TIME, "COF_1": FRICTION, "COF_2": FRICTION}),
-        'got columns "COF_1", "COF_2". State which below [columns] in a column map: friction = "COF_1".',
-    ),
+    "a blank in a number": (changed(csv(), 9, "3.5,1 000"), 'line 9, column "COF" must be a number; got "1 000"'),
+    "a blank that cannot be seen": (changed(csv(), 9, "3.5,\u00a00.1"), 'line 9, column "COF" must be a number; got "\\xa00.1"'),
+    "a decimal comma in one row": (changed(csv(separator=";"), 9, "3,5;0,1"), 'has points and commas in its numbers; got "3,5" and "0.000000"'),
+    "two points in a number": (changed(csv(separator=";"), 9, "3.5;1.000.0"), "has points and commas in its numbers"),
+    "marks between thousands": (lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))), "Export the file without marks between thousands, or write below [format]: decimal = ..."),
+    "decimals or thousands": (lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))), 'does not show whether its marks are decimal signs or between thousands; got "1,250". Add to the column map, below [format]: decimal = ","'),
+    "a point among decimal commas far below": (csv(separator=";", decimal=",", columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)}) + b"4000,5;1.234\n", 'line 4002, column "COF" must be a number; got "1.234"'),
+    "comma twice": (lines("time [s],COF", *(f"{i},5,0,12{i}" for i in range(9))), "has 2 names over 4 fields: comma as separator and as decimal sign"),
+    "time running backwards": (csv(columns={"time [s]": BACK, "COF": FRICTION}), "line 14 time must not run backwards; got 1 s after 5.5 s"),
+    "distance running backwards": (csv(columns={"distance [mm]": BACK, "COF": FRICTION}), "line 14 distance must not run backwards"),
+    "two frictions": (csv(columns=TWO), 'has 2 columns that could be the friction; got columns "COF", "mu". State which below [columns] in a column map: friction = "COF".'),
+    "the same header twice": (lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))), 'could be the friction; got columns "COF", "COF". State which below [columns] in a column map: friction = 2 or 3.'),
+    "no friction": (csv(columns={"time [s]": TIME, "a": FRICTION}), 'no column that is known to be the friction, nor two forces from which it follows; got columns "time [s]", "a"'),
+    "a friction of unknown name": (csv(columns={"time [s]": TIME, "COF max": FRICTION, "COF min": FRICTION}), 'got columns "COF max", "COF min". State which below [columns] in a column map: friction = "COF max".'),
+    "friction in volts": (csv(columns={"time [s]": TIME, "COF [V]": FRICTION}), 'column "COF [V]" has a unit that is not one of the friction (-, %); got "V"'),
+    "friction that may be a force": (csv(columns={"time [s]": TIME, "friction": FRICTION}), 'friction = { name = "friction", unit = "-" } (or tangential_force)'),
+    "friction in percent without saying so": (csv(columns={"time [s]": TIME, "COF": FRICTION * 100}), "above 5 in more than a tenth of its rows: not a ratio of forces; got a median of 10.95. If it is in percent"),
+    "a tangential force alone": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE}), 'has a tangential force but no normal force. Below [columns] in a column map: normal_force = "..."'),
+    "two tangential forces": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Reibkraft [N]": FORCE, "Fz [N]": FORCE}), 'has 2 columns that could be the tangential force; got columns "Ff [N]", "Reibkraft [N]"'),
+    "a normal force without unit": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz": FORCE}), 'column "Fz" has no unit'),
+    "a normal force in grams": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}), 'column "Fz [g]" has a unit that is not one of the normal force (N, mN, daN, kN, ...); got "g"'),
+    "a normal force of both signs": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}), "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below"),
+    "no abscissa": (csv(columns={"a": TIME, "COF": FRICTION}), "has no column that is known to be time, distance or cycles"),
+    "time without unit": (csv(columns={"time": TIME, "COF": FRICTION}), 'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the true unit: time = { name = "time", unit = "s" }.'),
+    "time in an unknown unit": (csv(columns={"time [ticks]": TIME, "COF": FRICTION}), 'has a unit that is not one of the time (s, ms, us, min, ...); got "ticks"'),
+    "two units of a column": (csv(columns={"time [min]": TIME, "COF": FRICTION}, units=("s", "-")), 'column "time [min]" has a unit that is not one of the time (s, ms, us, min, ...); got "min, s"'),
+    "frictions of two stations": (csv(columns={"time [s]": TIME, "COF_1": FRICTION, "COF_2": FRICTION}), 'got columns "COF_1", "COF_2". State which below [columns] in a column map: friction = "COF_1".'),
     "T of time or temperature": (csv(columns={"T": TIME, "COF": FRICTION}), 'column "T" has no unit'),
-    "every friction missing": (
-        csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"),
-        "needs at least two rows with a friction and its abscissa; got 0 of 20 rows",
-    ),
-    "every time missing": (
-        csv(columns={"time [s]": TIME * np.nan, "COF": FRICTION}, missing="x"),
-        "has no value of time in any row",
-    ),
-    "dates for a time": (
-        lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))),
-        'line 2, column "time [s]" must be a number; got "2026-02-01". Write times like "10:00:01.5"',
-    ),
-    "a time among times that is none": (
-        lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"),
-        'line 5, column "time" must be a time; got "late"',
-    ),
-    "times of two numbers": (
-        lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))),
-        'column "time" has no unit',
-    ),
-    "a force without unit": (
-        csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "Load": FORCE}),
-        'tangential_force = { name = "FrictionForce", unit = "N" } and normal_force = { name = "Load", unit = "N" }',
-    ),
-    "a force without unit, and no load": (
-        csv(columns={"time [s]": TIME, "FrictionForce": FORCE}),
-        'tangential_force = { name = "FrictionForce", unit = "N" }, below [test] normal_force = "... N".',
-    ),
-    "a force beside a mangled letter": (
-        csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}),
-        'got columns "?". State which below [columns] in a column map: friction = "?".',
-    ),
-    "a second table without header": (
-        csv() + b"second run\n" + csv().split(b"\n", 1)[1],
-        'line 22 breaks the table; got "second run"',
-    ),
-}
+    "every friction missing": (csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"), "needs at least two rows with a friction and its abscissa; got 0 of 20 rows"),
+    "every time missing": (csv(columns={"time [s]": TIME * np.nan, "COF": FRICTION}, missing="x"), "has no value of time in any row"),
+    "dates for a time": (lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))), 'line 2, column "time [s]" must be a number; got "2026-02-01". Write times like "10:00:01.5"'),
+    "a time among times that is none": (lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"), 'line 5, column "time" must be a time; got "late"'),
+    "times of two numbers": (lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))), 'column "time" has no unit'),
+    "a force without unit": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "Load": FORCE}), 'tangential_force = { name = "FrictionForce", unit = "N" } and normal_force = { name = "Load", unit = "N" }'),
+    "a force without unit, and no load": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE}), 'tangential_force = { name = "FrictionForce", unit = "N" }, below [test] normal_force = "... N".'),
+    "a force beside a mangled letter": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}), 'got columns "?". State which below [columns] in a column map: friction = "?".'),
+    "a second table without header": (csv() + b"second run\n" + csv().split(b"\n", 1)[1], 'line 22 breaks the table; got "second run"'),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("what", WRONG)

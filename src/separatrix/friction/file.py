@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -66,11 +67,12 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
     return tuple(tests)
 
 
+@dataclass(frozen=True, slots=True)
 class _Places:
     """Where the keys of a file are."""
 
-    def __init__(self, label: str, lines: Mapping[str, int]) -> None:
-        self.label, self.lines = label, lines
+    label: str
+    lines: Mapping[str, int]
 
     def of(self, *keys: str) -> str:
         """Label and line of the first of the keys that the file holds."""
@@ -78,7 +80,7 @@ class _Places:
         return self.label if line is None else f"{self.label}, line {line}"
 
 
-def _items(data: Mapping[str, Any], file: _Places) -> list[Any]:
+def _items(data: Mapping[str, object], file: _Places) -> list[object]:
     for key in data:
         if key not in ("title", "test"):
             where = f"{file.of(key, f'{key}.0')}: {printable(key)}"
@@ -95,7 +97,7 @@ def _items(data: Mapping[str, Any], file: _Places) -> list[Any]:
     return items
 
 
-def _test(item: Any, number: int, file: _Places) -> FrictionTest:
+def _test(item: object, number: int, file: _Places) -> FrictionTest:
     """One test; what its record or its readers refuse has the line of its key."""
     where = f"{file.of(f'test.{number}', 'test')}: [[test]]"
     if not isinstance(item, dict):
@@ -198,23 +200,6 @@ def exists_already(path: Path) -> InputError:
     """Refusal to overwrite."""
     cure = "It may hold numbers that a person wrote: name a new file, or remove it first."
     return InputError(f"--out {path}", "exists already, and was not touched", cure=cure)
-
-
-def write_friction(tests: Sequence[FrictionTest], path: Path) -> None:
-    """Write a friction file; what is read back is the same to the last bit.
-
-    Raises
-    ------
-    InputError
-        There is something of that name already, or it cannot be written.
-    """
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(friction_text(tests))
-    except FileExistsError:
-        raise exists_already(path) from None
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written ({error.strerror or error})") from None
 
 
 def friction_text(tests: Sequence[FrictionTest]) -> str:

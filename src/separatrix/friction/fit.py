@@ -24,7 +24,7 @@ from separatrix.friction.law import (
     tested_range,
     values_of,
 )
-from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest, Prediction
+from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.scatter import (
     LinearModel,
     Posterior,
@@ -32,6 +32,7 @@ from separatrix.friction.scatter import (
     posteriors,
     variance_components,
 )
+from separatrix.measured_friction import Prediction
 from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
@@ -91,29 +92,26 @@ class MaterialFit:
         steep = {name: sqrt(s.value**2 + s.standard_error**2) for name, s in self.slopes.items()}
         if PRODUCT in steep:
             steep = dict.fromkeys(("slip_speed", "pressure", PRODUCT), steep[PRODUCT])
-        within = limited(conditions, self.ranges, steep)
+        values, sentences, widening = limited(conditions, self.ranges, steep)
         chosen = self.covariates  # conditions that are not given stay at their centre
         middle = {name: exp(centre) for name, centre in zip(chosen.names, chosen.centres, strict=True)}
-        contrast = np.array(chosen.row({**middle, **within.values}))
+        contrast = np.array(chosen.row({**middle, **values}))
         log_mean, error = self.posterior.moments(contrast)
         mean = exp(log_mean)
         media = tuple(dict.fromkeys(test.medium for test in self.tests))
         return Prediction(
             mean=mean,
             standard_error=mean * error,
-            standard_deviation=mean * hypot(self.scatter, within.widening),
-            extrapolation=(*within.sentences, *other_medium(medium, media)),
-            widening=mean * within.widening,
+            standard_deviation=mean * hypot(self.scatter, widening),
+            extrapolation=(*sentences, *other_medium(medium, media)),
+            widening=mean * widening,
             assumed_scatter=self.scatter_source != OWN,
         )
 
     def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
         """Logarithm of the mean that `at` predicts, for many conditions, each limited to its tested range.
 
-        Parameters
-        ----------
-        slip_speed, pressure : ndarray
-            Shape (sample,) [m/s, Pa].
+        Slip speed [m/s] and pressure [Pa] have the shape (sample,).
         """
         known = {"slip_speed": slip_speed, "pressure": pressure}
         known = {name: np.clip(x, *r) for name, x in known.items() if (r := self.ranges[name]) is not None}
@@ -143,13 +141,7 @@ class FrictionFit:
         return variance_components([linear_model(one.tests, one.covariates) for one in self.groups.values()])
 
     def of(self, material: str, environment: str) -> MaterialFit:
-        """Fit of one material in one environment.
-
-        Raises
-        ------
-        InputError
-            It has no test.
-        """
+        """Fit of one material in one environment."""
         if (material, environment) not in self.groups:
             rule = f'holds no test of "{material}" in "{environment}"'
             raise InputError("The friction file", rule)
@@ -159,17 +151,7 @@ class FrictionFit:
 def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT_SCATTER) -> FrictionFit:
     """Fit friction over conditions to tests, each material in each environment by itself.
 
-    Parameters
-    ----------
-    tests : sequence of FrictionTest
-        In any order; the same ones are fitted once.
-    default_scatter : float
-        Relative standard deviation that an unrepeated test is assumed to have [-].
-
-    Raises
-    ------
-    InputError
-        There is no test, or the scatter is out of range.
+    An unrepeated test is assumed to have the default scatter, a relative standard deviation [-].
     """
     if not tests:
         raise InputError("The friction file", "holds no test")
@@ -188,13 +170,24 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
     found = posteriors(list(models.values()), default_scatter)
     others = OTHERS if any(model.shows_scatter for model in models.values()) else ASSUMED
-    return FrictionFit(
-        groups={
-            key: _material_fit(grouped[key], chosen[key], one, OWN if model.shows_scatter else others)
-            for (key, model), one in zip(models.items(), found, strict=True)
-        },
-        default_scatter=default_scatter,
-    )
+    groups = {}
+    for (key, model), posterior in zip(models.items(), found, strict=True):
+        estimates = []
+        for contrast in np.eye(1 + len(chosen[key].names)):
+            value, error = posterior.moments(contrast)
+            low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
+            estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
+        groups[key] = MaterialFit(
+            tests=tuple(grouped[key]),
+            covariates=chosen[key],
+            posterior=posterior,
+            intercept=estimates[0],
+            slopes=dict(zip(chosen[key].names, estimates[1:], strict=True)),
+            ranges={name: tested_range(grouped[key], name) for name in (*CONDITIONS, PRODUCT)},
+            scatter=posterior.scatter,
+            scatter_source=OWN if model.shows_scatter else others,
+        )
+    return FrictionFit(groups=groups, default_scatter=default_scatter)
 
 
 def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearModel:
@@ -206,26 +199,6 @@ def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearMod
         design=np.array([chosen.row(values_of(test, chosen.names)) for test in tests]),
         error=np.array([(test.standard_error or 0.0) / test.friction for test in tests]),
         sample=np.array(sample),
-    )
-
-
-def _material_fit(
-    tests: Sequence[FrictionTest], chosen: Covariates, posterior: Posterior, source: str
-) -> MaterialFit:
-    estimates = []
-    for contrast in np.eye(1 + len(chosen.names)):
-        value, error = posterior.moments(contrast)
-        low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
-        estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
-    return MaterialFit(
-        tests=tuple(tests),
-        covariates=chosen,
-        posterior=posterior,
-        intercept=estimates[0],
-        slopes=dict(zip(chosen.names, estimates[1:], strict=True)),
-        ranges={name: tested_range(tests, name) for name in (*CONDITIONS, PRODUCT)},
-        scatter=posterior.scatter,
-        scatter_source=source,
     )
 
 

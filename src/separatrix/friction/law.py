@@ -13,15 +13,15 @@ from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
 
-from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest, Prediction
+from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest
+from separatrix.measured_friction import Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
 
 LEAST_SPAN = 1.2
 """Ratio of the largest to the smallest value from which tests span a condition; nearer than that
 tests were run at one temperature."""
 
-TOGETHER = 0.95
-"""Correlation of ln speed and ln pressure from which their slopes cannot be separated."""
+TOGETHER = 0.95  # correlation of ln speed and ln pressure from which their slopes cannot be separated
 
 Range = tuple[float, float]
 
@@ -143,44 +143,24 @@ EXPONENTS = {"slip_speed": 0.1, "pressure": 0.1, PRODUCT: 0.1, "temperature": 0.
 """Exponent with which friction may go on with a condition beyond the tests: guesses. For slip speed,
 pressure and pV a slope that was measured to be steeper takes their place."""
 
-SLACK = 1.05
-"""Ratio to the tested range within which a speed, a pressure or pV still counts as tested."""
-
-TEMPERATURE_SLACK = 5.0
-"""The same for temperature, as a difference [K]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limited:
-    """Conditions within the tested ranges, sentences on those outside, and the widening that these cost."""
-
-    values: Mapping[str, float]
-    sentences: tuple[str, ...]
-    widening: Ratio
+SLACK = 1.05  # ratio to the tested range within which a speed, a pressure or pV still counts as tested
+TEMPERATURE_SLACK = 5.0  # the same for temperature, as a difference [K]
 
 
 def limited(
     conditions: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
-) -> Limited:
-    """Conditions, each limited to its tested range; then also pV, where speed and pressure are both known.
+) -> tuple[Mapping[str, float], tuple[str, ...], Ratio]:
+    """Conditions within the tested ranges, sentences on those outside, and the widening that these cost.
 
-    Parameters
-    ----------
-    conditions : mapping
-        Condition to its value, or None where it is not known.
-    ranges : mapping
-        Condition to the tested range, or None where no test states it.
-    exponents : mapping
-        Condition to the exponent of the widening, where it is not that of `EXPONENTS`.
+    Also of pV, where speed and pressure are both known: each may have been tested, and both together not. The
+    exponent of the widening is that of `EXPONENTS`, or the given one where it is larger.
     """
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
     for name in (*conditions, PRODUCT):
         value, limits = conditions.get(name), ranges.get(name)
         if name == PRODUCT and {"slip_speed", "pressure"} <= values.keys():
-            value = (
-                values["slip_speed"] * values["pressure"]
-            )  # each may have been tested, and both together not
+            value = values["slip_speed"] * values["pressure"]
         if value is None or (limits is None and name == PRODUCT):
             continue
         if limits is None:
@@ -195,7 +175,7 @@ def limited(
         sentences.append(_sentence(value, limits, name))
         exponent = max(exponents.get(name, 0.0), EXPONENTS[name])
         widening = hypot(widening, exponent * log(value / values[name]))
-    return Limited(values=values, sentences=tuple(sentences), widening=widening)
+    return values, tuple(sentences), widening
 
 
 def other_medium(medium: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
@@ -219,11 +199,8 @@ def _sentence(value: float, limits: Range, name: str) -> str:
 
 
 def _text(value: float, name: str) -> str:
-    return (
-        f"{format_quantity(value, 'Pa', 3)} m/s"
-        if name == PRODUCT
-        else format_quantity(value, CONDITIONS[name], 3)
-    )
+    unit, rest = ("Pa", " m/s") if name == PRODUCT else (CONDITIONS[name], "")
+    return format_quantity(value, unit, 3) + rest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -251,7 +228,7 @@ class StatedFriction:
     ) -> Prediction:
         """Friction predicted for these conditions: the printed mean, and what of them was not tested."""
         conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        within = limited(conditions, self.ranges, {})
+        _, sentences, _ = limited(conditions, self.ranges, {})
         stated = self.standard_deviation
         scatter = self.default_scatter * self.mean if stated is None else stated
         other = () if self.medium is None else other_medium(medium, (self.medium,))
@@ -259,6 +236,6 @@ class StatedFriction:
             mean=self.mean,
             standard_error=scatter if stated is None else scatter / sqrt(self.count or 1),
             standard_deviation=scatter,
-            extrapolation=(*within.sentences, *other),
+            extrapolation=(*sentences, *other),
             assumed_scatter=stated is None,
         )

@@ -1,11 +1,10 @@
-"""A friction test as a fit takes it, its conditions, the friction that tests predict; places along a test."""
+"""A friction test as a fit takes it, and its conditions; places along a test."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from separatrix import _check, units
 from separatrix.errors import InputError
@@ -18,13 +17,8 @@ UNITS = {"time": "s", "distance": "m", "cycles": "cycles"}
 _CYCLES = re.compile(r"\s*([0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]{1,2})?)\s*cycles?\s*")
 
 
-def place(value: Any, where: str) -> tuple[str, float]:
+def place(value: object, where: str) -> tuple[str, float]:
     """Read abscissa and place from a text such as ``"200 m"``, ``"10 min"`` or ``"500 cycles"``.
-
-    Raises
-    ------
-    InputError
-        It is none of these.
 
     Examples
     --------
@@ -64,9 +58,7 @@ PRODUCT = "pressure_velocity"
 WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "pressure", PRODUCT: "pV"}
 
 _LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
-NAMES = ("material", "counterface", "medium")
-"""What a test must state: what slid on what, in what."""
-
+NAMES = ("material", "counterface", "medium")  # what a test must state: what slid on what, in what
 _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 
 
@@ -74,38 +66,23 @@ _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 class FrictionTest:
     """Steady friction of one test, with what is known of its scatter and of its conditions.
 
-    Attributes
-    ----------
-    material, counterface, medium : str
-        Of the cage, of the ball or race it slid on, and the gas or liquid around.
-    friction : float
-        Steady mean [-].
-    standard_error, standard_deviation : float or None
-        Of that mean, and of the whole-cycle means within the test [-]; None where not known.
-    effective_count : float or None
-        How many independent values the standard error rests on.
-    temperature, slip_speed, pressure : tuple of float or None
-        Lowest and highest during the test, or over the tests behind a printed mean [K, m/s, Pa];
-        None where not known. The pressure is the mean contact pressure.
-    sample : str or None
-        Of which specimen; tests of one sample share its deviation. None: one of its own.
-    run_in_end, run_in_axis : float and str, or None
-        Where the steady part begins, and of what: time [s], distance [m] or cycles.
+    The conditions are the lowest and the highest during the test, or over the tests behind a printed mean;
+    what is not known is None.
     """
 
-    material: str
-    counterface: str
-    medium: str
-    friction: Ratio
-    standard_error: Ratio | None = None
-    standard_deviation: Ratio | None = None
-    effective_count: float | None = None
+    material: str  # of the cage
+    counterface: str  # of the ball or race that it slid on
+    medium: str  # the gas or liquid around
+    friction: Ratio  # steady mean
+    standard_error: Ratio | None = None  # of that mean
+    standard_deviation: Ratio | None = None  # of the means of whole cycles within the test
+    effective_count: float | None = None  # independent values that the standard error rests on
     temperature: tuple[Kelvin, Kelvin] | None = None
     slip_speed: tuple[MetrePerSecond, MetrePerSecond] | None = None
-    pressure: tuple[Pascal, Pascal] | None = None
-    sample: str | None = None
+    pressure: tuple[Pascal, Pascal] | None = None  # mean contact pressure
+    sample: str | None = None  # tests of one specimen share its deviation; None: one of its own
     test: str | None = None
-    run_in_end: float | None = None
+    run_in_end: float | None = None  # where the steady part begins: time [s], distance [m] or cycles
     run_in_axis: str | None = None
     flags: tuple[str, ...] = ()
     source: str | None = None
@@ -161,37 +138,3 @@ def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[I
     elif value[0] > value[1]:
         rule = "must name the lowest first"
         yield InputError(where, rule, " before ".join(format_quantity(x, unit) for x in value))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Prediction:
-    """Friction that the tests predict for stated conditions: log-normal about `mean`.
-
-    Attributes
-    ----------
-    mean : float
-        The material's friction, its median [-].
-    standard_error : float
-        How well that mean is known from the tests [-].
-    standard_deviation : float
-        Scatter of a new sample about it, widened where the conditions were not tested [-].
-    extrapolation : tuple of str
-        In what respect the conditions were not tested, in words; empty where they were.
-    widening : float
-        What the conditions not tested add to the standard deviation, in quadrature [-].
-    assumed_scatter : bool
-        Whether no repeated test of this material in this environment shows the scatter.
-    """
-
-    mean: Ratio
-    standard_error: Ratio
-    standard_deviation: Ratio
-    extrapolation: tuple[str, ...] = ()
-    widening: Ratio = 0.0
-    assumed_scatter: bool = False
-
-    @property
-    def next_cage(self) -> Ratio:
-        """Standard deviation of the friction of the next cage: of the mean and of a new sample together."""
-        total: Ratio = (self.standard_error**2 + self.standard_deviation**2) ** 0.5
-        return total

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from separatrix.units import Array, Ratio
 
-_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))
-"""Where both deviations are looked for, in units of the residual one."""
+_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are looked for, in units of the residual one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -102,7 +101,10 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     if not useful:
         return None
     separate = any(model.has_repeats for model in useful)
-    squares = sum(_residual_squares(model) for model in useful)
+    squares = 0.0  # that ordinary least squares leave
+    for model in useful:
+        b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
+        squares += float(np.sum((model.y - model.design @ b) ** 2))
     scale = max(float((squares / sum(model.freedom for model in useful)) ** 0.5), 1e-6)
 
     def loss(deviations: Array) -> float:
@@ -119,12 +121,6 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
     samples, *tests = (float(x) * scale for x in found.x)
     return VarianceComponents(between_samples=samples, between_tests=tests[0] if separate else None)
-
-
-def _residual_squares(model: LinearModel) -> float:
-    """Sum of squares that ordinary least squares leave."""
-    b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
-    return float(np.sum((model.y - model.design @ b) ** 2))
 
 
 BETWEEN_GROUPS = 0.2
@@ -191,7 +187,14 @@ def posteriors(models: Sequence[LinearModel], default_scatter: Ratio) -> list[Po
     nodes = (deviations**2)[:, None]
     samples, tests = ((nodes * share).ravel() for share in (_SHARES, 1.0 - _SHARES))
     fits = [conditional(model, samples, tests) for model in models]
-    logs = [_relative(fit, model) for fit, model in zip(fits, models, strict=True)]
+    # log-likelihood less its largest value, flat where the model fits exactly
+    shape_of = (len(_LOGS), len(_SHARES))
+    logs = [
+        np.reshape(fit.log_likelihood - fit.log_likelihood.max(), shape_of)
+        if model.freedom
+        else np.zeros(shape_of)
+        for fit, model in zip(fits, models, strict=True)
+    ]
     messages = [_log(kernel @ np.exp(one).mean(axis=1)) for one in logs]
     variance = np.repeat(deviations**2, len(_SHARES))
     found = []
@@ -200,14 +203,6 @@ def posteriors(models: Sequence[LinearModel], default_scatter: Ratio) -> list[Po
         weight = _normalised(log_likelihood + _log(prior)[:, None]).ravel()
         found.append(Posterior(variance=variance, weight=weight, fit=fit))
     return found
-
-
-def _relative(fit: Conditional, model: LinearModel) -> Array:
-    """Log-likelihood less its largest value, shape (scatter, share); flat where the model fits exactly."""
-    shape = (len(_LOGS), len(_SHARES))
-    if model.freedom == 0:
-        return np.zeros(shape)
-    return np.asarray(fit.log_likelihood - fit.log_likelihood.max()).reshape(shape)
 
 
 def _normal(distance: Array, deviation: float) -> Array:

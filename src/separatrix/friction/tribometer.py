@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -14,7 +13,7 @@ from separatrix.errors import InputError, together
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.log import RawLog, by_series, in_order, joined
+from separatrix.friction.logs.log import RawLog, in_order, joined
 from separatrix.friction.records import NAMES, FrictionTest
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
 from separatrix.units import printable
@@ -34,24 +33,16 @@ MOST_FILES = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ReducedLogs:
-    """What logs of tribometers show: each test, and the friction of each material from all of them.
-
-    Attributes
-    ----------
-    reductions : tuple of Reduction
-        One for each test, with its log, its friction and the series behind it.
-    friction_tests : tuple of FrictionTest or None
-        The tests as a friction file keeps them; None where some do not state what slid on what.
-    fit : FrictionFit or None
-        Friction of each material over the conditions; None as above.
-    notes : tuple of str
-        What concerns all of them together.
-    """
+    """What logs of tribometers show: each test, and the friction of each material from all of them."""
 
     reductions: tuple[Reduction, ...]
+    """One for each test, with its log, its friction and the series behind it."""
     friction_tests: tuple[FrictionTest, ...] | None
+    """The tests as a friction file keeps them; None where some do not state what slid on what."""
     fit: FrictionFit | None
+    """Friction of each material over the conditions; None as above."""
     notes: tuple[str, ...] = ()
+    """What concerns all of them together."""
 
     @property
     def logs(self) -> list[RawLog]:
@@ -104,17 +95,27 @@ def tribometer(
     if idle and complete:
         raise together(idle)
     options = ReductionOptions(run_in_end=run_in)
-    with _threads(jobs) as pool:
+    pool = ThreadPoolExecutor(jobs)
+    try:
         read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
-        _refuse_copies(files, read)
         tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, options), tests, progress, 500)
+    finally:  # nothing new is begun once the work is interrupted
+        pool.shutdown(wait=True, cancel_futures=True)
     reductions = with_outliers(reduced)
-    friction_tests = _friction_tests(reductions, complete=complete)
+    friction_tests: list[FrictionTest] = []
+    wrong: list[InputError] = []
+    for one in reductions:
+        try:
+            friction_tests.append(friction_test(one.test))
+        except InputError as error:
+            wrong.append(error)
+    if wrong and complete:
+        raise _with_others(wrong)
     return ReducedLogs(
         reductions=tuple(reductions),
-        friction_tests=friction_tests,
-        fit=None if friction_tests is None else fit_friction(friction_tests),
+        friction_tests=None if wrong else tuple(friction_tests),
+        fit=None if wrong else fit_friction(friction_tests),
         notes=tuple(f"{one} A friction file is not written with it." for one in idle),
     )
 
@@ -143,16 +144,6 @@ def _files(paths: Sequence[str | Path]) -> list[Path]:
             raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
         known.add(path.resolve())
     return found
-
-
-@contextmanager
-def _threads(jobs: int) -> Iterator[ThreadPoolExecutor]:
-    """Threads that begin nothing new once the work is interrupted."""
-    pool = ThreadPoolExecutor(jobs)
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _each(
@@ -186,29 +177,35 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     return first.at(first.path, cure=f"{first.cure} {more}".strip())
 
 
-def _refuse_copies(paths: Sequence[Path], found: Sequence[Sequence[RawLog]]) -> None:
-    """Refuse the same content in two files: it would count as a repeated test."""
-    first: dict[str, Path] = {}
-    for path, (one, *_) in zip(paths, found, strict=True):
-        if one.checksum in first:
-            same = printable(str(first[one.checksum]), 200)
-            cure = "A test counts once; leave one of them out."
-            raise InputError(printable(str(path), 200), f"has the same content as {same}", cure=cure)
-        first[one.checksum] = path
-
-
 def _tests_of(
     files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
 ) -> list[tuple[Path, RawLog]]:
-    """Logs of tests, each with its first file: parts joined on request, or as their headers state."""
+    """Logs of tests, each with its first file: parts joined on request, or as their headers state.
+
+    The same content in two files is refused: it would count as a repeated test.
+    """
+    first: dict[str, Path] = {}
+    for path, (log, *_) in files:
+        if log.checksum in first:
+            rule = f"has the same content as {printable(str(first[log.checksum]), 200)}"
+            cure = "A test counts once; leave one of them out."
+            raise InputError(printable(str(path), 200), rule, cure=cure)
+        first[log.checksum] = path
     home = {log.source: path for path, logs in files for log in logs}
     if join:
         folders: dict[Path, list[RawLog]] = {}
         for path, logs in files:
             folders.setdefault(path.absolute().parent, []).extend(logs)
         return [(home[parts[0].source], joined(parts)) for parts in folders.values()]
-    groups = by_series([log for _, logs in files for log in logs])
-    tests = [(home[parts[0].source], joined(parts)) for parts in groups]
+    series: dict[tuple[str, int], list[RawLog]] = {}
+    for i, log in enumerate(log for _, logs in files for log in logs):
+        series.setdefault((log.series, 0 if log.series else i), []).append(log)
+    tests = []
+    for parts in series.values():  # those of one series in several files are one test
+        several = len({part.checksum for part in parts}) > 1
+        tests += [
+            (home[one[0].source], joined(one)) for one in ([parts] if several else [[p] for p in parts])
+        ]
     counts = Counter(log.series for _, log in tests if log.series)
     found = []
     for path, log in tests:
@@ -228,20 +225,6 @@ def _reduced(path: Path, log: RawLog, chosen: ColumnMap, options: ReductionOptio
         if not error.path.startswith("ReductionOptions."):
             raise
         raise error.at(f"{printable(path.name, 150)}: the end of running-in") from None
-
-
-def _friction_tests(reductions: Sequence[Reduction], *, complete: bool) -> tuple[FrictionTest, ...] | None:
-    """Tests as a friction file keeps them; None where some do not state what slid on what."""
-    found: list[FrictionTest] = []
-    wrong: list[InputError] = []
-    for one in reductions:
-        try:
-            found.append(friction_test(one.test))
-        except InputError as error:
-            wrong.append(error)
-    if wrong and complete:
-        raise _with_others(wrong)
-    return None if wrong else tuple(found)
 
 
 def friction_test(test: TestFriction) -> FrictionTest:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from pathlib import Path
@@ -11,20 +11,20 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK
 from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
 from separatrix.friction.logs.columns import Understood, understand
-from separatrix.friction.logs.formats import Layout, layout_of
-from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, ColumnRead, Conditions, RawLog, RawTable
+from separatrix.friction.logs.dialect import CLOCK, text_of
+from separatrix.friction.logs.header import Layout, layout_of
+from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
 from separatrix.friction.logs.raw import raw_log
 from separatrix.friction.logs.sliding import motion_columns
 from separatrix.regular_file import size_of, unreadable
 from separatrix.units import format_quantity, printable, shown, unit_of
 
-__all__ = ["ColumnMap", "Conditions", "RawLog", "column_map", "described", "read_column_map", "read_log"]
+__all__ = ["column_map", "described", "read_column_map", "read_log"]
 
-LARGEST = 2_000_000_000
-"""Bytes that a log may have."""
+LARGEST = 2_000_000_000  # bytes that a log may have
 
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
@@ -45,7 +45,14 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     """
     path = Path(path)
     name = printable(path.name or str(path), 150)
-    raw = _content(path, name)
+    size = size_of(path, name)
+    if size > LARGEST:
+        cure = "Split it, or log at a lower rate."
+        raise InputError(name, "is too large: at most 2 GB", f"{size / 1e9:.1f} GB", cure)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise unreadable(name, error) from None
     chosen = column_map or ColumnMap()
     file = _File(path, name, hashlib.sha256(raw).hexdigest(), chosen, chosen.conditions(path))
     if raw.startswith(b"PK\x03\x04"):
@@ -54,8 +61,6 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
         from separatrix.friction.logs import tdms
 
         return _logs(tdms.read_tables(path), file, "LabVIEW TDMS")
-    from separatrix.friction.logs.dialect import text_of
-
     text, encoding = text_of(raw, name, chosen.format.encoding)
     if not text[:65536].strip():
         raise InputError(name, "is empty")
@@ -78,8 +83,7 @@ class _File:
     name: str
     checksum: str
     chosen: ColumnMap
-    given: Mapping[str, str | float]
-    """Its conditions by the column map."""
+    given: Mapping[str, str | float]  # its conditions by the column map
 
     def understood(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> Understood | None:
         """What the columns mean; None for a table that is not a log, which `raw_log` refuses."""
@@ -97,17 +101,6 @@ class _File:
         used = {column.index for column in found.used.values()}
         twins = {i for places in found.twins.values() for i in places}
         return sorted({*used, *twins, *motion_columns(headers, units), *_step_column(headers, layout)})
-
-
-def _content(path: Path, name: str) -> bytes:
-    size = size_of(path, name)
-    if size > LARGEST:
-        cure = "Split it, or log at a lower rate."
-        raise InputError(name, "is too large: at most 2 GB", f"{size / 1e9:.1f} GB", cure)
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise unreadable(name, error) from None
 
 
 def _head(text: bytes) -> str:
@@ -132,35 +125,16 @@ def _tables_of_text(text: bytes, file: _File, sheet: str = "") -> tuple[list[Raw
             tests[-1].append(table)
         else:
             tests.append([table])
-    found = [_one(parts) for parts in tests]
+    found = []
+    for parts in tests:
+        if len(parts) > 1:
+            columns = [np.concatenate(same) for same in zip(*(part.columns for part in parts), strict=True)]
+            lines = np.concatenate([np.asarray(part.lines) for part in parts])
+            parts[0] = replace(parts[0], columns=columns, lines=lines)
+        found.append(parts[0])
     if len({table.name for table in found}) < len(found):
         found = [replace(table, name=f"table {i}") for i, table in enumerate(found, 1)]
     return found, dialect.words
-
-
-def _tables_of_workbook(file: _File) -> list[RawTable]:
-    """Tables of all sheets, or of those that the column map names."""
-    from separatrix.friction.logs.sheet import sheets_as_text, with_formats
-
-    texts = sheets_as_text(file.path, file.name)
-    named = file.chosen.format.tables
-    found = []
-    for sheet, text in texts.items():
-        if named and set(named) <= texts.keys() and sheet not in named:
-            continue
-        try:
-            tables, _ = _tables_of_text(text, file, sheet)
-        except InputError as error:
-            raise error.at(error.path.replace(": line ", ": row ", 1)) from None
-        for table in tables:
-            read = file.wanted(table.headers, table.units, table.layout)
-            given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
-            odd = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
-            odd += [i for i in read if np.isnan(table.columns[i][0])]
-            if odd:  # only a percentage, or a formula without a value, must be looked at again
-                table = with_formats(table, file.path, sheet, file.name, odd)
-            found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
-    return found
 
 
 def _goes_on(before: RawTable, table: RawTable, file: _File) -> bool:
@@ -172,12 +146,29 @@ def _goes_on(before: RawTable, table: RawTable, file: _File) -> bool:
     return bool(columns) and all(table.columns[i][0] >= before.columns[i][-1] for i in columns)
 
 
-def _one(parts: Sequence[RawTable]) -> RawTable:
-    if len(parts) == 1:
-        return parts[0]
-    columns = [np.concatenate(pieces) for pieces in zip(*(part.columns for part in parts), strict=True)]
-    lines = [part.lines for part in parts if part.lines is not None]
-    return replace(parts[0], columns=columns, lines=np.concatenate(lines) if lines else None)
+def _tables_of_workbook(file: _File) -> list[RawTable]:
+    """Tables of all sheets, or of those that the column map names."""
+    from separatrix.friction.logs.sheet import checked, odd_cells, sheets_as_text
+
+    texts, form = sheets_as_text(file.path, file.name), file.chosen.format
+    given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
+    found = []
+    for sheet, text in texts.items():
+        if form.tables and set(form.tables) <= texts.keys() and sheet not in form.tables:
+            continue
+        try:
+            tables, _ = _tables_of_text(text, file, sheet)
+        except InputError as error:
+            raise error.at(error.path.replace(": line ", ": row ", 1)) from None
+        odd = None
+        for table in tables:
+            if read := file.wanted(table.headers, table.units, table.layout):
+                odd = odd or odd_cells(file.path, sheet, file.name)
+                percent = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
+                where = f"{file.name}, sheet {printable(sheet)}"
+                table = checked(table, odd, where, read, percent, form)
+            found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
+    return found
 
 
 def _step_column(headers: Sequence[str], layout: Layout) -> list[int]:
@@ -186,67 +177,57 @@ def _step_column(headers: Sequence[str], layout: Layout) -> list[int]:
     return [names.index(name.casefold()) for name in layout.split_by if name.casefold() in names][:1]
 
 
-def _by_step(table: RawTable) -> list[RawTable]:
+def _by_step(table: RawTable) -> Iterator[RawTable]:
     """The table, or one for each step in it; a step of a single row is left out, for it is not a log."""
     found = _step_column(table.headers, table.layout)
-    if not found:
-        return [table]
-    steps = table.columns[found[0]]
+    steps = table.columns[found[0]] if found else np.zeros(1)
     bounds = [0, *(np.flatnonzero(np.diff(steps) != 0.0) + 1).tolist(), len(steps)]
-    pieces = [(a, b) for a, b in pairwise(bounds) if b - a >= 2]
+    pieces = [slice(a, b) for a, b in pairwise(bounds) if b - a >= 2]
     if len(bounds) == 2 or not pieces:
-        return [table]
-    parts: list[RawTable] = []
+        yield table
+        return
     names: list[str] = []
-    for start, stop in pieces:
-        names.append(f"step {steps[start]:g}")
+    for piece in pieces:
+        names.append(f"step {steps[piece.start]:g}")
         again = names.count(names[-1])
         name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
-        part = replace(
+        yield replace(
             table,
             name=f"{table.name}, {name}" if table.name else name,
-            columns=[column[start:stop] for column in table.columns],
-            lines=table.lines[start:stop] if table.lines is not None else None,
+            columns=[column[piece] for column in table.columns],
+            lines=table.lines[piece] if table.lines is not None else None,
         )
-        parts.append(part)
-    return parts
 
 
 def _logs(tables: Sequence[RawTable], file: _File, format_name: str) -> tuple[RawLog, ...]:
-    """The log of each table; where only some are logs, the refusal states how to leave out the others."""
-    found: list[tuple[str, RawLog]] = []
-    wrong: InputError | None = None
-    for table in _named_tables([part for whole in tables for part in _by_step(whole)], file):
-        source = f"{file.name}, {table.name}" if table.name else file.name
-        try:
-            log = raw_log(table, source, file.checksum, format_name, file.chosen, file.given)
-            found.append((table.name, log))
-        except InputError as error:
-            wrong = wrong or error
-    if wrong is None:
-        return _without_copies([log for _, log in found])
-    if not found:
-        raise wrong
-    names = ", ".join(shown(name) for name, _ in found)
-    cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
-    raise wrong.at(wrong.path, cure=cure)
+    """The log of each table that the column map names, or of all; the same numbers again are not a test.
 
-
-def _named_tables(tables: Sequence[RawTable], file: _File) -> list[RawTable]:
-    """Those that the column map names, or all; a name that is not there is refused."""
-    by_name = {table.name: table for table in tables}
+    Where only some are logs, the refusal states how to leave out the others.
+    """
+    parts = [part for whole in tables for part in _by_step(whole)]
+    by_name = {part.name: part for part in parts}
     for name in file.chosen.format.tables:
         if name not in by_name:
             there = ", ".join(f'"{printable(table)}"' for table in by_name if table)
             cure = f"It has {there}." if there else "It has one table, without a name."
             raise InputError(file.name, f'has no table "{printable(name)}"', cure=cure)
-    return [by_name[name] for name in file.chosen.format.tables] or list(tables)
-
-
-def _without_copies(logs: Sequence[RawLog]) -> tuple[RawLog, ...]:
-    """The logs, but each table once: the same numbers again are not another test."""
+    found: list[tuple[str, RawLog]] = []
+    wrong: InputError | None = None
+    for part in [by_name[name] for name in file.chosen.format.tables] or parts:
+        source = f"{file.name}, {part.name}" if part.name else file.name
+        try:
+            log = raw_log(part, source, file.checksum, format_name, file.chosen, file.given)
+            found.append((part.name, log))
+        except InputError as error:
+            wrong = wrong or error
+    if wrong is not None and found:
+        names = ", ".join(shown(name) for name, _ in found)
+        cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
+        raise wrong.at(wrong.path, cure=cure)
+    if wrong is not None:
+        raise wrong
     kept: dict[bytes, RawLog] = {}
-    for log in logs:
+    for _, log in found:
         columns = [log.friction, *(getattr(log, name) for name in log.abscissae)]
         numbers = b"".join(column.tobytes() for column in columns)
         if numbers in kept:

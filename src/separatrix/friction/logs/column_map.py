@@ -10,17 +10,14 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
-from separatrix.friction.logs.dialect import ENCODINGS, MISSING, SEPARATORS
-from separatrix.friction.logs.log import MEANINGS
-from separatrix.friction.logs.names import known_units, scale_of
+from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
+from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
 from separatrix.friction.records import place
 from separatrix.toml_text import Kind, read_toml
 from separatrix.units import printable, shown
 
 KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
-
-MOST = 1_000_000_000
-"""Number of a column or a line, at most."""
+MOST = 1_000_000_000  # number of a column or a line, at most
 
 QUANTITIES = {
     "temperature": "K",
@@ -35,11 +32,8 @@ QUANTITIES = {
 }
 """Conditions that are a number with a unit."""
 
-TEXTS = ("material", "counterface", "medium", "sample", "test")
-"""Conditions that are words."""
-
-RUN_IN_END = "run_in_end"
-"""Not a condition, but stated with them: where running-in ends."""
+TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
+RUN_IN_END = "run_in_end"  # where running-in ends: not a condition, but stated with them
 
 _AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
 _DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
@@ -52,8 +46,7 @@ class ColumnChoice:
     name: str | None = None
     number: int | None = None
     unit: str | None = None
-    sign: int = 1
-    """-1 where compression counts negative."""
+    sign: int = 1  # -1 where compression counts negative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,9 +58,9 @@ class TextFormat:
     encoding: str | None = None
     header_line: int | None = None
     units_line: int | None = None
-    missing: frozenset[str] = MISSING
-    tables: tuple[str, ...] = ()
-    """Names of the tables (sheets, steps) to read; all of them if empty."""
+    missing: frozenset[str] = frozenset()
+    """Texts that mean a missing value besides `MISSING`, in small letters."""
+    tables: tuple[str, ...] = ()  # names of the tables (sheets, steps) to read; all of them if empty
 
     @property
     def begin(self) -> int:
@@ -87,21 +80,21 @@ class ColumnMap:
     source: str = ""
 
     def conditions(self, path: Path) -> dict[str, str | float]:
-        """Conditions of one file, in SI units: `[test]`, then every matching pattern in the order written.
-
-        A pattern is one of the file's name, or of the names of its last folders, too: ``"run 1/*.csv"``.
-        """
-        found = dict(self.test)
-        for pattern, given in self.files.items():
-            if _fits(path, pattern):
-                found |= given
+        """Conditions of one file, in SI units: `[test]`, then every matching pattern in the order written."""
+        found = self._stated(path)
         found.pop(RUN_IN_END, None)
         return found
 
     def run_in_end(self, path: Path) -> str | None:
         """Where running-in ends in one file; None to find it."""
-        given = [self.test, *(given for pattern, given in self.files.items() if _fits(path, pattern))]
-        return next((str(one[RUN_IN_END]) for one in reversed(given) if RUN_IN_END in one), None)
+        found = self._stated(path).get(RUN_IN_END)
+        return None if found is None else str(found)
+
+    def _stated(self, path: Path) -> dict[str, str | float]:
+        found = dict(self.test)
+        for pattern, given in self.files.items():
+            found |= given if _fits(path, pattern) else {}
+        return found
 
     def unused(self, paths: Iterable[Path]) -> list[InputError]:
         """What is wrong with each pattern that fits none of the files."""
@@ -111,6 +104,15 @@ class ColumnMap:
         rule, cure = "must fit a file that is named", "Mend it, or leave it out of this column map."
         idle = [pattern for pattern in self.files if not any(_fits(path, pattern) for path in files)]
         return [InputError(_section(self.source, pattern), rule, names, cure) for pattern in idle]
+
+
+def _fits(path: Path, pattern: str) -> bool:
+    """Whether a pattern is one of the file's name, or of the names of its last folders, too."""
+    return PurePosixPath(path.absolute().as_posix()).match(pattern)
+
+
+def _section(source: str, pattern: str) -> str:
+    return f'{source}: [files."{printable(pattern)}"]'
 
 
 def read_column_map(path: str | Path) -> ColumnMap:
@@ -126,7 +128,7 @@ def read_column_map(path: str | Path) -> ColumnMap:
     return column_map(document, printable(path.name or str(path), 100))
 
 
-def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
+def column_map(document: Mapping[str, object], source: str = "column map") -> ColumnMap:
     """Column map of a parsed TOML document."""
     sections = ("columns", "format", "test", "files")
     _known(document, sections, source, "section")
@@ -148,15 +150,7 @@ def column_map(document: Mapping[str, Any], source: str = "column map") -> Colum
     )
 
 
-def _fits(path: Path, pattern: str) -> bool:
-    return PurePosixPath(path.absolute().as_posix()).match(pattern)
-
-
-def _section(source: str, pattern: str) -> str:
-    return f'{source}: [files."{printable(pattern)}"]'
-
-
-def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: str) -> None:
+def _known(given: Mapping[str, object], names: tuple[str, ...], where: str, kind: str) -> None:
     for name in given:
         if name not in names:
             near = get_close_matches(name, names, 1, 0.6)
@@ -164,7 +158,7 @@ def _known(given: Mapping[str, Any], names: tuple[str, ...], where: str, kind: s
             raise InputError(where, f"has no {kind} of that name", shown(name), cure)
 
 
-def _table(value: object, where: str) -> Mapping[str, Any]:
+def _table(value: object, where: str) -> Mapping[str, object]:
     if not isinstance(value, dict):
         raise InputError(where, "must be a section of the file", shown(value))
     return value
@@ -189,35 +183,35 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     return ColumnChoice(number=name, unit=unit, sign=sign)
 
 
-def _format(given: Mapping[str, Any], where: str) -> TextFormat:
+def _format(given: Mapping[str, object], where: str) -> TextFormat:
     _known(given, tuple(f.name for f in fields(TextFormat)), where, "key")
+    options = {"separator": SEPARATORS, "decimal": _DECIMALS, "encoding": {name: name for name in ENCODINGS}}
     found: dict[str, Any] = {}
-    encodings = {name: name for name in ENCODINGS}
-    for key, options in (("separator", SEPARATORS), ("decimal", _DECIMALS), ("encoding", encodings)):
-        value = given.get(key)
-        if value is not None and (not isinstance(value, str) or value not in options):
-            names = ", ".join(f'"{name}"' for name in options if name.isprintable() and name.strip())
-            raise InputError(f"{where} {key}", f"must be one of {names}", shown(value))
-        found[key] = None if value is None else options[value]
-    for key in ("header_line", "units_line"):
-        value = found[key] = given.get(key)
-        if value is not None and (type(value) is not int or not 1 <= value <= MOST):
-            rule = "must be the number of a line, counted from 1"
-            raise InputError(f"{where} {key}", rule, shown(value))
-    for key in ("missing", "tables"):
-        value = given.get(key, [])
-        if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
+    for key, value in given.items():
+        if key in options:
+            if not isinstance(value, str) or value not in options[key]:
+                names = [f'"{name}"' for name in options[key] if name.isprintable() and name.strip()]
+                raise InputError(f"{where} {key}", f"must be one of {', '.join(names)}", shown(value))
+            found[key] = options[key][value]
+        elif key in ("header_line", "units_line"):
+            if type(value) is not int or not 1 <= value <= MOST:
+                rule = "must be the number of a line, counted from 1"
+                raise InputError(f"{where} {key}", rule, shown(value))
+            found[key] = value
+        elif not isinstance(value, list) or not all(isinstance(text, str) for text in value):
             raise InputError(f"{where} {key}", "must be a list of texts", cure=f'Write {key} = ["..."].')
-        found[key] = tuple(value)
-    if found["separator"] == found["decimal"] == ",":
+        elif key == "tables":
+            found[key] = tuple(value)
+        else:
+            found[key] = frozenset(text.casefold() for text in value)
+    if found.get("separator") == found.get("decimal") == ",":
         raise InputError(where, "cannot have a comma both as separator and as decimal sign")
-    if found["units_line"] and not found["header_line"]:
+    if found.get("units_line") and not found.get("header_line"):
         raise InputError(f"{where} units_line", "needs a header_line, too")
-    found["missing"] = MISSING | {text.casefold() for text in found["missing"]}
     return TextFormat(**found)
 
 
-def _conditions(given: Mapping[str, Any], where: str) -> dict[str, str | float]:
+def _conditions(given: Mapping[str, object], where: str) -> dict[str, str | float]:
     _known(given, (*TEXTS, *QUANTITIES, RUN_IN_END), where, "condition")
     return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
 
@@ -230,16 +224,15 @@ def _condition(key: str, value: Any, where: str) -> str | float:
     if key == RUN_IN_END:
         place(value, where)
         return str(value)
-    number = _area(value, where) if key == "contact_area" else units.parse(value, QUANTITIES[key], where)
+    if key == "contact_area":  # no study has one, so its units are here
+        text = value if isinstance(value, str) else ""
+        written, _, unit = text.strip().replace("\u00b2", "2").replace("^", "").partition(" ")
+        if unit.strip() not in _AREAS:
+            rule = f"needs a unit of area ({', '.join(_AREAS)})"
+            raise InputError(where, rule, shown(value), 'Write "3 mm2".')
+        number = units.parse(f"{written} m", "m", where) * _AREAS[unit.strip()]
+    else:
+        number = units.parse(value, QUANTITIES[key], where)
     if number <= 0.0:
         raise InputError(where, "must be > 0", shown(value))
     return number
-
-
-def _area(value: object, where: str) -> float:
-    """An area, ``"3 mm2"``: no study has one, so its units are here."""
-    text = value if isinstance(value, str) else ""
-    number, _, unit = text.strip().replace("\u00b2", "2").replace("^", "").partition(" ")
-    if unit.strip() not in _AREAS:
-        raise InputError(where, f"needs a unit of area ({', '.join(_AREAS)})", shown(value), 'Write "3 mm2".')
-    return units.parse(f"{number} m", "m", where) * _AREAS[unit.strip()]

@@ -6,12 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK
 from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
-from separatrix.friction.logs.formats import PLAIN, Layout
-from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, ColumnRead
+from separatrix.friction.logs.dialect import CLOCK
+from separatrix.friction.logs.header import PLAIN, Layout
+from separatrix.friction.logs.log import ColumnRead
 from separatrix.friction.logs.names import (
+    ABSCISSAE,
     CLOCKS,
+    MEANINGS,
     Scale,
     header_parts,
     known_units,
@@ -24,9 +26,7 @@ from separatrix.friction.logs.names import (
 )
 from separatrix.units import printable, shown
 
-LAST = 9
-"""Rank of times as text: a column of seconds is finer."""
-
+LAST = 9  # rank of times as text: a column of seconds is finer
 NO_UNIT = "has no unit, so that its meaning is not certain"
 IN_MAP = "Below [columns] in a column map"
 
@@ -65,25 +65,9 @@ def understand(
     *,
     constant_force: bool = False,
 ) -> Understood:
-    """Meaning of each column.
+    """Meaning of each column; `[columns]` of the column map goes first.
 
-    Parameters
-    ----------
-    headers, units : sequence of str
-        As the file writes them; a unit may be empty and be part of the header instead.
-    source : str
-        Names the file in a refusal.
-    columns : ColumnMap
-        Its `[columns]` go first.
-    layout : Layout
-        What the instrument's format states.
-    constant_force : bool
-        The normal force is known, so that the tangential force alone determines the friction.
-
-    Raises
-    ------
-    InputError
-        Friction or its abscissa cannot be identified; which columns could be it, and the line to write.
+    With a constant normal force the tangential force alone determines the friction.
     """
     table = _Table(headers, units, source, layout)
     given: dict[str, Meant] = {}
@@ -163,11 +147,12 @@ class _Table:
         written = [choice.unit or unit, ways[0][1], self.layout.units.get(ways[0][0], "")]
         if not choice.unit and beside:
             written = [self.agreed(unit, beside[0], meaning)]
-        for one in [one for one in written if one] + [""]:
+        written = [one for one in written if one] + [""]
+        for one in written:
             scale = self.scale(meaning, one)
             if scale is not None:
                 return Meant(i, meaning, one, scale, sign=choice.sign, why="column map")
-        raise _unit_wanted(self, i, meaning, next((one for one in written if one), ""))
+        raise _unit_wanted(self, i, meaning, written[0])
 
     def _place(self, meaning: str, choice: ColumnChoice) -> int:
         if choice.number is not None:
@@ -185,8 +170,7 @@ class _Table:
         if not found:
             rule = f"has no column {shown(name)}, which the column map names as {meaning}"
             raise InputError(self.source, rule, cure=f"It has {self.listed(range(len(self.headers)))}.")
-        numbers = " or ".join(str(i + 1) for i in found)
-        cure = f"Below [columns], write its number instead: {meaning} = {numbers}."
+        cure = f"Below [columns], write its number instead: {meaning} = {_numbers(found)}."
         raise InputError(self.source, f"has {len(found)} columns {shown(name)}", cure=cure)
 
     def options(self, i: int) -> list[Meant]:
@@ -205,15 +189,17 @@ class _Table:
         return [Meant(i, "time", CLOCK, Scale(), LAST)] if unit == CLOCK else []
 
 
-def _decided(options: dict[int, list[Meant]], given: dict[str, Meant], headers: Sequence[str]) -> Understood:
+Options = dict[int, list[Meant]]
+"""What each column that the map does not name may mean."""
+
+
+def _decided(options: Options, given: dict[str, Meant], headers: Sequence[str]) -> Understood:
     """One column for each meaning where one is best; the others as columns that could have it; its twins."""
     result = Understood(used=dict(given))
     for meaning in MEANINGS:
         if meaning in given:
             continue
-        sure = [
-            one for o in options.values() for one in o if len(o) == 1 and one.meaning == meaning and one.scale
-        ]
+        sure = [o[0] for o in options.values() if len(o) == 1 and o[0].meaning == meaning and o[0].scale]
         best = min((one.rank for one in sure), default=0)
         sure = [one for one in sure if one.rank == best]
         twins: list[int] = []
@@ -230,47 +216,35 @@ def _decided(options: dict[int, list[Meant]], given: dict[str, Meant], headers: 
 
 
 def _require_friction(
-    result: Understood,
-    table: _Table,
-    options: dict[int, list[Meant]],
-    chosen_forces: bool,
-    constant_force: bool,
+    result: Understood, table: _Table, options: Options, chosen_forces: bool, constant_force: bool
 ) -> None:
+    """Refuse a table without friction: offer what may be a coefficient, else the two forces."""
     forces = "tangential_force" in result.used and ("normal_force" in result.used or constant_force)
     if "friction" in result.used or (forces and (chosen_forces or not result.unsettled["friction"])):
         return
-    for meaning in ("tangential_force", "normal_force") if chosen_forces else ("friction",):
-        _refuse_unsettled(meaning, result, table, options)
-    if not chosen_forces and any(looks_like_friction(header) for header in table.headers):
-        raise _no_friction(table, result)
-    for meaning, other in (("tangential_force", "normal_force"), ("normal_force", "tangential_force")):
-        if other in result.used or result.unsettled[other]:
-            _refuse_unsettled(meaning, result, table, options)
-    raise _no_friction(table, result)
-
-
-def _no_friction(table: _Table, result: Understood) -> InputError:
-    """Refuse a table without friction: offer what may be a coefficient, else the two forces."""
-    if "tangential_force" in result.used:
-        cure = f'{IN_MAP}: normal_force = "...", or below [test]: normal_force = "... N".'
-        return InputError(table.source, "has a tangential force but no normal force", cure=cure)
-    rule = "has no column that is known to be the friction, nor two forces from which it follows"
     every = range(len(table.headers))
     near = [i for i in every if looks_like_friction(table.headers[i])]
+    for meaning in ("tangential_force", "normal_force") if chosen_forces else ("friction",):
+        _refuse_unsettled(meaning, result, table, options)
+    if chosen_forces or not near:
+        for meaning, other in (("tangential_force", "normal_force"), ("normal_force", "tangential_force")):
+            if other in result.used or result.unsettled[other]:
+                _refuse_unsettled(meaning, result, table, options)
+    if "tangential_force" in result.used:
+        cure = f'{IN_MAP}: normal_force = "...", or below [test]: normal_force = "... N".'
+        raise InputError(table.source, "has a tangential force but no normal force", cure=cure)
+    rule = "has no column that is known to be the friction, nor two forces from which it follows"
     near.sort(key=lambda i: looks_extreme(table.headers[i]))
-    forces = [i for i in every if i not in near and _is_tangential(table.headers[i])]
-    if forces and not near:
-        line = _forces_line(table, forces[0], with_load="normal_force" not in result.used)
-        return InputError(table.source, rule, table.listed(forces), line)
+    parts = ("fric", "reib", "frott", "tang", "lateral")
+    tangential = [i for i in every if any(part in plain(table.headers[i]) for part in parts)]
+    tangential = [i for i in tangential if i not in near and looks_like_force(table.headers[i])]
+    if tangential and not near:
+        line = _forces_line(table, tangential[0], with_load="normal_force" not in result.used)
+        raise InputError(table.source, rule, table.listed(tangential), line)
     name = table.name(near[0]) if near else '"..."'
     cure = f"State which below [columns] in a column map: friction = {name}."
     cure += "" if near else " A log without friction is of no use here: leave it out."
-    return InputError(table.source, rule, table.listed(near or every), cure)
-
-
-def _is_tangential(header: str) -> bool:
-    parts = ("fric", "reib", "frott", "tang", "lateral")
-    return looks_like_force(header) and any(part in plain(header) for part in parts)
+    raise InputError(table.source, rule, table.listed(near or every), cure)
 
 
 def _forces_line(table: _Table, i: int, *, with_load: bool = True) -> str:
@@ -286,9 +260,7 @@ def _forces_line(table: _Table, i: int, *, with_load: bool = True) -> str:
     return f"In a column map, with the true unit and load: below [columns] {line}, {load}."
 
 
-def _refuse_unsettled(
-    meaning: str, result: Understood, table: _Table, options: dict[int, list[Meant]]
-) -> None:
+def _refuse_unsettled(meaning: str, result: Understood, table: _Table, options: Options) -> None:
     """Refuse if there are columns that could have the meaning, with the line that settles it."""
     places = result.unsettled[meaning]
     if meaning in result.used or not places:
@@ -325,11 +297,12 @@ def _why_not(options: Sequence[Meant], result: Understood) -> str:
         return f"could be {words}, but {fault}"
     if one.index in result.twins.get(one.meaning, []):
         return f"the same as the column of {words}"
-    return (
-        f"another column is the {words}"
-        if one.meaning in result.used
-        else f"one of several that could be {words}"
-    )
+    used = one.meaning in result.used
+    return f"another column is the {words}" if used else f"one of several that could be {words}"
+
+
+def _numbers(places: Sequence[int]) -> str:
+    return " or ".join(str(i + 1) for i in places)
 
 
 def _words(meaning: str) -> str:

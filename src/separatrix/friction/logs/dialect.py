@@ -1,4 +1,4 @@
-"""How a text is written, decided by rules: its characters, the separator and decimal sign of its numbers."""
+"""How a text is written, decided by rules: its characters, its separator, its numbers and its times."""
 
 from __future__ import annotations
 
@@ -6,41 +6,28 @@ import codecs
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import date
+
+import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import is_clock
-from separatrix.units import printable
+from separatrix.units import Array, printable
 
-MISSING = frozenset(
-    {
-        "",
-        "x",
-        "\u00d7",
-        "-",
-        "--",
-        "---",
-        "\u2013",
-        "\u2014",
-        "nan",
-        "+nan",
-        "-nan",
-        "null",
-        "none",
-        "n/a",
-        "na",
-    }
-    | {"n.a.", "k.a.", "#n/a", "#nv", "#value!", "#div/0!", "#num!", "#ref!", "#name?", "#wert!"}
-    | {"inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf"}
-    | {"1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "nan(ind)", "-nan(ind)"}
+_MISSING = (
+    "x \u00d7 - -- --- \u2013 \u2014 nan +nan -nan null none n/a na n.a. k.a. #n/a #nv #value! #div/0! #num! "
+    "#ref! #name? #wert! inf +inf -inf infinity -infinity 1.#inf -1.#inf 1.#qnan -1.#qnan 1.#ind -1.#ind "
+    "nan(ind) -nan(ind)"
 )
+MISSING = frozenset({"", *_MISSING.split()})
 """How files write a missing value, in small letters."""
 
 SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
 
-QUOTED = "\x1f"
-"""Stands for the comma between fields, where fields in quotes hold commas."""
+ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk")
+"""What `[format] encoding` of a column map may be."""
 
+QUOTED = "\x1f"  # stands for the comma between fields, where fields in quotes hold commas
 _NAMES = {
     "\t": "tab",
     ";": "semicolon",
@@ -65,8 +52,7 @@ NO_MOMENTS = (
 class Dialect:
     """How a file writes a row of numbers."""
 
-    separator: str
-    """One character; a blank means runs of blanks and tabs."""
+    separator: str  # one character; a blank means runs of blanks and tabs
     decimal: str
     missing: frozenset[str] = MISSING
 
@@ -76,7 +62,7 @@ class Dialect:
         return f"{_NAMES[self.separator]}, decimal {_NAMES.get(self.decimal, 'point')}"
 
     def fields(self, line: str) -> list[str]:
-        """The fields of a line, without the blanks around them."""
+        """The fields of a line, without quotes and the blanks around them."""
         return fields(line, self.separator)
 
     def is_data(self, line: str) -> bool:
@@ -104,11 +90,23 @@ def dialect_of(
     before comma before blanks. The decimal sign is the one found in the numbers; where all of them
     might as well be groups of thousands, the column map must state it.
     """
-    chosen = separator or _separator(lines, missing, source)
-    rows = [row for row in (fields(line, chosen) for line in lines) if _is_data(row, missing, chosen)]
+    if separator is None:
+        scores = dict.fromkeys(_NAMES, 0)
+        for line in lines:
+            for one in scores:
+                if one in line or (one == " " and "\t" in line):
+                    scores[one] += _is_data(fields(line, one), missing, one)
+        separator = max(scores, key=lambda one: scores[one])
+        if scores[separator] == 0:
+            cure = "It needs a line of column names above at least two rows; a column map can state where."
+            if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
+                cure = NO_MOMENTS
+            raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
     if decimal is None:
-        decimal = "." if chosen == "," else _decimal(rows, source)
-    return Dialect(separator=chosen, decimal=decimal, missing=missing)
+        rows = (fields(line, separator) for line in lines)
+        rows_of_data = [row for row in rows if _is_data(row, missing, separator)]
+        decimal = "." if separator == "," else _decimal(rows_of_data, source)
+    return Dialect(separator=separator, decimal=decimal, missing=missing)
 
 
 def is_number(field: str) -> bool:
@@ -116,19 +114,9 @@ def is_number(field: str) -> bool:
     return _NUMBER.fullmatch(field) is not None
 
 
-def _separator(lines: Sequence[str], missing: frozenset[str], source: str) -> str:
-    scores = dict.fromkeys(_NAMES, 0)
-    for line in lines:
-        for candidate in scores:
-            if candidate in line or (candidate == " " and "\t" in line):
-                scores[candidate] += _is_data(fields(line, candidate), missing, candidate)
-    best = max(scores, key=lambda candidate: scores[candidate])
-    if scores[best] == 0:
-        cure = "It needs a line of column names above at least two rows; a column map can state where."
-        if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
-            cure = NO_MOMENTS
-        raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
-    return best
+def is_moment(field: str) -> bool:
+    """True for a date or a time of day."""
+    return _MOMENT.match(field) is not None
 
 
 def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> bool:
@@ -150,15 +138,9 @@ def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> boo
     return words + (clocks if numbers > 1 else 0) <= (1 if separator == " " else 2) * numbers
 
 
-def is_moment(field: str) -> bool:
-    """True for a date or a time of day."""
-    return _MOMENT.match(field) is not None
-
-
 def _several_signs(field: str) -> bool:
-    """True for ``1.234,5`` and its like; a date is none."""
-    several = _SEVERAL.fullmatch(field) is not None
-    return several and _WORD.match(field) is None
+    """True for ``1.234,5`` and its like; a date is not one."""
+    return _SEVERAL.fullmatch(field) is not None and _WORD.match(field) is None
 
 
 def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
@@ -166,23 +148,17 @@ def _decimal(rows: Sequence[Sequence[str]], source: str) -> str:
     tokens = [field for field in tokens if is_number(field) or _several_signs(field)]
     commas = [field for field in tokens if "," in field]
     points = [field for field in tokens if "." in field]
-    both = commas and points
-    if both or any(_several_signs(field) for field in tokens):
+    if (commas and points) or any(_several_signs(field) for field in tokens):
         shown = " and ".join(f'"{printable(found[0])}"' for found in (commas, points) if found)
         cure = "Export the file without marks between thousands, or write below [format]: decimal = ..."
         raise InputError(source, "has points and commas in its numbers", shown, cure)
     marked = commas or points
     if marked and all(_GROUPED.fullmatch(field) for field in marked):
+        rule = "does not show whether its marks are decimal signs or between thousands"
         cure = f'Add to the column map, below [format]: decimal = "{"," if commas else "."}".'
-        value = f'"{printable(marked[0])}"'
-        raise InputError(
-            source, "does not show whether its marks are decimal signs or between thousands", value, cure
-        )
+        raise InputError(source, rule, f'"{printable(marked[0])}"', cure)
     return "," if commas else "."
 
-
-ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk")
-"""What `[format] encoding` of a column map may be."""
 
 _MARKS = {
     codecs.BOM_UTF8: "utf-8",
@@ -199,9 +175,7 @@ _OTHERS = {
     b"MATLAB 5": ("a MATLAB file", "Export the log as text."),
 }
 _ASCII_BELOW = ("utf-8", "cp1252", "latin-1", "cp1250")
-_END_OF_FILE = b"\x1a"
-"""What DOS programs write behind the last line."""
-
+_END_OF_FILE = b"\x1a"  # what DOS programs write behind the last line
 _MINUS = "\u2212".encode()
 _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 
@@ -211,19 +185,26 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
 
     A byte order mark decides; without one, UTF-16 is known by the NUL bytes that its Latin letters have in
     every second place, UTF-8 by being valid, and what is left is Windows-1252 if no byte is undefined in it.
-
-    Raises
-    ------
-    InputError
-        Not a text file, or none of these encodings.
     """
     for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
         if raw.startswith(magic):
             raise InputError(source, f"is {what}, not text", cure=cure)
     mark = next((mark for mark in _MARKS if raw.startswith(mark)), b"")
     body = raw.removeprefix(mark)
-    chosen = encoding or (_MARKS[mark] if mark else _by_rule(body, source))
-    text = _in_utf8(body, chosen, source).rstrip(_END_OF_FILE)
+    chosen = encoding or (_MARKS[mark] if mark else _encoding_of(body, source))
+    # only the lines before the plain ASCII of the rows are recoded, where the encoding allows
+    cut = body.find(b"\n", 16384) + 1 if chosen in _ASCII_BELOW else 0
+    if cut == 0 or not body[cut:].isascii():
+        cut = len(body)
+    try:
+        text = body[:cut].decode(chosen).encode("utf-8") + body[cut:]
+    except UnicodeError as problem:
+        place = getattr(problem, "start", 0)
+        line = body.count(b"\n", 0, place) + 1
+        rule = f"cannot be read as {chosen} text"
+        cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
+        raise InputError(f"{source}: line {line}", rule, f"byte {body[place]:#04x}", cure) from None
+    text = text.rstrip(_END_OF_FILE)
     if not text.isascii():
         text = text.replace(_MINUS, b"-")
     if text[:65536].translate(None, _CONTROLS) != text[:65536]:
@@ -234,7 +215,7 @@ def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes
     return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n"), chosen
 
 
-def _by_rule(raw: bytes, source: str) -> str:
+def _encoding_of(raw: bytes, source: str) -> str:
     if b"\0" not in raw:
         try:
             raw.decode("utf-8")
@@ -252,27 +233,78 @@ def _by_rule(raw: bytes, source: str) -> str:
     raise _binary(source)
 
 
-def _in_utf8(raw: bytes, encoding: str, source: str) -> bytes:
-    """Only the lines before the plain ASCII of the rows are recoded, where the encoding allows."""
-    if encoding not in _ASCII_BELOW:
-        return _recoded(raw, encoding, source)
-    cut = raw.find(b"\n", 16384) + 1
-    if cut == 0 or not raw[cut:].isascii():
-        return _recoded(raw, encoding, source)
-    return _recoded(raw[:cut], encoding, source) + raw[cut:]
-
-
-def _recoded(raw: bytes, encoding: str, source: str) -> bytes:
-    try:
-        return raw.decode(encoding).encode("utf-8")
-    except UnicodeError as problem:
-        place = getattr(problem, "start", 0)
-        line = raw.count(b"\n", 0, place) + 1
-        rule = f"cannot be read as {encoding} text"
-        cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
-        raise InputError(f"{source}: line {line}", rule, f"byte {raw[place]:#04x}", cure) from None
-
-
 def _binary(source: str) -> InputError:
     cure = "Export the log as text from the tribometer's program."
     return InputError(source, "is not a text file (it has NUL or control characters)", cure=cure)
+
+
+CLOCK = "clock"  # unit of a column of times as text
+SHORT_CLOCKS = ("hh:mm", "h:min", "mm:ss", "min:s", "m:s")  # units of times of two numbers
+
+_DAY = 86_400.0
+_MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec"
+_DATE = r"(?P<a>\d{1,4})(?P<sign>[-/. ])(?P<b>\d{1,2}|[A-Za-z]{3})[a-z]*(?P=sign)(?P<c>\d{1,4})"
+_TIME = r"(?P<h>\d{1,4}):(?P<m>\d{1,2})(?::(?P<s>\d{1,2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp]\.?[Mm]\.?)?"
+_ZONE = r"\s*(?:Z|[+-]\d{2}:?\d{2})?"
+_DATE_AND_TIME = re.compile(rf"(?:{_DATE}[\sT,_]\s*)?{_TIME}{_ZONE}")
+
+
+def is_clock(field: str) -> bool:
+    """Return whether a field holds a time of day or a duration, with or without a date before it.
+
+    Examples
+    --------
+    >>> is_clock("19:54:11"), is_clock("2026-02-01T10:00:00.25Z"), is_clock("2026-02-01"), is_clock("3.5")
+    (True, True, False, False)
+    """
+    return _DATE_AND_TIME.fullmatch(field) is not None
+
+
+def seconds(fields: Sequence[str], *, of_minutes: bool = False) -> Array:
+    """Return seconds since the first field, shape (row,); NaN for an empty one.
+
+    Two numbers are hours and minutes, or minutes and seconds. A time of day that falls back by more than half
+    a day has passed midnight. Of ambiguous day and month the order with the shortest test is taken.
+
+    Examples
+    --------
+    >>> seconds(["23:59:58", "23:59:59.5", "00:00:01"]).tolist()
+    [0.0, 1.5, 3.0]
+    """
+    found = [_DATE_AND_TIME.fullmatch(field) for field in fields]
+    times = np.array([np.nan if one is None else _time(one, of_minutes=of_minutes) for one in found])
+    if any(one is not None and one["a"] for one in found):
+        orders = [np.array([_day(one, swap=swap) for one in found]) for swap in (False, True)]
+        lengths = [np.inf if np.isinf(days).any() else np.nanmax(days) - np.nanmin(days) for days in orders]
+        times += _DAY * orders[int(np.argmin(lengths))]
+    else:
+        there = np.flatnonzero(np.isfinite(times))
+        times[there[1:]] += _DAY * np.cumsum(np.diff(times[there]) < -_DAY / 2.0)
+    first = times[np.isfinite(times)][:1]
+    return np.round(times - (first if first.size else 0.0), 9)
+
+
+def _time(found: re.Match[str], *, of_minutes: bool) -> float:
+    """Return the time of a field in seconds."""
+    first, second, third = int(found["h"]), int(found["m"]), found["s"]
+    if third is None and of_minutes:
+        return 60.0 * first + second
+    if found["half"]:
+        first = first % 12 + (12 if found["half"][0] in "pP" else 0)
+    rest = 0.0 if third is None else float(re.sub("[,:]", ".", third))
+    return 3600.0 * first + 60.0 * second + rest
+
+
+def _day(found: re.Match[str] | None, *, swap: bool) -> float:
+    """Return the number of a day; NaN without a date, infinite where the order does not fit."""
+    if found is None or found["a"] is None:
+        return float("nan")
+    a, b, c = found["a"], found["b"], found["c"]
+    year, month, day = (a, b, c) if len(a) == 4 else (c, b, a)
+    if swap and month.isdigit():
+        month, day = day, month
+    number = int(month) if month.isdigit() else _MONTHS.find(month.casefold()) // 4 + 1
+    try:
+        return float(date(int(year) + (2000 if len(year) <= 2 else 0), number, int(day)).toordinal())
+    except ValueError:
+        return float("inf")

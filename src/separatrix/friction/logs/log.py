@@ -1,8 +1,9 @@
-"""A log of a tribometer, whatever format it came from, and the parts of one test joined to one log."""
+"""A log of a tribometer, whatever its format, with its conditions; parts of one test joined to one log."""
 
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -12,7 +13,10 @@ import numpy as np
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.friction.logs.formats import PLAIN, Layout
+from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
+from separatrix.friction.logs.header import PLAIN, Layout
+from separatrix.friction.logs.names import ABSCISSAE, header_parts, plain, scale_in
+from separatrix.friction.logs.names import MEANINGS as MEANINGS
 from separatrix.units import (
     Array,
     Kelvin,
@@ -26,23 +30,6 @@ from separatrix.units import (
     unit_of,
 )
 
-MEANINGS = {
-    "friction": "-",
-    "tangential_force": "N",
-    "normal_force": "N",
-    "time": "s",
-    "distance": "m",
-    "cycles": "-",
-    "temperature": "K",
-    "wear_depth": "m",
-    "slip_speed": "m/s",
-    "rotational_speed": "rad/s",
-}
-"""What a column may mean, and the SI unit it is kept in. A rotational speed serves the conditions only."""
-
-ABSCISSAE = ("time", "distance", "cycles")
-"""The columns of which a log has at least one."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Conditions:
@@ -53,24 +40,16 @@ class Conditions:
     medium: str | None = None
     sample: str | None = None
     test: str | None = None
-    temperature: Kelvin | None = None
-    slip_speed: MetrePerSecond | None = None
-    pressure: Pascal | None = None
+    temperature: Kelvin | None = field(default=None, metadata=_check.must(_check.positive, 0.1, 3000.0))
+    slip_speed: MetrePerSecond | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e3))
+    pressure: Pascal | None = field(default=None, metadata=_check.must(_check.positive, 1e-3, 1e12))
     """Mean contact pressure."""
-    normal_force: Newton | None = None
-    cycle_time: Second | None = None
+    normal_force: Newton | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e7))
+    cycle_time: Second | None = field(default=None, metadata=_check.must(_check.positive, 1e-6, 1e7))
     """Of one revolution or of one stroke there and back."""
 
     def __post_init__(self) -> None:
-        texts = ("material", "counterface", "medium", "sample", "test")
-        _check.settle(
-            *(_check.printable_text(self, name) for name in texts),
-            _check.positive(self, "temperature", 0.1, 3000.0),
-            _check.positive(self, "slip_speed", 1e-9, 1e3),
-            _check.positive(self, "pressure", 1e-3, 1e12),
-            _check.positive(self, "normal_force", 1e-9, 1e7),
-            _check.positive(self, "cycle_time", 1e-6, 1e7),
-        )
+        _check.settle(*(_check.printable_text(self, name) for name in TEXTS), _check.each_field(self))
 
     @property
     def environment(self) -> str | None:
@@ -85,41 +64,24 @@ class ColumnRead:
     """How one column of a file was understood."""
 
     header: str
-    meaning: str | None
-    """A key of `MEANINGS`; None where the column is not used."""
-    unit: str
-    """As the file or the column map writes it; empty where there is none."""
-    why: str
-    """For instance ``"its name"`` or ``"column map"``."""
-
-    def __post_init__(self) -> None:
-        if self.meaning is not None and self.meaning not in MEANINGS:
-            rule = f"must be one of {', '.join(MEANINGS)}"
-            raise InputError("ColumnRead.meaning", rule, f'"{self.meaning}"')
+    meaning: str | None  # A key of `MEANINGS`; None where the column is not used
+    unit: str  # as the file or the column map writes it; empty where there is none
+    why: str  # for instance ``"its name"`` or ``"column map"``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RawTable:
     """One table as a file holds it, before its columns have a meaning."""
 
-    name: str
-    """Of the sheet, channel group or section; empty where the file has one table only."""
+    name: str  # of the sheet, channel group or section; empty where the file has one table only
     headers: tuple[str, ...]
-    units: tuple[str, ...]
-    """As written; empty where the table has none."""
+    units: tuple[str, ...]  # as written; empty where the table has none
     columns: list[Array]
     """One per header, shape (row,) each, in the units written; NaN where the file has nothing."""
     metadata: Mapping[str, str] = field(default_factory=dict)
     lines: Sequence[int] | Array | None = None
     """Line of the file (from 1) of each row, for messages; None where it has no lines."""
     layout: Layout = PLAIN
-
-    def __post_init__(self) -> None:
-        if not len(self.headers) == len(self.units) == len(self.columns):
-            counts = f"{len(self.headers)}, {len(self.units)} and {len(self.columns)}"
-            raise InputError("RawTable", "needs one unit and one column for each header", counts)
-        if len({column.shape for column in self.columns}) > 1:
-            raise InputError("RawTable.columns", "must have the same number of rows")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -156,14 +118,15 @@ class RawLog:
         problems = []
         if not self.abscissae:
             problems.append(InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}"))
-        if len(self.friction) < 2:
-            got = str(len(self.friction))
-            problems.append(InputError(self.source, "needs at least two rows with a friction", got))
+        if self.rows < 2:
+            problems.append(
+                InputError(self.source, "needs at least two rows with a friction", str(self.rows))
+            )
         for name in sorted(MEANINGS.keys() & {f.name for f in fields(self)}):
             column = getattr(self, name)
-            if column is not None and len(column) != len(self.friction):
-                got = str(len(column))
-                problems.append(InputError(f"RawLog.{name}", "must have as many rows as friction", got))
+            if column is not None and len(column) != self.rows:
+                rule = "must have as many rows as friction"
+                problems.append(InputError(f"RawLog.{name}", rule, str(len(column))))
         _check.settle(problems)
 
     @property
@@ -177,11 +140,132 @@ class RawLog:
         return tuple(name for name in ABSCISSAE if getattr(self, name) is not None)
 
 
-ALIKE = 0.1
-"""Share by which measured conditions of parts may differ; beyond it they are of different tests."""
+KEYS: dict[str, str] = {
+    "normal_force": "normal load; normal force; load; set force; applied load; normalkraft; last; "
+    "charge normale; force normale",
+    "slip_speed": "lin speed; linear speed; sliding speed; max lin speed; max linear speed; speed; velocity; "
+    "gleitgeschwindigkeit; geschwindigkeit; lin geschw; vitesse; vit lin; vitesse lineaire; "
+    "vitesse de glissement",
+    "rotational_speed": "rotational speed; rotation speed; spindle speed; speed; velocity; drehzahl; "
+    "vitesse de rotation",
+    "track_radius": "radius; track radius; wear track radius; spurradius; radius der spur; rayon; "
+    "rayon de piste; rayon de la piste",
+    "pressure": "mean contact pressure; nominal contact pressure; mittlere flachenpressung; flachenpressung; "
+    "pression moyenne de contact",
+    "pin_diameter": "pin diameter; stiftdurchmesser; diametre du pion",
+    "temperature": "temperature; temp; test temperature; temperatur; versuchstemperatur; temperature d essai",
+    "material": "material; pin material; cage material; pin; werkstoff; stiftwerkstoff; materiau; "
+    "materiau du pion",
+    "counterface": "counterface; counter body; counterbody; disk material; disc material; disk; disc; "
+    "gegenkorper; scheibe; contre piece; antagoniste; disque",
+    "medium": "medium; atmosphere; environment; atmosphare; umgebungsmedium; milieu",
+    "sample": "sample; sample name; sample id; specimen; specimen id; probe; probenname; echantillon",
+    "test": "test; test name; test id; test no; versuch; essai",
+}
+"""Keys of metadata that are conditions, in English, German and French."""
 
-LISTED = 12
-"""Parts whose friction is listed."""
+AGREE = 0.01
+"""Share by which two values of one condition may differ: set points are written with two or three digits."""
+
+MAP, MEDIAN = "column map", "median of its column"  # where a condition comes from
+_VALUE = re.compile(
+    r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"
+)
+Found = dict[str, tuple[str | float, str]]
+"""Value of each condition, and where it comes from."""
+
+
+def conditions_of(
+    given: Mapping[str, str | float], metadata: Mapping[str, str], columns: Mapping[str, Array], source: str
+) -> tuple[Conditions, tuple[str, ...]]:
+    """Conditions of a log, and a sentence on each that the column map does not state.
+
+    The slip speed is the rotational speed times the radius of the track, the time of a cycle that of one
+    turn, and the pressure the normal force over the area of the pin, where these are known.
+    """
+    found: Found = {key: (value, MAP) for key, value in given.items()}
+    notes = [note for key, text in metadata.items() if text and (note := _from_metadata(key, text, found))]
+    for key, column in columns.items():  # the median, which a ramp at the start does not move
+        if key in QUANTITIES and np.isfinite(column).any():
+            middle = float(np.nanmedian(np.abs(column)))
+            if middle > 0.0:
+                found.setdefault(key, (middle, MEDIAN))
+    _derive(found, source)
+    known = {key: one for key, one in found.items() if key in Conditions.__dataclass_fields__}
+    sentences = []
+    for key, (value, reason) in known.items():
+        text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[key])
+        if reason != MAP:
+            sentences.append(f"{key.replace('_', ' ')} {text}: {reason}")
+    conditions = Conditions(**{key: value for key, (value, _) in known.items()})  # type: ignore[arg-type]
+    return conditions, (*sentences, *notes)
+
+
+def _from_metadata(key: str, text: str, found: Found) -> str:
+    """Keep the first condition whose unit the value has; return a note on a value that is not used."""
+    name, beside = header_parts(key)[0]
+    conditions = [condition for condition, names in KEYS.items() if plain(name) in names.split("; ")]
+    if not conditions:
+        return ""
+    first, reason = conditions[0], f'"{printable(key)}" in the file'
+    if first in TEXTS:
+        found.setdefault(first, (text, reason))
+        return ""
+    match = _VALUE.fullmatch(text.strip())
+    unit = (match[2] or beside).strip() if match else ""
+    for condition in conditions:
+        scale = scale_in(unit, QUANTITIES[condition])
+        if match and scale is not None:
+            size = float(match[1].replace(",", ".")) * scale.factor / scale.divisor + scale.offset
+            if size > 0.0:
+                found.setdefault(condition, (size, reason))
+                return ""
+    if first in found:
+        return ""
+    shown = f"{printable(key)} {printable(text)}"
+    number = match[1].lstrip("+-") if match and not unit else ""
+    if not number:
+        return f'{shown} is not understood; put {first} = "..." with its unit under [test]'
+    unit = "mm" if first in ("track_radius", "pin_diameter") else "<unit>"
+    return f'{shown} has no unit; put {first} = "{number} {unit}" under [test]'
+
+
+def _derive(found: Found, source: str) -> None:
+    """Add what follows from other conditions; a given one must agree, unless it is measured."""
+
+    def number(key: str) -> float | None:
+        value = found.get(key, (None, ""))[0]
+        return value if isinstance(value, float) else None
+
+    def settle(key: str, value: float, reason: str) -> None:
+        there = number(key)
+        if there is None:
+            found[key] = (value, reason)
+        elif found[key][1] != MEDIAN and abs(there - value) > AGREE * abs(value):
+            ways = ((there, found[key][1]), (value, reason))
+            got = " and ".join(f"{format_quantity(one, QUANTITIES[key])} ({way})" for one, way in ways)
+            rule = f"has two values of {key.replace('_', ' ')} that differ"
+            raise InputError(source, rule, got, "Leave out the wrong one.")
+
+    rotation, radius = number("rotational_speed"), number("track_radius")
+    if rotation is not None and radius is not None:
+        settle("slip_speed", rotation * radius, "rotational speed times radius of the track")
+    if rotation is None and radius is not None and (speed := number("slip_speed")) is not None:
+        settle("cycle_time", 2.0 * math.pi * radius / speed, "2 pi radius / slip speed")
+    if rotation is not None:
+        settle("cycle_time", 2.0 * math.pi / rotation, "one turn")
+    area, diameter, force = (number(key) for key in ("contact_area", "pin_diameter", "normal_force"))
+    if area is not None and diameter is not None:
+        rule = "cannot have both a contact_area and a pin_diameter"
+        raise InputError(source, rule, cure="Give the one that is measured.")
+    if diameter is not None:
+        area = math.pi / 4.0 * diameter**2
+    if area is not None and force is not None:
+        settle("pressure", force / area, "normal force over the area of the pin")
+
+
+ALIKE = 0.1  # share by which measured conditions of parts may differ; beyond it they are of different tests
+LISTED = 12  # parts whose friction is listed
 
 
 def in_order(name: str) -> list[tuple[int, str]]:
@@ -189,25 +273,8 @@ def in_order(name: str) -> list[tuple[int, str]]:
     return [(int(part or 0), "") if part.isdigit() else (0, part) for part in re.split(r"(\d+)", name)]
 
 
-def by_series(logs: Sequence[RawLog]) -> list[list[RawLog]]:
-    """Return the logs, those of one series in several files together, at the place of the first of them."""
-    groups: dict[tuple[str, int], list[RawLog]] = {}
-    for i, log in enumerate(logs):
-        groups.setdefault((log.series, 0 if log.series else i), []).append(log)
-    found: list[list[RawLog]] = []
-    for parts in groups.values():
-        found += [parts] if len({part.checksum for part in parts}) > 1 else [[part] for part in parts]
-    return found
-
-
 def joined(parts: Sequence[RawLog]) -> RawLog:
-    """Return one log of the parts of a test, one after the other; time goes on from one to the next.
-
-    Raises
-    ------
-    InputError
-        The parts have no abscissa in common, or were run under different conditions.
-    """
+    """Return one log of the parts of a test, one after the other; time goes on from one to the next."""
     if len(parts) == 1:
         return parts[0]
     parts = sorted(parts, key=lambda part: in_order(part.source))
@@ -240,22 +307,22 @@ def joined(parts: Sequence[RawLog]) -> RawLog:
         source=source,
         checksum=hashlib.sha256("".join(part.checksum for part in parts).encode()).hexdigest(),
         missing=sum(part.missing for part in parts),
-        conditions=_conditions(parts, source),
+        conditions=_common_conditions(parts, source),
         notes=(note, *parts[0].notes),
         series="",
         **columns,
     )
 
 
-def _conditions(parts: Sequence[RawLog], source: str) -> Conditions:
+def _common_conditions(parts: Sequence[RawLog], source: str) -> Conditions:
     """Conditions of all parts: words that agree, and the middle of measured values that are alike."""
-    found: dict[str, object] = {}
+    found: dict[str, Any] = {}
     for f in fields(Conditions):
         values = [value for part in parts if (value := getattr(part.conditions, f.name)) is not None]
         numbers = [value for value in values if isinstance(value, float)]
         if numbers:
             found[f.name] = float(np.median(numbers))
-            differs = max(numbers) - min(numbers) > ALIKE * float(np.median(numbers))
+            differs = max(numbers) - min(numbers) > ALIKE * found[f.name]
         else:
             found[f.name] = values[0] if values else None
             differs = len(set(values)) > 1
@@ -265,4 +332,4 @@ def _conditions(parts: Sequence[RawLog], source: str) -> Conditions:
             texts = [format_quantity(v, unit) if unit else printable(str(v)) for v in ends]
             rule = f"cannot be one test: their {f.name.replace('_', ' ')} differs"
             raise InputError(source, rule, " and ".join(texts), "Name the parts of one test only.")
-    return Conditions(**found)  # type: ignore[arg-type]
+    return Conditions(**found)

@@ -8,8 +8,24 @@ from dataclasses import dataclass
 from functools import cache
 
 from separatrix import units
-from separatrix.friction.logs.clock import CLOCK, SHORT_CLOCKS
-from separatrix.friction.logs.log import MEANINGS
+from separatrix.friction.logs.dialect import CLOCK, SHORT_CLOCKS
+from separatrix.units import Array
+
+MEANINGS = {
+    "friction": "-",
+    "tangential_force": "N",
+    "normal_force": "N",
+    "time": "s",
+    "distance": "m",
+    "cycles": "-",
+    "temperature": "K",
+    "wear_depth": "m",
+    "slip_speed": "m/s",
+    "rotational_speed": "rad/s",
+}
+"""What a column may mean, and the SI unit it is kept in. A rotational speed serves the conditions only."""
+
+ABSCISSAE = ("time", "distance", "cycles")  # the columns of which a log has at least one
 
 NAMES: dict[str, tuple[str, ...]] = {
     "friction": (
@@ -125,9 +141,7 @@ _COUNTS = frozenset(
 )
 
 
-_CAMEL = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z])")
-"""Where two words of a name meet without a blank."""
-
+_CAMEL = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z])")  # where two words of a name meet without a blank
 _UNIT_AT_END = (
     r"(.+)_([^_\s]+)",
     r"(.+?)\s*/\s*(\S+)",
@@ -144,6 +158,14 @@ class Scale:
     factor: float = 1.0
     divisor: float = 1.0
     offset: float = 0.0
+
+    def of(self, column: Array) -> Array:
+        """A column in SI units; what is in them already stays as it is, to the last bit."""
+        if self.factor != 1.0:
+            column = column * self.factor
+        if self.divisor != 1.0:
+            column = column / self.divisor
+        return column + self.offset if self.offset != 0.0 else column
 
 
 def plain(name: str) -> str:

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Meant, Understood, understand
-from separatrix.friction.logs.conditions import KEYS, conditions_of
+from separatrix.friction.logs.columns import Understood, understand
 from separatrix.friction.logs.dialect import is_number
-from separatrix.friction.logs.log import ABSCISSAE, MEANINGS, RawLog, RawTable
-from separatrix.friction.logs.names import Scale, header_parts, looks_extreme, plain
-from separatrix.friction.logs.sliding import sliding_rows
+from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain
+from separatrix.friction.logs.sliding import Rows, sliding_rows
 from separatrix.units import Array, format_quantity, printable
 
 HIGHEST = 5.0
 """Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
 
-Rows = np.ndarray[tuple[int], np.dtype[np.bool_]]
+FEW = 0.1  # share of the rows up to which such values are left out; with more the column is refused
+ONE_SIGN = 0.9  # share of the rows in which the normal force must have one sign to be that of compression
 
-FEW = 0.1
-"""Share of the rows up to which such values are left out; with more of them the column is refused."""
-
-ONE_SIGN = 0.9
-"""Share of the rows in which the normal force must have one sign for it to be that of compression."""
+Arrays = dict[str, Array]
+"""Columns by their meaning, shape (row,) each, in SI units."""
 
 
 def raw_log(
@@ -37,14 +34,7 @@ def raw_log(
     columns: ColumnMap,
     given: Mapping[str, str | float],
 ) -> RawLog:
-    """Log of one table, with the conditions that the column map states for its file.
-
-    Raises
-    ------
-    InputError
-        A column that is needed cannot be identified or has no unit, time runs backwards, fewer than two
-        complete rows: file, line and cure.
-    """
+    """Log of one table, with the conditions that the column map states for its file."""
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
     understood = understand(
@@ -55,17 +45,14 @@ def raw_log(
     mean = understood.used.get("friction")
     if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
         notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
-    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
-    arrays = {meaning: _in_si(table, one, absent) for meaning, one in understood.used.items()}
-    _drop_empty_abscissae(arrays, source, notes)
+    arrays = _in_si(table, understood, columns, source, notes)
     _mend_sign(arrays, understood, source, notes)
     signed = _friction(arrays, force, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
-    kept = _complete(arrays, source)
+    kept = _complete(arrays, table, source)
     missing = int(len(kept) - kept.sum())
     if missing:
         notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
-    _check_order(arrays, kept, table, source)
     kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
     notes += [left_out] if left_out else []
     if not kept.all():
@@ -109,23 +96,23 @@ def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
             raise InputError(source, rule, f"columns {listed}", cure)
 
 
-def _in_si(table: RawTable, one: Meant, absent: Sequence[float]) -> Array:
-    """A column in SI units; NaN for what is not finite or a number that means a missing value."""
-    scale, column = one.scale or Scale(), table.columns[one.index]
-    if absent:
-        column = np.where(np.isin(column, absent), np.nan, column)
-    if scale.factor != 1.0:
-        column = column * scale.factor
-    if scale.divisor != 1.0:
-        column = column / scale.divisor
-    if scale.offset != 0.0:
-        column = column + scale.offset
-    if one.sign < 0:
-        column = -column
-    return column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
-
-
-def _drop_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str]) -> None:
+def _in_si(
+    table: RawTable, understood: Understood, columns: ColumnMap, source: str, notes: list[str]
+) -> Arrays:
+    """Columns in SI units; NaN for what is not finite or a number that means a missing value."""
+    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
+    arrays = {}
+    for meaning, one in understood.used.items():
+        column = table.columns[one.index]
+        if absent:
+            column = np.where(np.isin(column, absent), np.nan, column)
+        if one.scale is not None:
+            column = one.scale.of(column)
+        if one.sign < 0:
+            column = -column
+        arrays[meaning] = (
+            column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
+        )
     there = [meaning for meaning in ABSCISSAE if meaning in arrays]
     empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
     if empty == there:
@@ -133,9 +120,10 @@ def _drop_empty_abscissae(arrays: dict[str, Array], source: str, notes: list[str
     for meaning in empty:
         del arrays[meaning]
         notes.append(f"the column of {meaning} is empty and not used")
+    return arrays
 
 
-def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, notes: list[str]) -> None:
+def _mend_sign(arrays: Arrays, understood: Understood, source: str, notes: list[str]) -> None:
     """Make compression positive: the sign of nearly all rows, or that of the column map."""
     column = arrays.get("normal_force")
     if column is None or understood.used["normal_force"].sign < 0:
@@ -152,7 +140,7 @@ def _mend_sign(arrays: dict[str, Array], understood: Understood, source: str, no
             raise InputError(source, rule, got, cure)
 
 
-def _friction(arrays: Mapping[str, Array], force: float | None, notes: list[str]) -> Array:
+def _friction(arrays: Arrays, force: float | None, notes: list[str]) -> Array:
     """Friction with its sign as logged, or tangential over normal force."""
     if "friction" in arrays:
         return arrays["friction"]
@@ -194,23 +182,15 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
     return size
 
 
-def _complete(arrays: Mapping[str, Array], source: str) -> Rows:
-    """Rows that have friction and every abscissa."""
-    kept = np.isfinite(arrays["friction"])
-    for meaning in ABSCISSAE:
-        if meaning in arrays:
-            kept &= np.isfinite(arrays[meaning])
+def _complete(arrays: Arrays, table: RawTable, source: str) -> Rows:
+    """Rows that have friction and every abscissa, none of which may run backwards."""
+    abscissae = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    kept: Rows = np.all([np.isfinite(arrays[name]) for name in ("friction", *abscissae)], axis=0)
     if kept.sum() < 2:
         got = f"{int(kept.sum())} of {len(kept)} rows"
         raise InputError(source, "needs at least two rows with a friction and its abscissa", got)
-    return kept
-
-
-def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, source: str) -> None:
     rows = np.flatnonzero(kept)
-    for meaning in ABSCISSAE:
-        if meaning not in arrays:
-            continue
+    for meaning in abscissae:
         column = arrays[meaning][kept]
         back = np.flatnonzero(np.diff(column) < 0.0)
         if len(back):
@@ -220,9 +200,10 @@ def _check_order(arrays: Mapping[str, Array], kept: Rows, table: RawTable, sourc
             cure = "Split the file there; or, if this column has another meaning, state it in a column map."
             rule = f"{meaning} must not run backwards"
             raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
+    return kept
 
 
-def _without_stroke_speed(table: RawTable, arrays: dict[str, Array], notes: list[str]) -> dict[str, str]:
+def _without_stroke_speed(table: RawTable, arrays: Arrays, notes: list[str]) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
     strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
     names = KEYS["slip_speed"].split("; ")

@@ -19,9 +19,7 @@ from separatrix.units import Array, printable
 
 Rows = NDArray[np.bool_]
 
-SPEEDS = ("slip_speed", "rotational_speed")
-"""Meanings of a column of speed; its unit does not matter here."""
-
+SPEEDS = ("slip_speed", "rotational_speed")  # meanings of a column of speed; its unit does not matter here
 POSITIONS = frozenset(
     {"position", "linear position", "lin position", "rotary position", "angular position", "x position"}
     | {"y position", "lateral position", "slide position", "stroke position", "stroke", "angle"}
@@ -30,38 +28,17 @@ POSITIONS = frozenset(
 )
 """Names of a column of position along the track."""
 
-STILL = 0.1
-"""Share of the usual speed below which nothing slides."""
-
-SLOW = 0.5
-"""Share of the usual speed below which a stroke reverses."""
-
-TURNING = 0.8
-"""Share of the usual friction below which it still turns, from where its sign changes."""
-
-RAMP = 0.9
-"""Share of the speed behind a ramp at which the ramp ends."""
-
-BEHIND = 0.05
-"""Share of the rows, 20 at least, behind which as many show to which speed a ramp leads."""
-
-LONGEST_RAMP = 0.2
-"""Share of the rows that a ramp has at most."""
-
-REST = 0.2
-"""Share of the usual friction below which a log begins at rest."""
-
-STRETCH = 8
-"""Rows of one direction, in the middle, from which strokes can be detected."""
-
-SMOOTH = 0.3
-"""Step between rows, over the usual one, below which friction does not fluctuate: nothing slides."""
-
-WINDOW = 7
-"""Rows of the running median of such steps."""
-
-FEWEST = 0.2
-"""Share of the rows that must slide, or the column does not show it."""
+STILL = 0.1  # share of the usual speed below which nothing slides
+SLOW = 0.5  # share of the usual speed below which a stroke reverses
+TURNING = 0.8  # share of the usual friction below which it still turns, from where its sign changes
+RAMP = 0.9  # share of the speed behind a ramp at which the ramp ends
+BEHIND = 0.05  # share of the rows, 20 at least, behind which as many show to which speed a ramp leads
+LONGEST_RAMP = 0.2  # share of the rows that a ramp has at most
+REST = 0.2  # share of the usual friction below which a log begins at rest
+STRETCH = 8  # rows of one direction, in the middle, from which strokes can be detected
+SMOOTH = 0.3  # step between rows, over the usual one, below which friction does not fluctuate: nothing slides
+WINDOW = 7  # rows of the running median of such steps
+FEWEST = 0.2  # share of the rows that must slide, or the column does not show it
 
 
 def _kind(header: str, unit: str) -> str:
@@ -82,18 +59,9 @@ def motion_columns(headers: Sequence[str], units: Sequence[str]) -> list[int]:
 
 
 def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
-    """Rows of steady sliding, and a sentence on the others; empty where all rows slide.
+    """Rows of steady sliding of those kept, and a sentence on the others; empty where all rows slide.
 
-    Parameters
-    ----------
-    table : RawTable
-        As read; its columns of speed, position and force are looked at.
-    friction : ndarray
-        With its sign if the log has one, shape (row,).
-    time : ndarray or None
-        Shape (row,) [s].
-    kept : ndarray
-        Rows that have friction and abscissa; the others do not count.
+    Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
     """
     rows, words = next(_signals(table, friction, time, kept), (kept, ""))
     out = int(kept.sum() - (kept & rows).sum())

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.formats import layout_of
+from separatrix.friction.logs.header import layout_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts, ranks
 from separatrix.regular_file import size_of, unreadable
@@ -36,13 +36,7 @@ _DAMAGED = (
 
 
 def read_tables(path: Path) -> list[RawTable]:
-    """Return the tables of a file: one for each group, or for each length of channel in a group.
-
-    Raises
-    ------
-    InputError
-        npTDMS is not installed, the file is damaged, or has no channel of numbers.
-    """
+    """Return the tables of a file: one for each group, or for each length of channel in a group."""
     label = printable(path.name)
     try:
         import nptdms
@@ -56,9 +50,12 @@ def read_tables(path: Path) -> list[RawTable]:
             _check_segments(file, size, label)
             with nptdms.TdmsFile.open(file) as content:
                 groups = content.groups()
-                _check_scales(
-                    [content, *groups, *(one for group in groups for one in group.channels())], label
-                )
+                for holder in (content, *groups, *(one for group in groups for one in group.channels())):
+                    number = holder.properties.get("NI_Number_Of_Scales", 0)
+                    if not isinstance(number, int | np.integer) or not 0 <= number <= MOST_SCALES:
+                        # what only a damaged file has, before npTDMS counts up to it
+                        rule = f"must have at most {MOST_SCALES} scalings a channel"
+                        raise InputError(label, rule, shown(number))
                 tables = [table for group in groups for table in _tables(group, content, label, size)]
     except OSError as error:
         raise unreadable(label, error) from None
@@ -86,14 +83,6 @@ def _check_segments(file: BinaryIO, size: int, label: str) -> None:
     if at != size:
         raise InputError(label, "ends within its last segment", cure=_EXPORT)
     file.seek(0)
-
-
-def _check_scales(holders: Sequence[Any], label: str) -> None:
-    """Refuse a number of scalings that only a damaged file has, before npTDMS counts up to it."""
-    for holder in holders:
-        number = holder.properties.get("NI_Number_Of_Scales", 0)
-        if not isinstance(number, int | np.integer) or not 0 <= number <= MOST_SCALES:
-            raise InputError(label, f"must have at most {MOST_SCALES} scalings a channel", shown(number))
 
 
 def _tables(group: Any, content: Any, label: str, size: int) -> Iterator[RawTable]:

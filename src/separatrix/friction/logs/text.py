@@ -11,19 +11,22 @@ from itertools import pairwise
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.friction.logs.clock import CLOCK, SHORT_CLOCKS, is_clock, seconds
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import (
+    CLOCK,
+    MISSING,
     NO_MOMENTS,
     QUOTED,
+    SHORT_CLOCKS,
     Dialect,
     dialect_of,
     fields,
+    is_clock,
     is_moment,
     is_number,
+    seconds,
 )
-from separatrix.friction.logs.formats import Layout
-from separatrix.friction.logs.header import Header, find_header, header_at, is_names, metadata_of
+from separatrix.friction.logs.header import Header, Layout, find_header, header_at, is_names, metadata_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts
 from separatrix.units import Array, printable
@@ -31,15 +34,9 @@ from separatrix.units import Array, printable
 Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
 """From the headers and units of a table to the numbers of the columns to read."""
 
-HEAD = 300
-"""Lines in which the table's separator and decimal sign are looked for first."""
-
-NEAR = 6
-"""Rows below which a line of names makes metadata of them."""
-
-MOST_TABLES = 2000
-"""Tables of one file; each keeps some 80 kB."""
-
+HEAD = 300  # lines in which the table's separator and decimal sign are looked for first
+NEAR = 6  # rows below which a line of names makes metadata of them
+MOST_TABLES = 2000  # tables of one file; each keeps some 80 kB
 _COMMA_IN_QUOTES = re.compile(rb'"[^"\n]*,[^"\n]*"')
 _IN_QUOTES = re.compile(rb'(?m)(?:,"[^"\n]*,[^"\n]*"[ ]*(?=,|$)|^"[^"\n]*,[^"\n]*"[ ]*(?=,))')
 """A field in quotes that holds a comma, beside a comma between fields."""
@@ -49,9 +46,7 @@ _FLOAT = re.compile(
 )
 """What numpy's reader takes for a number."""
 
-_FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")
-"""The exponent of a double in Fortran."""
-
+_FORTRAN = re.compile(rb"[dD](?<=[0-9.][dD])(?=[+-]?[0-9])")  # the exponent of a double in Fortran
 _COMMA = bytes.maketrans(b",.", b".'")
 _BACK = str.maketrans(".'", ",.")
 """With decimal commas a point is not part of a number: it becomes a mark that none can have, and back."""
@@ -74,27 +69,10 @@ class _Found:
 def read_tables(
     text: bytes, source: str, form: TextFormat, layout: Layout, wanted: Wanted, *, headless: bool = False
 ) -> tuple[list[RawTable], Dialect]:
-    """Every table of a text, and the dialect it is written in.
+    """Every table of a text (UTF-8 with line feeds), and the dialect it is written in.
 
-    Parameters
-    ----------
-    text : bytes
-        UTF-8 with line feeds.
-    source : str
-        Names the file in a refusal.
-    form : TextFormat
-        What the column map states about the text.
-    layout : Layout
-        What is known of the instrument's format.
-    wanted : callable
-        From headers and units to the numbers of the columns to read; the others are left NaN.
-    headless : bool
-        The columns are known by their numbers, so that a table may lack headers.
-
-    Raises
-    ------
-    InputError
-        No table, a row of another length, text in a column of numbers: file, line and cure.
+    Columns that are not wanted are left NaN. Where the columns are known by their numbers (`headless`), a
+    table may lack headers.
     """
     quoted = form.separator in (None, ",") and _COMMA_IN_QUOTES.search(text) and _IN_QUOTES.search(text)
     if quoted:  # a sign of our own for the commas between fields
@@ -113,7 +91,20 @@ class _Text:
         self.source, self.form, self.layout = source, form, layout
         self.ends = np.flatnonzero(np.frombuffer(self.text, np.uint8) == 10)
         self.starts = np.concatenate([[0], self.ends[:-1] + 1])
-        self.dialect = self._dialect()
+        if form.begin >= len(self):
+            where = f"{source}: header_line = {form.header_line}"
+            raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
+        missing = MISSING | form.missing
+        for count in (HEAD, 10 * HEAD):  # where the head holds no rows yet, of ten times as many lines
+            head = [self[i] for i in range(form.begin, min(len(self), form.begin + count))]
+            try:
+                self.dialect = dialect_of(
+                    head, source, separator=form.separator, decimal=form.decimal, missing=missing
+                )
+                break
+            except InputError:
+                if len(head) < count or count > HEAD:
+                    raise
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -121,28 +112,15 @@ class _Text:
     def __getitem__(self, i: int) -> str:
         return self.text[self.starts[i] : self.ends[i]].decode()
 
-    def _dialect(self) -> Dialect:
-        """Dialect of the head; where that holds no rows yet, of ten times as many lines."""
-        form, begin = self.form, self.form.begin
-        if begin >= len(self):
-            where = f"{self.source}: header_line = {form.header_line}"
-            raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
-        given = {"separator": form.separator, "decimal": form.decimal}
-        heads = [[self[i] for i in range(begin, min(len(self), begin + n))] for n in (HEAD, 10 * HEAD)]
-        try:
-            return dialect_of(heads[0], self.source, missing=form.missing, **given)
-        except InputError:
-            if len(heads[0]) == len(heads[1]):
-                raise
-            return dialect_of(heads[1], self.source, missing=form.missing, **given)
-
     def found(self, *, headless: bool) -> list[_Found]:
         """The tables of two rows or more; one row under names is metadata of the next table."""
         found: list[_Found] = []
         before: list[int] = []
         for start, stop, n in self._stretches():
             if n < 1:
-                before += self._other_lines(start, stop, inside=bool(found))
+                known = self.layout.interruption if found else None
+                others = [i for i in range(start, stop) if self[i].strip()]
+                before += [i for i in others if not (known and known.match(self[i]))]
             elif found and not before:
                 if n != found[-1].separators:
                     raise self._wrong_row(start, found[-1])
@@ -156,9 +134,8 @@ class _Text:
                     raise self._no_header(before, start, n, found)
                 found.append(_Found(header, [self[i] for i in before], n, [(start, stop)]))
                 if len(found) > MOST_TABLES:
-                    raise InputError(
-                        self.source, f"has more than {MOST_TABLES} tables", cure="Split the file."
-                    )
+                    rule = f"has more than {MOST_TABLES} tables"
+                    raise InputError(self.source, rule, cure="Split the file.")
                 before = []
         for i in before if found else []:  # a last row that was cut off is not a closing remark
             if all(is_number(part) for part in self.dialect.fields(self[i]) if part):
@@ -232,11 +209,6 @@ class _Text:
         """The first row of the table in these lines."""
         near = range(start, min(stop, start + HEAD))
         return next((i for i in near if self.dialect.is_data(self[i])), stop)
-
-    def _other_lines(self, start: int, stop: int, *, inside: bool) -> list[int]:
-        """Lines that are neither empty nor known to be between rows."""
-        known = self.layout.interruption if inside else None
-        return [i for i in range(start, stop) if self[i].strip() and not (known and known.match(self[i]))]
 
     def _header(self, before: list[int], n: int, *, headless: bool) -> Header | None:
         if self.form.header_line is not None:

@@ -2,38 +2,123 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.friction.logs.log import RawLog
-from separatrix.friction.records import in_words
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.records import UNITS, in_words, place
 from separatrix.friction.reduction import cycles, steady
-from separatrix.friction.reduction.events import Event, kept_rows, row_events
-from separatrix.friction.reduction.flags import flags
-from separatrix.friction.reduction.records import ReductionOptions, TestFriction
+from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
 from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
-from separatrix.friction.reduction.steady import Oscillation, oscillation
-from separatrix.units import Array, format_number
+from separatrix.units import Array, Ratio, format_number
 
-__all__ = ["Reduction", "ReductionOptions", "TestFriction", "reduce_log", "reduction", "with_outliers"]
+GIVEN = "given"  # how the end of running-in was found, if a user gave it
+PREFERRED = ("distance", "time", "cycles")  # the abscissa of ends and drift is the first that a log has
+FEWEST_TESTS = 4  # tests from which an outlier can be detected
+OUTLIER = 1.5  # friction over the median of the others, or the reverse, from which a test may be an outlier
+FAR = 5.0  # distance from that median over the usual one, in standard deviations
 
-GIVEN = "given"
-"""How the end of running-in was found, if a user gave it."""
+_PERCENT = _check.must(_check.between, 0.0, 100.0)
 
-PREFERRED = ("distance", "time", "cycles")
-"""Abscissae in the order in which one is chosen for ends and drift."""
 
-FEWEST_TESTS = 4
-"""Tests from which an outlier can be detected."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReductionOptions:
+    """How a log is reduced; the defaults suit most."""
 
-OUTLIER = 1.5
-"""Friction over the median of the others, or the reverse, from which a test may be an outlier."""
+    run_in_end: str | None = None
+    """Where running-in ends, for instance ``"200 m"``, ``"10 min"`` or ``"500 cycles"``; None to find it."""
+    axis: str | None = None
+    """Abscissa of ends and drift; None for the first of distance, time, cycles that the log has."""
+    whole_cycles: bool = True
+    """Whether means are over whole cycles, where those are known."""
+    find_cycle: bool = False
+    """Whether the length of an unknown cycle is taken from the strongest line of the spectrum."""
+    seizure_ratio: Ratio = field(
+        default=3.0, metadata=_check.must(_check.between, 1.0, 1000.0, open_low=True)
+    )
+    """Friction over its usual level from which, if it stays, a contact counts as seized."""
+    force_loss: Ratio = field(default=0.5, metadata=_check.must(_check.between, 0.0, 1.0, open_high=True))
+    """Share of the usual normal force below which, if it stays, the load counts as lost."""
+    stick_slip_ratio: Ratio = field(default=0.1, metadata=_PERCENT)
+    """Peak to peak over mean friction from which an oscillation is reported."""
+    drift_ratio: Ratio = field(default=0.02, metadata=_PERCENT)
+    """Change over the steady part, over the mean, from which a significant drift is reported."""
+    fewest_effective: Ratio = field(default=20.0, metadata=_check.must(_check.between, 2.0, 1e6))
+    """Independent values below which a test is reported as too short."""
 
-FAR = 5.0
-"""Distance from that median over the usual one, in standard deviations."""
+    def __post_init__(self) -> None:
+        _check.settle(self._problems(), _check.each_field(self))
+
+    @property
+    def cut(self) -> tuple[str, float] | None:
+        """Abscissa and place of the given end of running-in, in SI units."""
+        return None if self.run_in_end is None else place(self.run_in_end, "ReductionOptions.run_in_end")
+
+    def _problems(self) -> Iterator[InputError]:
+        try:
+            _ = self.cut
+        except InputError as error:
+            yield error
+        if self.axis is not None and self.axis not in UNITS:
+            yield _check.problem(self, "axis", f"must be one of {', '.join(UNITS)}")
+        for name in ("whole_cycles", "find_cycle"):
+            if not isinstance(getattr(self, name), bool):
+                yield _check.problem(self, name, "must be true or false")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestFriction:
+    """Friction of one test, with its error and what a reader should know about it."""
+
+    __test__ = False
+
+    source: str
+    checksum: str
+    conditions: Conditions
+    friction: Ratio
+    """Mean over the steady part."""
+    standard_error: Ratio
+    """Of that mean: neighbouring values are alike, some running-in may be left, digits are few."""
+    degrees_of_freedom: int
+    """Of Student's t for its interval."""
+    standard_deviation: Ratio
+    """Of the means of whole cycles in the steady part; of its rows where no cycle is known."""
+    effective_count: float
+    """Independent values that would have the same standard error."""
+    run_in_end: float
+    """In the SI unit of `run_in_axis`; the steady part begins here."""
+    run_in_axis: str
+    """``"time"``, ``"distance"`` or ``"cycles"``."""
+    run_in_method: str
+    steady_end: float
+    """Where the steady part ends, in the SI unit of `run_in_axis`."""
+    rows: int
+    steady_rows: int
+    cycles: int
+    """Whole cycles averaged; 0 where none are."""
+    drift_rate: float
+    """Change of friction per SI unit of `run_in_axis`, over the steady part."""
+    drift_error: float
+    """Standard error of `drift_rate`."""
+    stick_slip_amplitude: Ratio
+    """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
+    stick_slip_frequency: float
+    """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
+    flags: tuple[str, ...] = ()
+
+    @property
+    def half_width(self) -> Ratio:
+        """Half the 95 % interval of `friction`."""
+        return steady.half_width(self.standard_error, self.degrees_of_freedom)
+
+    @property
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """Lower and upper end of the 95 % interval of `friction`."""
+        return self.friction - self.half_width, self.friction + self.half_width
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,26 +128,20 @@ class Reduction:
     log: RawLog
     test: TestFriction
     options: ReductionOptions
-    rows: slice
-    """Rows between loading and the end of the test."""
-    along: Array
-    """Abscissa of every row of the log, shape (row,)."""
-    stretch: cycles.Stretch
-    """Rows in which the contact slid under its load."""
-    cycle: float | None
-    """Length of a cycle in the unit of the abscissa; None where it is not known."""
-    run_in: RunIn | None
-    """How the end of running-in was found; None where it was given."""
+    rows: slice  # rows between loading and the end of the test
+    along: Array  # abscissa of every row of the log, shape (row,)
+    stretch: cycles.Stretch  # rows in which the contact slid under its load
+    cycle: float | None  # length of a cycle in the unit of the abscissa; None where it is not known
+    run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
-    steady_friction: Array
-    """Friction of the rows of the steady part, shape (row,)."""
+    steady_friction: Array  # friction of the rows of the steady part, shape (row,)
     last_digit: tuple[float, float]
     """Step in which friction is written, and the standard error that it causes."""
     cycle_means: Array
     """Means of whole cycles of the steady part, shape (cycle,); empty where no cycle is known."""
-    oscillation: Oscillation
+    oscillation: steady.Oscillation
     events: tuple[Event, ...] = ()
 
 
@@ -74,63 +153,57 @@ def reduce_log(log: RawLog, options: ReductionOptions | None = None) -> TestFric
 def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction:
     """Return the friction of a log, its error, flags and series.
 
-    Parameters
-    ----------
-    log : RawLog
-        From `read_log`.
-    options : ReductionOptions, optional
-        How to reduce it.
-
     Raises
     ------
     InputError
         The log runs backwards along its abscissa, lacks the abscissa of the options, or is too short.
     """
     options = options or ReductionOptions()
-    axis = _axis(log, options)
+    wanted = [name for name in (options.axis, options.cut and options.cut[0]) if name]
+    for name in wanted:
+        if name not in log.abscissae:
+            cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
+            raise InputError(log.source, f"needs a column of {name}", "none", cure)
+    axis = (wanted or [name for name in PREFERRED if name in log.abscissae])[0]
     along = cycles.rising(log, axis)
     bad = np.flatnonzero(~np.isfinite(log.friction))
     if bad.size:
         where = f"{log.source}: friction"
         raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
-    events = row_events(log, options)
+    events = row_events(log, options.seizure_ratio, options.force_loss)
     kept = slice(*kept_rows(events, log.rows))
-    clock = cycles.clock(log, along, options)
+    done, cycle, notes = cycles.clock(
+        log, along, whole_cycles=options.whole_cycles, find_cycle=options.find_cycle
+    )
     rows = cycles.Stretch(
         source=log.source,
         along=along[kept],
         friction=log.friction[kept],
-        done=None if clock.done is None else clock.done[kept],
+        done=None if done is None else done[kept],
     )
-    stretch, cut, found, notes = _steady(log, rows, kept, options)
+    stretch, cut, found, more = _steady(log, rows, kept, options)
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
-    friction = stretch.within(spans)
-    first = int(np.searchsorted(stretch.ruler, spans.start))
+    friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
+    strongest = steady.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
-        test=_test(log, axis, stretch, spans, mean, found),
+        test=_test(log, axis, stretch, spans, mean, found, strongest),
         options=options,
         rows=kept,
         along=along,
         stretch=stretch,
-        cycle=clock.cycle,
+        cycle=cycle,
         run_in=found,
         spans=spans,
         mean=mean,
         steady_friction=friction,
         last_digit=steady.last_digit(friction),
         cycle_means=stretch.cycle_means(spans),
-        oscillation=oscillation(stretch.along[first : first + friction.size], friction, clock.cycle),
+        oscillation=strongest,
         events=events,
     )
-    test = replace(
-        one.test,
-        stick_slip_amplitude=one.oscillation.amplitude,
-        stick_slip_frequency=one.oscillation.frequency,
-    )
-    one = replace(one, test=test)
-    return replace(one, test=replace(test, flags=(*flags(one), *clock.notes, *notes)))
+    return replace(one, test=replace(one.test, flags=(*flags(one), *notes, *more)))
 
 
 def _test(
@@ -140,8 +213,9 @@ def _test(
     spans: cycles.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
+    oscillation: steady.Oscillation,
 ) -> TestFriction:
-    """Return the numbers of a test, without its oscillation and its flags."""
+    """Return the numbers of a test, without its flags."""
     friction, whole = stretch.within(spans), stretch.cycle_means(spans)
     low, high = stretch.place(spans.start), stretch.place(spans.end)
     values = whole if whole.size else friction
@@ -168,24 +242,9 @@ def _test(
         cycles=whole.size,
         drift_rate=mean.change / (high - low),
         drift_error=mean.change_error / (high - low),
-        stick_slip_amplitude=0.0,
-        stick_slip_frequency=0.0,
+        stick_slip_amplitude=oscillation.amplitude,
+        stick_slip_frequency=oscillation.frequency,
     )
-
-
-def _axis(log: RawLog, options: ReductionOptions) -> str:
-    """Return the abscissa of ends and drift."""
-    wanted = options.axis or (options.cut[0] if options.cut else None)
-    if wanted is None:
-        return next(name for name in PREFERRED if name in log.abscissae)
-    if wanted not in log.abscissae:
-        raise _no_column(log, log.source, wanted)
-    return wanted
-
-
-def _no_column(log: RawLog, where: str, axis: str) -> InputError:
-    cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-    return InputError(where, f"needs a column of {axis}", "none", cure)
 
 
 def _steady(
@@ -193,18 +252,30 @@ def _steady(
 ) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
     """Return the rows, where on their ruler the steady part begins, how that was found, and notes.
 
-    If that leaves too few whole cycles, means are over rows.
+    Without a beginning it is that of the rows. If too few whole cycles are left, means are over rows.
     """
     notes: tuple[str, ...] = ()
     if stretch.done is not None and not stretch.holds_cycles():
         notes = (_few(*stretch.cycles()),)
-        stretch = stretch.of_rows()
+        stretch = replace(stretch, done=None)
         if options.cut is None:  # within a cycle friction may change as it likes
             return stretch, None, RunIn(end=0.0, rest=0.0, ends=True, level=True), notes
-    cut, found = _cut(log, stretch, kept, options)
+    cut: float | None = None
+    found: RunIn | None = None
+    if options.cut is None:
+        spans = stretch.spans()
+        found = run_in(spans.means)
+        cut = spans.start + found.end * (spans.end - spans.start) if found.end else None
+    else:
+        axis, value = options.cut
+        column = cycles.rising(log, axis)[kept]
+        if value >= column[-1]:
+            rule = f"must lie before the end of the test, {in_words(float(column[-1]), axis)}"
+            raise InputError("ReductionOptions.run_in_end", rule, in_words(value, axis))
+        cut = float(stretch.ruler[int(np.searchsorted(column, value))])
     if stretch.done is not None and not stretch.holds_cycles(cut):
         notes = (_few(*stretch.cycles(cut)),)
-        cut, stretch = None if cut is None else stretch.place(cut), stretch.of_rows()
+        cut, stretch = None if cut is None else stretch.place(cut), replace(stretch, done=None)
     return stretch, cut, found, notes
 
 
@@ -215,25 +286,6 @@ def _few(first: int, last: int) -> str:
     )
 
 
-def _cut(
-    log: RawLog, stretch: cycles.Stretch, kept: slice, options: ReductionOptions
-) -> tuple[float | None, RunIn | None]:
-    """Return where on the ruler the steady part begins (None for the start), and how that was found."""
-    if options.cut is None:
-        spans = stretch.spans()
-        found = run_in(spans.means)
-        return (spans.start + found.end * (spans.end - spans.start) if found.end else None), found
-    axis, value = options.cut
-    where = "ReductionOptions.run_in_end"
-    if axis not in log.abscissae:
-        raise _no_column(log, where, axis)
-    column = cycles.rising(log, axis)[kept]
-    if value >= column[-1]:
-        rule = f"must lie before the end of the test, {in_words(float(column[-1]), axis)}"
-        raise InputError(where, rule, in_words(value, axis))
-    return float(stretch.ruler[int(np.searchsorted(column, value))]), None
-
-
 def with_outliers(reductions: Sequence[Reduction]) -> list[Reduction]:
     """Return the reductions, with a flag on each test far from the others: a wrong column, or a failed film.
 
@@ -242,36 +294,24 @@ def with_outliers(reductions: Sequence[Reduction]) -> list[Reduction]:
     """
     found = list(reductions)
     for i, one in enumerate(reductions):
-        own = one.test.conditions
-        others = [
-            other.test
-            for k, other in enumerate(reductions)
-            if k != i and other.test.conditions.environment == own.environment
-        ]
-        same = [test.friction for test in others if test.conditions.material == own.material]
-        few = len(same) + 1 < FEWEST_TESTS
-        flag = _outlier(
-            one.test.friction,
-            [test.friction for test in others] if few else same,
-            " of all materials" if few else "",
+        own, whose = one.test.conditions, ""
+        near = [two.test for k, two in enumerate(reductions) if k != i]
+        near = [test for test in near if test.conditions.environment == own.environment]
+        others = [test.friction for test in near if test.conditions.material == own.material]
+        if len(others) + 1 < FEWEST_TESTS:
+            others, whose = [test.friction for test in near], " of all materials"
+        if len(others) + 1 < FEWEST_TESTS or min(one.test.friction, *others) <= 0.0:
+            continue
+        logs = np.log(others)
+        middle = float(np.median(logs))
+        scatter = 1.4826 * float(np.median(np.abs(logs - middle)))
+        if abs(float(np.log(one.test.friction)) - middle) <= max(np.log(OUTLIER), FAR * scatter):
+            continue
+        usual = float(np.exp(middle))
+        flag = (
+            f"Friction {format_number(one.test.friction, 3)} is "
+            f"{format_number(one.test.friction / usual, 2)} times the median of the other {len(others)} "
+            f"tests{whose}, {format_number(usual, 3)}: check its material, its column and its plot."
         )
-        if flag:
-            found[i] = replace(one, test=replace(one.test, flags=(*one.test.flags, flag)))
+        found[i] = replace(one, test=replace(one.test, flags=(*one.test.flags, flag)))
     return found
-
-
-def _outlier(friction: float, others: Sequence[float], whose: str) -> str:
-    """Return a sentence on a friction far from the others; empty for one among them."""
-    if len(others) + 1 < FEWEST_TESTS or friction <= 0.0 or min(others) <= 0.0:
-        return ""
-    logs = np.log(others)
-    middle = float(np.median(logs))
-    scatter = 1.4826 * float(np.median(np.abs(logs - middle)))
-    if abs(float(np.log(friction)) - middle) <= max(np.log(OUTLIER), FAR * scatter):
-        return ""
-    usual = float(np.exp(middle))
-    return (
-        f"Friction {format_number(friction, 3)} is {format_number(friction / usual, 2)} times the median of "
-        f"the other {len(others)} tests{whose}, {format_number(usual, 3)}: check its material, its column "
-        "and its plot."
-    )

@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction.records import ReductionOptions
 from separatrix.friction.reduction.steady import oscillation
 from separatrix.units import Array, format_number
 
-MOST = 256
-"""Spans into which a test is divided for its statistics, at most."""
-
-FEWEST = 12
-"""Spans, where no cycle is known and there are as many rows."""
-
-FEWEST_ROWS = 4
-"""Rows without which there are no statistics."""
-
-FEWEST_CYCLES = 4
-"""Whole cycles below which means are over rows instead, which is reported."""
-
-ROWS_OF_A_SPAN = 3
-"""Rows in a span, at least, where no cycle is known."""
-
-ROWS_OF_A_CYCLE = 4.0
-"""Rows in a cycle below which its mean is not a mean over the turn."""
+MOST = 256  # spans into which a test is divided for its statistics, at most
+FEWEST = 12  # spans, where no cycle is known and there are as many rows
+FEWEST_ROWS = 4  # rows without which there are no statistics
+FEWEST_CYCLES = 4  # whole cycles below which means are over rows instead, which is reported
+ROWS_OF_A_SPAN = 3  # rows in a span, at least, where no cycle is known
+ROWS_OF_A_CYCLE = 4.0  # rows in a cycle below which its mean is not a mean over the turn
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,10 +25,8 @@ class Spans:
 
     start: float
     width: float
-    means: Array
-    """Shape (span,); where a span holds no row, the straight line between its neighbours."""
-    counts: Array
-    """Rows in each span, shape (span,)."""
+    means: Array  # shape (span,); where a span holds no row, the straight line between its neighbours
+    counts: Array  # rows in each span, shape (span,)
 
     @property
     def centres(self) -> Array:
@@ -58,12 +44,9 @@ class Stretch:
     """Rows of a log in which the contact slid under its load, with what their means are taken over."""
 
     source: str
-    along: Array
-    """Abscissa of ends and drift, shape (row,); it does not fall."""
-    friction: Array
-    """Shape (row,) [-]."""
-    done: Array | None
-    """Cycles done, shape (row,) [-]; None where means are not over whole cycles."""
+    along: Array  # abscissa of ends and drift, shape (row,); it does not fall
+    friction: Array  # shape (row,) [-]
+    done: Array | None  # cycles done, shape (row,) [-]; None where means are not over whole cycles
 
     @property
     def ruler(self) -> Array:
@@ -76,11 +59,6 @@ class Stretch:
         As many spans as the rows fill, up to `MOST`; of few rows, one each. Where cycles are known, the last
         span ends where they do; those that fill no span of their own are left out at the start, where a test
         is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
-
-        Raises
-        ------
-        InputError
-            There are too few rows.
         """
         if self.done is None:
             begin, end = float(self.along[0]) if start is None else start, float(self.along[-1])
@@ -103,10 +81,6 @@ class Stretch:
         """Return whether there are enough whole cycles from a place of the ruler on."""
         first, last = self.cycles(start)
         return last - first >= FEWEST_CYCLES
-
-    def of_rows(self) -> Stretch:
-        """Return the same rows, with means over rows and not over whole cycles."""
-        return replace(self, done=None)
 
     def cycles(self, start: float | None = None) -> tuple[int, int]:
         """Return the first whole cycle from a place of the ruler on, and the one after the last.
@@ -142,24 +116,16 @@ class Stretch:
         return float(self.along[min(int(np.searchsorted(self.done, ruled)), self.along.size - 1)])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Clock:
-    """What is known of the cycle of a test."""
+def clock(
+    log: RawLog, along: Array, *, whole_cycles: bool, find_cycle: bool
+) -> tuple[Array | None, float | None, tuple[str, ...]]:
+    """Return the cycles of a log: by its column, by the time of one cycle, or in its spectrum.
 
-    done: Array | None
-    """Cycles done at each row, shape (row,), if means are over whole ones."""
-    cycle: float | None
-    """Length of a cycle in the unit of the abscissa."""
-    notes: tuple[str, ...] = ()
-
-
-def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
-    """Return the cycle of a log: by its column, by the time of one cycle, or in its spectrum.
-
-    Raises
-    ------
-    InputError
-        The column of cycles falls.
+    Returns
+    -------
+    tuple
+        Cycles done at each row, shape (row,), if means are over whole ones; length of a cycle in the unit of
+        the abscissa; notes. None where that is not known.
     """
     done: Array | None = None
     notes: tuple[str, ...] = ()
@@ -168,7 +134,7 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
     elif log.time is not None and log.conditions.cycle_time is not None:
         time = rising(log, "time")
         done = np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
-    elif options.find_cycle:  # the strongest line in the second half of the test
+    elif find_cycle:  # the strongest line in the second half of the test
         half = along.size // 2
         frequency = oscillation(along[half:], log.friction[half:], None).frequency
         notes = ("No line exceeds the noise of the spectrum: no cycle was found, and none is averaged over.",)
@@ -177,26 +143,18 @@ def clock(log: RawLog, along: Array, options: ReductionOptions) -> Clock:
             rate = format_number(1.0 / frequency)
             notes = (f"The cycle was found in the spectrum: one in {rate} of the abscissa's SI unit.",)
     if done is None or done[-1] <= done[0]:
-        return Clock(done=None, cycle=None, notes=notes)
+        return None, None, notes
     cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
-    if not options.whole_cycles:
-        return Clock(done=None, cycle=cycle, notes=notes)
     rows = float(done.size / max(done[-1] - done[0], 1e-300))
-    if rows < ROWS_OF_A_CYCLE:
+    if whole_cycles and rows < ROWS_OF_A_CYCLE:
         count = format_number(rows, 2)
         note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
-        return Clock(done=None, cycle=cycle, notes=(*notes, note))
-    return Clock(done=done, cycle=cycle, notes=notes)
+        return None, cycle, (*notes, note)
+    return (done if whole_cycles else None), cycle, notes
 
 
 def rising(log: RawLog, axis: str) -> Array:
-    """Return an abscissa of a log, shape (row,).
-
-    Raises
-    ------
-    InputError
-        It falls, is not finite, or does not move.
-    """
+    """Return an abscissa of a log, shape (row,)."""
     values = np.asarray(getattr(log, axis), dtype=float)
     where = f"{log.source}: {axis}"
     if not np.isfinite(values).all():
@@ -214,16 +172,9 @@ def rising(log: RawLog, axis: str) -> Array:
 
 
 def means(abscissa: Array, values: Array, start: float, end: float, count: int) -> Spans:
-    """Return the means over `count` equal spans from `start` to `end`.
+    """Return the means over `count` equal spans from `start` to `end`; the abscissa, shape (row,), rises.
 
-    Parameters
-    ----------
-    abscissa, values : ndarray
-        Shape (row,) each; the abscissa rises.
-    start, end : float
-        Limits; a row at `end` itself belongs to the last span only if it is the last row.
-    count : int
-        Spans.
+    A row at `end` itself belongs to the last span only if it is the last row.
     """
     first, last = np.searchsorted(abscissa, (start, end), side="left")
     if abscissa[-1] == end:

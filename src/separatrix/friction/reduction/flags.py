@@ -1,62 +1,180 @@
-"""What a reader should know about a test, a plain sentence each, with its numbers."""
+"""What happens in a test, and what a reader should know about it: a plain sentence each, with its numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
+from separatrix.friction.logs.log import RawLog
 from separatrix.friction.records import in_words
-from separatrix.friction.reduction.cycles import means
-from separatrix.friction.reduction.events import friction_step, run_in_rise, wear_step
+from separatrix.friction.reduction.cycles import FEWEST, Spans, means
 from separatrix.friction.reduction.steady import LONG
-from separatrix.units import format_number, format_quantity
+from separatrix.units import Ratio, format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.friction.reduction import Reduction
 
+SMOOTHED = 5  # rows of the running median: fewer in a row are not an event
+LASTING = 0.1  # share of the rows through which a state must last to count as staying, if not to the end
+CHUNKS = 256  # stretches from whose means the usual friction is taken
+NOISE = 7.0  # standard deviations above its mean that noise does not reach
+ONSET = 0.1  # share of the rise to the limit at which a seizure begins
+STEP_GAIN, STEP_SIZE = 0.4, 0.1
+"""A step leaves less than this share of the scatter around a straight line, and is larger than this share
+of the mean."""
+
+EDGE = 0.05  # share of the steady part at its ends, or three spans, within which no step is reported
+RISE = 2.0  # steady friction over that before a rise in running-in from which the rise is reported
+JUMP = 10.0
+"""A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event:
+    """Something that happens at one row."""
+
+    kind: str
+    """``"loading"``, ``"seizure"``, ``"force lost"``, ``"spike"``, ``"friction step"`` or ``"wear step"``."""
+    row: int  # first row of it; of ``"loading"`` the first row after it
+    size: float  # largest friction, lowest force [N], or the step: friction or depth [m]
+    usual: float  # what it is compared with
+
+
+def row_events(log: RawLog, seizure_ratio: Ratio, force_loss: Ratio) -> tuple[Event, ...]:
+    """Return what single rows show: loading, seizure, spikes, lost load; in the order of the rows."""
+    found = [*_force_events(log, force_loss), *_friction_events(log, seizure_ratio)]
+    return tuple(sorted(found, key=lambda event: event.row))
+
+
+def kept_rows(events: tuple[Event, ...], rows: int) -> tuple[int, int]:
+    """Return the first row after loading, and the one where a seizure or a lost load ends the test."""
+    start = max((event.row for event in events if event.kind == "loading"), default=0)
+    ends = [event.row for event in events if event.kind in ("seizure", "force lost")]
+    return start, min([row for row in ends if row > start], default=rows)
+
+
+def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
+    # the level that a fifth of the stretches of a test stay below: no seizure can lift it
+    size = max(SMOOTHED, -(-log.rows // CHUNKS))
+    starts = np.arange(0, log.rows, size)
+    levels = np.add.reduceat(log.friction, starts) / np.diff(np.append(starts, log.rows))
+    usual = float(np.percentile(levels, 20.0))
+    if usual <= 0.0 or log.rows < 4 * SMOOTHED:
+        return
+    smooth = median_filter(log.friction, SMOOTHED, mode="nearest")
+    # what noise does not reach, from the lower fifth, which no seizure can lift: the quantiles of 2.5 % and
+    # 20 % of a normal distribution are 1.96 and 0.84 standard deviations below its mean
+    low, fifth = np.percentile(smooth, (2.5, 20.0))
+    noise = float(fifth + (0.84 + NOISE) * (fifth - low) / (1.96 - 0.84))
+    for first, last in _stretches(smooth > max(seizure_ratio * usual, noise)):
+        if first == 0 or last - first < SMOOTHED:
+            continue
+        stays = last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows
+        row = first
+        if stays:
+            calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (seizure_ratio - 1.0)))
+            row = int(calm[-1]) + 1 if calm.size else first
+        kind = "seizure" if stays else "spike"
+        yield Event(kind=kind, row=row, size=float(smooth[first:last].max()), usual=usual)
+        if stays:
+            return
+
+
+def _force_events(log: RawLog, force_loss: Ratio) -> Iterator[Event]:
+    force = log.normal_force
+    if force is None or not np.isfinite(force).any():
+        return
+    usual = float(np.nanmedian(np.abs(force)))
+    low = np.abs(force) < force_loss * usual
+    for first, last in _stretches(low):
+        least = float(np.nanmin(np.abs(force[first:last])))
+        if first == 0:
+            yield Event(kind="loading", row=last, size=least, usual=usual)
+        elif last - first >= SMOOTHED or last == log.rows:
+            yield Event(kind="force lost", row=first, size=least, usual=usual)
+
+
+def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return first row and row after the last of each stretch of true ones."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def friction_step(spans: Spans) -> tuple[float, float] | None:
+    """Return place and size of a step that explains the means far better than a straight line; else None."""
+    y, n = spans.means, spans.means.size
+    if n < FEWEST:
+        return None
+    x = np.arange(n) - (n - 1) / 2
+    level = y - y.mean()
+    straight = float(level @ level - (x @ level) ** 2 / (x @ x))
+    edge = max(3, int(EDGE * n))
+    split = np.arange(edge, n - edge)
+    left = np.cumsum(level)[split - 1]
+    gain = left**2 * n / (split * (n - split))
+    best = int(np.argmax(gain))
+    k = int(split[best])
+    size = float(y[k:].mean() - y[:k].mean())
+    small = abs(size) < STEP_SIZE * abs(float(y.mean()))
+    if small or level @ level - gain[best] > STEP_GAIN * straight:
+        return None
+    return spans.start + spans.width * k, size
+
+
+def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float] | None:
+    """Return place and level before a rise in running-in to far above it; else None.
+
+    The spans are those of the whole test, running-in ends at `end` of their ruler, and `friction` is steady
+    behind it. The place is that of the rising step that explains the means best; it must be in what is cut,
+    or so near behind that `friction_step` does not look there. The level is the lower of the medians of both
+    halves before it: neither a fall that comes first nor a slow rise lifts it.
+    """
+    y, n = spans.means, spans.means.size
+    split = np.arange(1, n)
+    below = -np.cumsum(y - y.mean())[:-1]
+    k = int(split[int(np.argmax(below / np.sqrt(split * (n - split))))])
+    place = spans.start + spans.width * k
+    before = float(min(np.median(y[: (k + 1) // 2]), np.median(y[k // 2 : k])))
+    reach = end + max(3.0 * spans.width, EDGE * (spans.end - end))
+    is_cut = spans.start < end and place <= reach
+    return (place, before) if is_cut and friction > max(0.0, RISE * before) else None
+
+
+def wear_step(spans: Spans) -> tuple[float, float] | None:
+    """Return place and size of a sudden change of wear depth; else None."""
+    if spans.means.size < FEWEST:
+        return None
+    increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may be
+    excess = increments - np.median(increments)
+    scatter = 1.4826 * float(np.median(np.abs(excess)))
+    k = int(np.argmax(np.abs(excess)))
+    if abs(excess[k]) <= JUMP * scatter or abs(excess[k]) < 0.2 * float(np.ptp(spans.means)):
+        return None
+    return spans.start + spans.width * (k + 1.5), float(excess[k])
+
+
 RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
 """Size and words of the unit of a drift, by the abscissa."""
 
-CHANCE = 0.01
-"""Probability without any drift below which a drift is reported."""
-
-CLEAR = 0.25
-"""Power of an oscillation over that of all the rest from which it is reported."""
-
-HALF = 0.5
-"""Share of a test beyond which running-in is reported as long."""
-
-FEW_ROWS = 36
-"""Rows below which running-in cannot be judged."""
-
-RESOLVED = 5.0
-"""Rows an oscillation below which it may be the image of a faster one."""
-
-MOSTLY = 1.4
-"""Standard error over that by noise from which most of it is what may be left of running-in."""
-
-HIGH = 1.0
-"""Friction above which a wrong column or unit is likelier than a contact."""
-
-GAP = 0.05
-"""Share of the steady part without a row that is reported."""
+CHANCE = 0.01  # probability without any drift below which a drift is reported
+CLEAR = 0.25  # power of an oscillation over that of all the rest from which it is reported
+HALF = 0.5  # share of a test beyond which running-in is reported as long
+FEW_ROWS = 36  # rows below which running-in cannot be judged
+RESOLVED = 5.0  # rows an oscillation below which it may be the image of a faster one
+MOSTLY = 1.4  # standard error over that by noise from which most of it is what may be left of running-in
+HIGH = 1.0  # friction above which a wrong column or unit is likelier than a contact
+GAP = 0.05  # share of the steady part without a row that is reported
 
 
 def flags(one: Reduction) -> Iterator[str]:
     """Yield what a reader should know about a test."""
-    yield from _events(one)
-    yield from _run_in(one)
-    yield from _rise(one)
-    yield from _drift(one)
-    yield from _oscillation(one)
-    yield from _spikes(one)
-    yield from _steps(one)
-    yield from _length(one)
-    yield from _range(one)
-    yield from _digits(one)
-    yield from _gap(one)
+    for part in (_ends, _run_in, _drift, _oscillation, _changes, _length, _size, _rows):
+        yield from part(one)
 
 
 def _at_row(one: Reduction, row: int) -> str:
@@ -69,7 +187,7 @@ def _at(one: Reduction, ruled: float) -> str:
     return in_words(one.stretch.place(ruled), one.test.run_in_axis)
 
 
-def _events(one: Reduction) -> Iterator[str]:
+def _ends(one: Reduction) -> Iterator[str]:
     """Report what begins or ends the test."""
     for event in one.events:
         place, usual = _at_row(one, event.row), format_number(event.usual, 3)
@@ -86,7 +204,7 @@ def _events(one: Reduction) -> Iterator[str]:
 
 
 def _run_in(one: Reduction) -> Iterator[str]:
-    """Report running-in that is long or does not end, and a steady part that is not level."""
+    """Report running-in that is long, does not end, or ends far above where it began."""
     test, found, start = one.test, one.run_in, float(one.stretch.along[0])
     share = (test.run_in_end - start) / (test.steady_end - start)
     end = in_words(test.run_in_end, test.run_in_axis)
@@ -104,20 +222,14 @@ def _run_in(one: Reduction) -> Iterator[str]:
         )
     if share > HALF and (found is None or found.ends):
         yield f"Running-in takes {100 * share:.0f} % of the test, up to {end}."
-
-
-def _rise(one: Reduction) -> Iterator[str]:
-    """Report running-in that ends far above where it began."""
-    rise = run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)
-    if rise is None:
-        return
-    low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
-    cut = "" if one.run_in is None else "if running-in ends elsewhere, write run_in_end in the column map; "
-    yield (
-        f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
-        f"running-in: a failed film, or a genuine rise. Look at the plot; {cut}if the film failed, "
-        "use the log only up to the rise."
-    )
+    if (rise := run_in_rise(one.stretch.spans(), one.spans.start, test.friction)) is not None:
+        low, high = format_number(rise[1], 3), format_number(test.friction, 3)
+        cut = "if running-in ends elsewhere, write run_in_end in the column map; "
+        yield (
+            f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
+            f"running-in: a failed film, or a genuine rise. Look at the plot; {cut if found else ''}if the "
+            "film failed, use the log only up to the rise."
+        )
 
 
 def _drift(one: Reduction) -> Iterator[str]:
@@ -159,8 +271,8 @@ def _oscillation(one: Reduction) -> Iterator[str]:
     )
 
 
-def _spikes(one: Reduction) -> Iterator[str]:
-    """Report friction that rises far in the steady part and comes back."""
+def _changes(one: Reduction) -> Iterator[str]:
+    """Report friction that rises far in the steady part and comes back, and steps in friction or wear."""
     low, high = one.test.run_in_end, one.test.steady_end
     spikes = [e for e in one.events if e.kind == "spike" and low <= one.along[e.row] <= high]
     if spikes:
@@ -168,10 +280,6 @@ def _spikes(one: Reduction) -> Iterator[str]:
         often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
         sizes = f"{format_number(spikes[0].usual, 3)} to {format_number(largest.size, 3)}"
         yield f"Friction spikes {often} at {_at_row(one, largest.row)}: from {sizes}, and comes back."
-
-
-def _steps(one: Reduction) -> Iterator[str]:
-    """Report steps in friction or wear depth."""
     if (step := friction_step(one.spans)) is not None:
         word = f"{'rises' if step[1] > 0 else 'falls'} in one step by {format_number(abs(step[1]), 2)}"
         yield f"Friction {word} at {_at(one, step[0])}: a wear event, or a new surface."
@@ -204,7 +312,7 @@ def _length(one: Reduction) -> Iterator[str]:
         )
 
 
-def _range(one: Reduction) -> Iterator[str]:
+def _size(one: Reduction) -> Iterator[str]:
     """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
     mean = one.test.friction
     low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
@@ -221,8 +329,8 @@ def _range(one: Reduction) -> Iterator[str]:
         )
 
 
-def _digits(one: Reduction) -> Iterator[str]:
-    """Report friction whose noise is lost in the last digit of the log."""
+def _rows(one: Reduction) -> Iterator[str]:
+    """Report noise that is lost in the last digit of the log, and a stretch without rows."""
     step, error = one.last_digit
     if step == 0.0:
         yield (
@@ -234,10 +342,6 @@ def _digits(one: Reduction) -> Iterator[str]:
             f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
             f"makes a standard error of {format_number(error, 2)}."
         )
-
-
-def _gap(one: Reduction) -> Iterator[str]:
-    """Report a stretch without rows in the steady part."""
     longest = current = 0
     for count in one.spans.counts:
         current = current + 1 if count == 0 else 0

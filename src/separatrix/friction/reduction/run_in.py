@@ -29,47 +29,28 @@ from separatrix.units import Array, Ratio
 
 METHOD = "longest tail whose mean agrees with that of each later part"
 
-PLACES = 96
-"""Places where the steady part may begin, at most."""
-
-LATEST = 0.75
-"""Share of the test beyond which no steady part begins."""
-
-COSINES = 8
-"""Cosines from which the noise of a tail is estimated."""
-
+PLACES = 96  # places where the steady part may begin, at most
+LATEST = 0.75  # share of the test beyond which no steady part begins
+COSINES = 8  # cosines from which the noise of a tail is estimated
 CHANCE = 1e-3
 """Probability with which the difference of two tails exceeds noise on one side without running-in."""
 
-WORTH = 0.0075
-"""Change of the mean, as a share of it, for which nothing is cut."""
-
+WORTH = 0.0075  # change of the mean, as a share of it, for which nothing is cut
 SEEN = 0.05
 """Deviation of the first part of a tail, as a share of friction, that is cut however short that part is."""
 
-STRETCH = 1.3
-"""Factor by which the place found may move up to where the differences are noise alone."""
-
-NOISE = 2.0
-"""Squares of standard errors that are noise in a difference: the rest of it is what may be left."""
-
-LEVEL = 0.02
-"""What may be left, as a share of the mean, from which a steady part is not level."""
-
+STRETCH = 1.3  # factor by which the place found may move up to where the differences are noise alone
+NOISE = 2.0  # squares of standard errors that are noise in a difference: the rest of it is what may be left
+LEVEL = 0.02  # what may be left, as a share of the mean, from which a steady part is not level
 OUTLIER = 6.0
 """Standard deviations from its neighbours at which a single span is a spike, which is not running-in."""
 
-DRIFT = 0.01
-"""Probability without a drift below which a tail still drifts."""
-
+DRIFT = 0.01  # probability without a drift below which a tail still drifts
 EVEN = 3.0
 """Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
 
-FEWEST = 12
-"""Spans below which running-in is not looked for."""
-
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
+FEWEST = 12  # spans below which running-in is not looked for
+ROUNDING = 1e-12  # share of friction below which differences are those of rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,25 +62,24 @@ class RunIn:
     """Largest difference between the mean behind the end and that of a later part, less its noise [-]."""
     ends: bool
     """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
-    level: bool
-    """Whether what may be left is at most `LEVEL` of the mean."""
+    level: bool  # whether what may be left is at most `LEVEL` of the mean
 
 
 def run_in(values: Array) -> RunIn:
-    """Return where running-in ends.
-
-    Parameters
-    ----------
-    values : ndarray
-        Means over equal spans, shape (span,).
-    """
+    """Return where running-in ends, from means over equal spans, shape (span,)."""
     n = values.size
     if n < FEWEST or np.ptp(values) <= ROUNDING * np.abs(values).max():
         return RunIn(end=0.0, rest=0.0, ends=True, level=True)
-    values = _without_spikes(values)
+    # spikes of one or two spans are replaced by the median of their neighbours
+    middle = median_filter(values, 5, mode="nearest")
+    excess = np.abs(values - middle)
+    scatter = 1.4826 * float(np.median(excess))
+    values = np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
     line = _without_line(values)
+    power = dct(line, type=2, norm="ortho")[1:] ** 2
+    even = power[:COSINES].mean() <= EVEN * power[COSINES : 4 * COSINES].mean()  # no slow wander, no curve
     straight = _Tails(line, _without_line)
-    if _is_even(line) and straight.first(straight.noise) == 0:
+    if even and straight.first(straight.noise) == 0:
         return straight.from_place(0, abs(float(values.mean())))
     tails = _Tails(values, _without_level)
     first = tails.first(tails.noise + tails.worth)
@@ -150,21 +130,6 @@ class _Tails:
         rest = float(np.sqrt(max(0.0, float(square.max()))))
         ends = place < self.starts.size - 1
         return RunIn(end=float(self.share[place]), rest=rest, ends=ends, level=rest <= LEVEL * mean)
-
-
-def _without_spikes(values: Array) -> Array:
-    """Return the values, spikes of one or two spans replaced by the median of their neighbours."""
-    middle = median_filter(values, 5, mode="nearest")
-    excess = np.abs(values - middle)
-    scatter = 1.4826 * float(np.median(excess))
-    return np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
-
-
-def _is_even(values: Array) -> bool:
-    """Return whether the spectrum does not rise to its low end: no slow wander, no curve."""
-    power = dct(values, type=2, norm="ortho")[1:] ** 2
-    beyond = power[COSINES : 4 * COSINES]
-    return bool(power[:COSINES].mean() <= EVEN * beyond.mean())
 
 
 def _without_level(values: Array) -> Array:

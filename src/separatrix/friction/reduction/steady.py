@@ -29,33 +29,20 @@ from scipy.special import gammaincc, stdtr, stdtrit
 
 from separatrix.units import Array, Ratio
 
-LEVEL = 0.95
-"""Of the interval."""
-
+LEVEL = 0.95  # of the interval
 CORNERS = np.geomspace(2.0, 4096.0, 34)
 """Half turns of the stretch at which the correlated part has fallen to half: from a sixth of the
 stretch to none."""
 
-FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])
-"""White part of the spectrum at zero frequency."""
-
-FLAT = 0.75
-"""A cosine counts if the fitted spectrum has at least this share of its height at zero there."""
-
+FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])  # white part of the spectrum at zero frequency
+FLAT = 0.75  # A cosine counts if the fitted spectrum has at least this share of its height at zero there
 FEWEST_COSINES, MOST_COSINES = 6, 60
 
-LONG = 4.5
-"""Corner below which the correlation is too long for the stated interval: 7 % of the stretch."""
+LONG = 4.5  # corner below which the correlation is too long for the stated interval: 7 % of the stretch
 
-
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
-
-MIXED = 0.2
-"""White part from which the correlated one is only a guess."""
-
-LIKELY = 0.5
-"""Weight of the spectra of a long correlation from which it counts as long: more likely than not."""
+ROUNDING = 1e-12  # share of friction below which differences are those of rounding
+MIXED = 0.2  # white part from which the correlated one is only a guess
+LIKELY = 0.5  # weight of the spectra of a long correlation from which it counts as long: more likely than not
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,20 +52,14 @@ class SteadyMean:
     mean: Ratio
     standard_error: Ratio
     degrees_of_freedom: int
-    change: Ratio
-    """Of the straight line, from one end of the stretch to the other."""
-    change_error: Ratio
-    """Standard error of `change`."""
+    change: Ratio  # of the straight line, from one end of the stretch to the other
+    change_error: Ratio  # standard error of `change`
     corner: float
     """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
-    floor: Ratio
-    """White part of the spectrum at zero frequency."""
-    long_chance: Ratio
-    """Weight of all spectra whose correlation is too long for the stated interval."""
-    power: Array
-    """Squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]."""
-    density: float
-    """Spectral density at zero frequency, in units of `power`."""
+    floor: Ratio  # white part of the spectrum at zero frequency
+    long_chance: Ratio  # weight of all spectra whose correlation is too long for the stated interval
+    power: Array  # squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]
+    density: float  # spectral density at zero frequency, in units of `power`
 
     @property
     def change_chance(self) -> float:
@@ -103,13 +84,7 @@ def half_width(standard_error: float, degrees_of_freedom: int) -> float:
 
 
 def steady_mean(values: Array) -> SteadyMean:
-    """Return the mean of a stretch with its standard error.
-
-    Parameters
-    ----------
-    values : ndarray
-        Means over equal spans, shape (span,), at least twelve.
-    """
+    """Return the mean of a stretch with its standard error, from means over equal spans, shape (span,)."""
     power = cosines(values) ** 2
     shapes, weights, best = fitted_shapes(power)
     flat = 1 + int((shapes[best] >= FLAT).sum())
@@ -147,11 +122,6 @@ def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
     """Return spectra that may be, one at zero frequency, how likely each is, and the most likely one's place.
 
     The first cosine is left out, for the straight line has taken it.
-
-    Parameters
-    ----------
-    power : ndarray
-        Squares of the projections on cosines 1, 2, ..., shape (cosine,).
 
     Returns
     -------
@@ -200,41 +170,25 @@ def _places(count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) / count - 0.5, dtype=float)
 
 
-SEGMENTS = 8
-"""Parts of the test whose spectra are averaged, overlapping by half."""
-
-LONGEST, SHORTEST = 4096, 64
-"""Rows of a segment."""
-
-CHANCE = 1e-4
-"""Probability with which noise alone would show a line as strong somewhere in the spectrum."""
-
-BESIDE = 8
-"""Places on each side of a line from which the noise is estimated; the two next to it are left out."""
-
+SEGMENTS = 8  # parts of the test whose spectra are averaged, overlapping by half
+LONGEST, SHORTEST = 4096, 64  # rows of a segment
+CHANCE = 1e-4  # probability with which noise alone would show a line as strong somewhere in the spectrum
+BESIDE = 8  # places on each side of a line from which the noise is estimated; the two next to it are left out
 LOWEST = 12
 """First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
 
-ROUNDING = 1e-12
-"""Share of friction below which differences are those of rounding."""
-
-HARMONICS = 12
-"""Multiples of the cycle that are its own."""
+HARMONICS = 12  # multiples of the cycle that are its own
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Oscillation:
     """The strongest line of the spectrum of friction."""
 
-    frequency: float
-    """In cycles per SI unit of the abscissa; 0 if no line exceeds the noise."""
-    amplitude: Ratio
-    """Peak to peak of the sine with its power [-]; 0 if no line exceeds the noise."""
-    signal_to_noise: float
-    """Its power over all other power but the cycle's."""
+    frequency: float  # in cycles per SI unit of the abscissa; 0 if no line exceeds the noise
+    amplitude: Ratio  # peak to peak of the sine with its power [-]; 0 if no line exceeds the noise
+    signal_to_noise: float  # its power over all other power but the cycle's
     frequencies: Array
-    density: Array
-    """Spectral density of friction at the frequencies."""
+    density: Array  # spectral density of friction at the frequencies
 
 
 NONE = Oscillation(
@@ -243,14 +197,9 @@ NONE = Oscillation(
 
 
 def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
-    """Return the strongest oscillation that is not one of the cycle's.
+    """Return the strongest oscillation of rows, shape (row,), that is not one of the cycle's.
 
-    Parameters
-    ----------
-    along, friction : ndarray
-        Abscissa and friction of the steady rows, shape (row,) each.
-    cycle : float or None
-        Length of a cycle in the unit of the abscissa.
+    The length of the cycle is in the unit of the abscissa; None where it is not known.
     """
     span = float(along[-1] - along[0])
     if span <= 0.0 or along.size < SHORTEST:
