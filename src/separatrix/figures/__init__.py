@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -20,7 +21,7 @@ from separatrix.figures import (
 )
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
-__all__ = ["draw", "plot", "save"]
+__all__ = ["draw", "plot", "save", "save_all"]
 
 FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "bearing": bearing.figures,
@@ -70,6 +71,13 @@ def draw(
             data = literal_texts(data)
             for name, figure in FIGURES[verb](data):
                 yield name, settled(headed(figure, data))
+
+
+def save_all(pictures: Iterable[tuple[str, Figure]], folder: Path) -> None:
+    """Write pictures with their names into a folder, each as PNG and SVG."""
+    for name, figure in pictures:
+        for suffix in (".png", ".svg"):
+            save(figure, folder / f"{name}{suffix}")
 
 
 def plot(verb: str, data: xr.Dataset, name: str | None = None) -> Figure:
