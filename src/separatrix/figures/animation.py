@@ -23,10 +23,8 @@ from separatrix.errors import InputError
 from separatrix.figures.motion import (
     AROUND,
     fastest_whirl,
-    half_plays,
     land_boundary,
     orbit_reach,
-    pocket_angles,
     pocket_boundary,
     ring,
     smooth_path,
@@ -283,7 +281,7 @@ def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
     (outline,) = axes.plot([], [], color=BLACK, lw=0.6)
     (tail,) = axes.plot([], [], color=BLUE, lw=0.8)
     (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.5)
-    pockets = pocket_boundary(pocket_angles(data), half_plays(data))
+    pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
     pockets = np.where(np.isfinite(pockets), pockets, np.nan)
     samples = [np.asarray(data[name].values) for name in ("time", "position", "velocity")]
 

@@ -66,7 +66,7 @@ def to_xarray(answer: object) -> xr.Dataset:
         if isinstance(item := node.get(name), Leaf) and item.axes is None:
             node[other] = node.pop(name)
     with null_if_not_finite():
-        variables = {name: _variable(leaf) for name, leaf in _flat(node).items()}
+        variables = {name: variable(leaf) for name, leaf in _flat(node).items()}
     return xr.Dataset(variables, attrs=complete)
 
 
@@ -193,7 +193,8 @@ def _blank(like: object) -> object:
     return [_blank(one) for one in like] if isinstance(like, list) else None
 
 
-def _variable(leaf: Leaf) -> xr.Variable:
+def variable(leaf: Leaf) -> xr.Variable:
+    """Return a leaf with its axes as a variable with its unit."""
     attributes = {"units": leaf.unit, "long_name": leaf.long_name}
     attrs = {name: value for name, value in attributes.items() if value}
     return xr.Variable(leaf.axes or (), _array(leaf.value, is_text=leaf.unit is None), attrs=attrs)
