@@ -81,11 +81,6 @@ def animate(
         Whether the picture is fixed in space; else it turns with the ball set.
     progress : callable, optional
         Called with (done, total) frames.
-
-    Raises
-    ------
-    InputError
-        The kind is unknown, or what writes it is not installed.
     """
     kind = path.suffix[1:].lower() if kind is None else kind
     if kind not in KINDS:
@@ -107,13 +102,7 @@ def animate(
 
 
 def video_encoder() -> ModuleType:
-    """Return the package that brings a video encoder along.
-
-    Raises
-    ------
-    InputError
-        It is not installed.
-    """
+    """Return the package that brings a video encoder along; refused where it is not installed."""
     try:
         import imageio_ffmpeg
     except ImportError as error:

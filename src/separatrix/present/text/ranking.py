@@ -112,21 +112,23 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
             _environment("Overall: mean friction over the measured environments", found.overall, *blocks)
         ]
 
-    def environment(one: RankedEnvironment) -> str:
-        notes = *footnotes(one.materials), *lowest(one.materials)
-        return _environment(one.name, one.materials, "", *notes, "", f"  Evidence: {_ensemble(found)}")
-
     return [
         paragraph(in_short(found), indent=""),
-        environment(own),
+        environment(found, own),
         *_over_inputs(own.materials, study),
         paragraph(LEGEND),
         paragraph(EVIDENCE_LEGEND),
         *detail,
         section("What the verdicts hold for", facts(_holds_for(answer, study))),
-        *map(environment, others),
+        *(environment(found, one) for one in others),
         *overall,
     ]
+
+
+def environment(found: Ranking, one: RankedEnvironment) -> str:
+    """Return verdicts, evidence and reasons of one environment."""
+    notes = *footnotes(one.materials), *lowest(one.materials)
+    return _environment(one.name, one.materials, "", *notes, "", f"  Evidence: {_ensemble(found)}")
 
 
 def _environment(name: str, rows: Sequence[Row], *blocks: str) -> str:
