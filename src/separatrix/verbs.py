@@ -95,7 +95,6 @@ def check(study: Study) -> CheckAnswer:
 
 
 def _try_predicted_friction(study: Study) -> None:
-    """Warn where `sensitivity` refuses the friction that tests predict in the pocket."""
     candidates = study.ranking.candidates if study.ranking and study.cage else ()
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
         return
@@ -140,7 +139,6 @@ def restitution(study: Study) -> RestitutionAnswer:
 
 
 def _warn_if_overdamped(found: Restitution) -> None:
-    """Warn that eta is 0 and what follows from it."""
     if found.restitution_factor == 0.0:
         damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
         warnings.warn(
@@ -282,7 +280,6 @@ def rank(study: Study, runner: Runner) -> RankingAnswer:
 
 
 def _reference(study: Study) -> tuple[Solution, PlanarCage]:
-    """Chain and cage of the reference candidate of a ranking."""
     asked = ranking_question(study)
     required_environment(study, asked)
     solution = solve(study, reference_candidate(study, asked))

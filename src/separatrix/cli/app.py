@@ -152,7 +152,6 @@ def _start(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Show the version and stop.")] = False,
 ) -> None:
-    """Show the version, or say that the verb is missing."""
     if version:
         from separatrix import __version__
 

@@ -155,7 +155,6 @@ def _study(data: xr.Dataset, path: Path) -> dict[str, Any]:
 
 
 def _runs(first: Saved, second: Saved) -> ComparedRuns:
-    """Return the single numbers of two simulations, and the inputs that differ."""
     from separatrix.present.text.compare import ComparedRuns, Run
 
     def run(one: Saved) -> Run:
@@ -241,7 +240,6 @@ def _inputs(node: Mapping[str, Any], path: str = "") -> Inputs:
 
 
 def _frictions(candidates: list[Any]) -> Inputs:
-    """Yield the mean friction of each candidate in each environment, and its material."""
     for one in (one for one in candidates if isinstance(one, Mapping)):
         at = f"friction of {one.get('name')}"
         friction = one.get("friction")

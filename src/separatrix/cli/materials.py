@@ -104,7 +104,6 @@ def _add(
 
 
 def _deliver(verb: str, document: dict[str, Any], text: str | None) -> None:
-    """Answer with the text; without one, with the document."""
     from separatrix import __version__
 
     if text is None:
@@ -140,7 +139,6 @@ def _library(named: list[str] | None) -> Library:
 
 
 def _kinds(kind: str | None) -> tuple[str, ...]:
-    """Every kind of record, or the one that is named."""
     from separatrix.library import KINDS
     from separatrix.toml_values import nearest
     from separatrix.units import shown

@@ -205,7 +205,6 @@ def make_study(path: Path, *, excel: bool, as_json: bool, quiet: bool) -> int:
 
 
 def _new_study(*, excel: bool) -> bytes:
-    """Return the file to fill in."""
     if excel:
         from separatrix.study_file.templates import template_workbook
 

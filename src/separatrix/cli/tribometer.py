@@ -75,7 +75,6 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
 
 
 def _refuse_out(out: Path) -> None:
-    """Refuse a friction file that has another name, or that exists."""
     from separatrix.friction.file import exists_already
 
     try:
@@ -91,7 +90,6 @@ def _refuse_out(out: Path) -> None:
 
 
 def _deliver(found: ReducedLogs, options: TribometerOptions) -> None:
-    """Write the files, then the answer."""
     from separatrix.friction.file import exists_already, friction_text
     from separatrix.present.text.tribometer import tribometer as in_words
     from separatrix.present.tribometer import tribometer as document

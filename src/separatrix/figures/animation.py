@@ -124,7 +124,6 @@ def _beside(path: Path) -> Iterator[Path]:
 
 
 def _write_gif(film: Iterator[Image.Image], part: Path) -> None:
-    """Write the frames as a GIF that repeats, all in the same colours."""
     colours = palette()
     images = (image.quantize(palette=colours, dither=Image.Dither.NONE) for image in film)
     how: Look = {"save_all": True, "duration": 1000 // A_SECOND, "loop": 0}
@@ -143,7 +142,6 @@ def palette() -> Image.Image:
 
 
 def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> None:
-    """Write the frames as H.264 video."""
     first = next(film)
     try:
         pipe = encoder.write_frames(str(part), first.size, fps=A_SECOND, quality=7, macro_block_size=2)
@@ -217,7 +215,6 @@ def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Imag
 
 
 def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> None:
-    """Write what the picture shows, and on which scales."""
     pocket, land = (format_number(float(np.abs(one).max()), 3) for one in (at.force, at.land_force))
     arrow: Look = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
     named = [(Line2D([], [], color=VERMILION, **arrow), f"force of a pocket on the cage, up to {pocket} N")]
@@ -246,7 +243,6 @@ def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
 
 
 def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
-    """Draw the energy against time, with a dot at the frame's."""
     draw_energy(axes, data)
     parts = shown_parts(data, moments)
     for first, last in parts if len(parts) > 1 else ():
@@ -286,7 +282,6 @@ def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
 
 
 def _cage(axes: Axes, at: Scene) -> Part:
-    """Draw what moves in the plan of the bearing: cage, balls and forces."""
     axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
     axes.set_axis_off()
     count = at.angles.size

@@ -138,7 +138,6 @@ def shear(data: xr.Dataset) -> Figure:
 
 
 def _strip(axes: Axes, data: xr.Dataset, letter: str) -> None:
-    """Draw one strip, with its place across the groove as title."""
     x = 1e3 * data["shear_along"].values
     bound = 1e-6 * float(data["race_friction"]) * data["shear_pressure"].values
     axes.fill_between(x, -bound, bound, color=GREY, alpha=0.15, lw=0, label=r"$|\tau| \leq f_{BT}\,p$")

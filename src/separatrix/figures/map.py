@@ -129,7 +129,6 @@ def stability_map(data: xr.Dataset) -> Figure:
 
 
 def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
-    """Hatch cells."""
     x, y = edges
     corners = [
         [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]
@@ -140,7 +139,6 @@ def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
 
 
 def _mark_study(axes: Axes, data: xr.Dataset) -> None:
-    """Mark the study's own point, if it has one in the map."""
     found = [float(data[f"{name}_here"]) / shown_unit(data, name)[0] for name in "xy"]
     limits = axes.get_xlim(), axes.get_ylim()
     if all(low <= value <= high for value, (low, high) in zip(found, limits, strict=True)):

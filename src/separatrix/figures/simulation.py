@@ -289,7 +289,6 @@ def contact_counts(force: Array) -> Array:
 
 
 def _contacts(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the share of each pocket in the contacts of all."""
     counts = contact_counts(data["contact_force"].values)
     total = counts.sum()
     forward, backward = 100 * counts / (total or 1.0)

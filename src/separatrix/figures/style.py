@@ -273,7 +273,6 @@ def _operating_point(data: xr.Dataset, study: Mapping[str, Any]) -> Iterator[str
 
 
 def _material(section: Mapping[str, Any]) -> str:
-    """Return the name of the material of a section; empty without one."""
     record = section.get("material") or {}
     return str(record.get("name") or record.get("value") or "")
 

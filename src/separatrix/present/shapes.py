@@ -318,7 +318,6 @@ def _drivers(record: UncertainStudy, places: Sequence[str], materials: Sequence[
 
 
 def _smooth(record: UncertainStudy) -> Node:
-    """Sobol indices of what the chain computes smoothly."""
     if not record.shares:
         return {}
     names = [one.name for one in record.shares[0].total]

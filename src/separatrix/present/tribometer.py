@@ -121,7 +121,6 @@ def page_data(reduction: Reduction) -> xr.Dataset:
 
 
 def _traces(reduction: Reduction, unit: str) -> Node:
-    """Return least, mean and largest friction, and the means of what else was logged, by columns."""
     log, on = reduction.log, ("trace",)
     starts = np.linspace(0, log.rows, min(COLUMNS, log.rows) + 1).astype(np.int64)[:-1]
     along = np.asarray(getattr(log, reduction.test.run_in_axis), dtype=float)

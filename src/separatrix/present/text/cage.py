@@ -144,7 +144,6 @@ def motion_words(motion: CageMotion | None) -> str:
 
 
 def _power_facts(found: History | Judgement, rubbing: float) -> list[tuple[str, str]]:
-    """Return the power that friction feeds into the cage at the end or takes from it, and of its rubbing."""
     powers = {"pocket": found.pocket_power, "land": found.land_power}
     each = (
         f"{name} {'feeds' if watt > 0.0 else 'takes'} {quantity(abs(watt), 'W')}"
@@ -158,7 +157,6 @@ def _power_facts(found: History | Judgement, rubbing: float) -> list[tuple[str, 
 
 
 def _drift_text(measured: float, law: float) -> str:
-    """Return the drift rate as measured, and by the linear law for a cage without a land."""
     return f"{rate(measured)} 1/s" + (f"; by the linear law {rate(law)} 1/s" if law else "")
 
 

@@ -154,7 +154,6 @@ def verdict_word(row: Row) -> str:
 
 
 def _title(name: str) -> str:
-    """Return the name of an environment as the title of its section."""
     return name[:1].upper() + name[1:]
 
 
@@ -239,7 +238,6 @@ def in_short(found: Ranking) -> str:
 
 
 def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
-    """Return one number, or the least and the largest of several."""
     return " to ".join(dict.fromkeys(form.format(value + 0.0) for value in (min(values), max(values))))
 
 
@@ -264,7 +262,6 @@ def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
 
 
 def _ensemble(found: Ranking) -> str:
-    """Return the runs behind every verdict, their length and their kicks."""
     return f"{found.runs} runs of {quantity(found.duration, 's')} from each kick, {kick_list(found.kicks)}"
 
 

@@ -177,7 +177,6 @@ def _by_input(case: Drivers) -> dict[str, Share]:
 
 
 def _columns(cases: Sequence[Drivers]) -> list[str]:
-    """Return the inputs by their largest share, chance last."""
     largest: dict[str, float] = {}
     for case in cases:
         for name, one in _by_input(case).items():
@@ -197,7 +196,6 @@ def _per_cent(one: Share) -> str:
 
 
 def _next_test(found: UncertainStudy) -> Iterator[str]:
-    """Yield which cases are undecided, and what measuring each input would settle."""
     if not found.undecided:
         yield "No case is undecided: no measurement would change a verdict."
         return
@@ -211,7 +209,6 @@ def _next_test(found: UncertainStudy) -> Iterator[str]:
 
 
 def _friction(found: UncertainStudy) -> Iterator[str]:
-    """Yield the largest friction of a new material, for each pocket."""
     several = len(found.allowed_friction) > 1
     for one in found.allowed_friction:
         pocket = f" in the pockets of {', '.join(one.names)}" if several else ""

@@ -88,7 +88,6 @@ def _machine(study: Study) -> list[tuple[str, str]]:
 
 
 def _pressure_at_rest(answer: CheckAnswer) -> str:
-    """Contact pressure at standstill, of the most loaded ball."""
     if answer.static is None:
         return f"not found: {answer.static_reason}"
     each = []
@@ -176,7 +175,6 @@ def shown(value: object, unit: str) -> str:
 
 
 def _sources(study: Study) -> list[str]:
-    """Return each material once, with its numbers, its sources and confidence."""
     own = (study.bearing.ball_material, study.bearing.ring_material, study.film.material)
     materials = {one.name: one for one in (*own, study.cage.material if study.cage else None) if one}
     for candidate in study.ranking.candidates if study.ranking else ():

@@ -71,7 +71,6 @@ def _row(test: TestFriction, flags: list[str]) -> list[str]:
 
 
 def _fits(fit: FrictionFit) -> str:
-    """Return the friction of each material in each environment."""
     rows, notes = [], [*_slopes(fit), _components(fit)]
     for (material, environment), one in fit.groups.items():
         at = one.at()
