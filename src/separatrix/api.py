@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -22,13 +20,11 @@ from separatrix.answers import (
     TractionAnswer,
 )
 from separatrix.chain.contacts import BearingState
-from separatrix.cluster import cluster as connected
 from separatrix.errors import ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.explore.sweep import Case, Sweep
-from separatrix.ledger import NAME, Ledger
 from separatrix.notes import grouped, noted_warnings
-from separatrix.runner import Progress, Runner, made_into
+from separatrix.runner import Progress, made_into
 from separatrix.study import Study
 from separatrix.study_file import read_study, require
 from separatrix.units import MetrePerSecond
@@ -48,16 +44,7 @@ Asked = Study | str | Path
 class Answer(Generic[Record]):
     """What a verb answers to a study; the names of its record are its own, too.
 
-    Attributes
-    ----------
-    verb : str
-        The question.
-    record : record
-        What was computed.
-    study : Study
-        What it was computed for.
-    notes : tuple of str
-        Where a model leaves its range.
+    `record` was computed for `study`; `notes` are about where a model leaves its range.
     """
 
     verb: str
@@ -106,14 +93,10 @@ class Answer(Generic[Record]):
         return plot(self.verb, self.to_xarray(), name)
 
 
-def _asked(study: Asked) -> Study:
-    return study if isinstance(study, Study) else read_study(study)
-
-
 def _answer(verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str) -> Answer[Record]:
     """Answer of a verb, with what was noted on the way; the notes are warnings for the caller, too."""
     with noted_warnings() as notes:
-        asked = _asked(study)
+        asked = study if isinstance(study, Study) else read_study(study)
         require(asked, verb, *needs)
 
         def made(record: Record) -> Answer[Record]:
@@ -123,23 +106,6 @@ def _answer(verb: str, study: Asked, compute: Callable[[Study], Record], *needs:
     for note in answer.notes:
         warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
-
-
-@contextlib.contextmanager
-def _runner(
-    jobs: int | None, folder: str | Path | None, cluster: str | None, progress: Progress | None
-) -> Iterator[Runner]:
-    """Yield the runner of a long job; `folder` keeps its finished runs."""
-    with contextlib.ExitStack() as stack:
-        ledger = None
-        if folder is not None:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            ledger = Ledger(Path(folder) / NAME)
-            stack.callback(ledger.close)
-        executor, threads = (
-            stack.enter_context(connected(cluster)) if cluster else (None, jobs or os.cpu_count())
-        )
-        yield Runner(jobs=threads or 1, progress=progress, ledger=ledger, executor=executor)
 
 
 def check(study: Asked) -> Answer[CheckAnswer]:
@@ -199,7 +165,7 @@ def stability(
     Interrupted
         With the answer made of what was finished.
     """
-    with _runner(jobs, folder, cluster, progress) as runner:
+    with verbs.long_job(jobs, folder, cluster, progress) as runner:
         return _answer("stability", study, lambda one: verbs.stability(one, runner), "cage")
 
 
@@ -218,7 +184,7 @@ def map(
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
-    with _runner(jobs, folder, cluster, progress) as runner:
+    with verbs.long_job(jobs, folder, cluster, progress) as runner:
 
         def compute(one: Study) -> MapAnswer:
             return verbs.map(one, runner, x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
@@ -235,7 +201,7 @@ def rank(
     progress: Progress | None = None,
 ) -> Answer[RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
-    with _runner(jobs, folder, cluster, progress) as runner:
+    with verbs.long_job(jobs, folder, cluster, progress) as runner:
         return _answer("rank", study, lambda one: verbs.rank(one, runner), "cage", "ranking")
 
 
@@ -249,13 +215,10 @@ def sensitivity(
     progress: Progress | None = None,
 ) -> Answer[SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with so many bearings drawn; other parameters as of `stability`."""
-    with _runner(jobs, folder, cluster, progress) as runner:
+    with verbs.long_job(jobs, folder, cluster, progress) as runner:
+        needs = "cage", "ranking"
         return _answer(
-            "sensitivity",
-            study,
-            lambda one: verbs.sensitivity(one, runner, samples=samples),
-            "cage",
-            "ranking",
+            "sensitivity", study, lambda one: verbs.sensitivity(one, runner, samples=samples), *needs
         )
 
 
@@ -272,9 +235,9 @@ def sweep(
 ) -> Answer[Sweep]:
     """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
-    with _runner(jobs, folder, cluster, progress) as runner:
-        return _answer(
-            "sweep",
-            study,
-            lambda one: verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts),
-        )
+    with verbs.long_job(jobs, folder, cluster, progress) as runner:
+
+        def compute(one: Study) -> Sweep:
+            return verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts)
+
+        return _answer("sweep", study, compute)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +19,7 @@ from separatrix.answers import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import History, PlanarCage, linear_whirl_frequency
+from separatrix.cage import PlanarCage, linear_whirl_frequency
 from separatrix.cage import simulate as follow
 from separatrix.cage_choice import (
     cage_candidate,
@@ -29,6 +31,7 @@ from separatrix.chain.contacts import BearingState
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_ratio, shear
 from separatrix.chain.solution import Solution, solve
+from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
@@ -38,6 +41,7 @@ from separatrix.explore.sweep import Case, Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
+from separatrix.ledger import NAME, Ledger
 from separatrix.limits import stability_curve
 from separatrix.limits.map import stability_map, value_here
 from separatrix.limits.map_parameters import KICK
@@ -46,7 +50,7 @@ from separatrix.ranking import rank as rank_materials
 from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.plausible import Moved, beyond_motion
-from separatrix.runner import Runner, made_into
+from separatrix.runner import Progress, Runner, made_into
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
 from separatrix.units import MetrePerSecond, format_quantity, parse
 
@@ -61,14 +65,27 @@ SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
 
 
-def check(study: Study) -> CheckAnswer:
-    """The bearing at standstill, for its contact pressures.
+@contextlib.contextmanager
+def long_job(
+    jobs: int | None, folder: str | Path | None, cluster: str | None, progress: Progress | None
+) -> Iterator[Runner]:
+    """Yield the runner of a long job: `folder` keeps its finished runs, `cluster` makes them.
 
-    Warns
-    -----
-    ValidityWarning
-        `sensitivity` refuses the friction that tests predict in the pocket: its line.
+    Without `jobs` there is a thread for each processor.
     """
+    with contextlib.ExitStack() as stack:
+        ledger, executor, threads = None, None, jobs or os.cpu_count() or 1
+        if folder is not None:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            ledger = Ledger(Path(folder) / NAME)
+            stack.callback(ledger.close)
+        if cluster is not None:
+            executor, threads = stack.enter_context(connected(cluster))
+        yield Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
+
+
+def check(study: Study) -> CheckAnswer:
+    """The bearing at standstill, for its contact pressures."""
     _try_predicted_friction(study)
     at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
     try:
@@ -78,7 +95,6 @@ def check(study: Study) -> CheckAnswer:
 
 
 def _try_predicted_friction(study: Study) -> None:
-    """Warn where `sensitivity` refuses the friction that tests predict in the pocket."""
     candidates = study.ranking.candidates if study.ranking and study.cage else ()
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
         return
@@ -114,13 +130,7 @@ def traction(study: Study) -> TractionAnswer:
 
 
 def restitution(study: Study) -> RestitutionAnswer:
-    """Restitution factor from the traction slopes, and what other films would give.
-
-    Warns
-    -----
-    ValidityWarning
-        The factor is 0: the impact is overdamped.
-    """
+    """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
     return RestitutionAnswer(
@@ -129,7 +139,6 @@ def restitution(study: Study) -> RestitutionAnswer:
 
 
 def _warn_if_overdamped(found: Restitution) -> None:
-    """Warn that eta is 0 and what follows from it."""
     if found.restitution_factor == 0.0:
         damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
         warnings.warn(
@@ -144,19 +153,13 @@ def _warn_if_overdamped(found: Restitution) -> None:
 def stability(study: Study, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     solution = solve(study)
-    cage, settings = _shown_cage(solution), solution.stability
+    _warn_of_extrapolation(solution)
+    cage, settings = _cage_of(solution), solution.stability
     runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
     return made_into(
         lambda curve: StabilityAnswer(solution=solution, cage=cage, curve=curve),
         lambda: stability_curve(cage, settings, runner=runner),
     )
-
-
-def _shown_cage(solution: Solution) -> PlanarCage:
-    """Cage of a study in an answer over many frictions; without friction where none is known."""
-    friction = solution.friction
-    _warn_of_extrapolation(solution)
-    return solution.cage_with(friction.mean if friction else 0.0)
 
 
 def _warn_of_extrapolation(solution: Solution) -> None:
@@ -197,11 +200,6 @@ def map(
         Initial disturbance at every point, text with a unit or [m/s]; by default the reference kick.
     adaptive : bool
         Run only points near a change of the answer.
-
-    Raises
-    ------
-    InputError
-        An axis or a number is wrong, or no point can be run.
     """
     checked_points(points, "--points")
     if not 1 <= runs <= MOST_RUNS:
@@ -217,7 +215,8 @@ def map(
     speed = solution.stability.middle_kick if kick is None else kick_speed(kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
-    cage = _shown_cage(solution)
+    _warn_of_extrapolation(solution)
+    cage = _cage_of(solution)
     runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
         lambda found: MapAnswer(solution=solution, cage=cage, map=found),
@@ -226,13 +225,7 @@ def map(
 
 
 def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
-    """Speed of a kick, from text with a unit or a number [m/s].
-
-    Raises
-    ------
-    InputError
-        It is not a speed that a study may have.
-    """
+    """Speed of a kick that a study may have, from text with a unit or a number [m/s]."""
     speed = parse(kick, "m/s", "--kick") if isinstance(kick, str) else float(kick)
     if not LEAST_KICK < speed < MOST_KICK:
         rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
@@ -249,19 +242,14 @@ def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int
         Initial disturbance, text with a unit or [m/s].
     run : int
         Which run of the ensemble.
-
-    Raises
-    ------
-    InputError
-        The kick or the run's number is wrong.
     """
     if not 0 <= run <= LAST_RUN:
         raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(run))
-    speed = None if kick is None else kick_speed(kick)
+    given = None if kick is None else kick_speed(kick)
     solution = solve(study)
     cage, settings = solution.cage, solution.stability
     _warn_of_extrapolation(solution)
-    speed = settings.middle_kick if speed is None else speed
+    speed = settings.middle_kick if given is None else given
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
     history = follow(
         cage,
@@ -272,17 +260,12 @@ def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int
         ball_scatter=settings.ball_scatter,
         samples=int(min(max(samples, 1000), MOST_SHOWN)),
     )
-    _warn_if_beyond_model(solution, history)
-    return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
-
-
-def _warn_if_beyond_model(solution: Solution, history: History) -> None:
-    """Warn where the run leaves the range of the model or of hardware."""
     made_of = cage_candidate(solution.study)
     force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
-    run = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
-    for note in beyond_motion(solution, [run]):
-        warnings.warn(note, ValidityWarning, stacklevel=3)
+    moved = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
+    for note in beyond_motion(solution, [moved]):
+        warnings.warn(note, ValidityWarning, stacklevel=2)
+    return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
 
 
 def rank(study: Study, runner: Runner) -> RankingAnswer:
@@ -297,12 +280,16 @@ def rank(study: Study, runner: Runner) -> RankingAnswer:
 
 
 def _reference(study: Study) -> tuple[Solution, PlanarCage]:
-    """Chain and cage of the reference candidate of a ranking; without friction where none is known."""
     asked = ranking_question(study)
     required_environment(study, asked)
     solution = solve(study, reference_candidate(study, asked))
+    return solution, _cage_of(solution)
+
+
+def _cage_of(solution: Solution) -> PlanarCage:
+    """Cage of an answer over many frictions; without friction where none is known."""
     friction = solution.friction
-    return solution, solution.cage_with(friction.mean if friction else 0.0)
+    return solution.cage_with(friction.mean if friction else 0.0)
 
 
 def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> SensitivityAnswer:
@@ -312,11 +299,6 @@ def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> Sens
     ----------
     samples : int
         Bearings drawn, a power of two.
-
-    Raises
-    ------
-    InputError
-        It is not a sensible number of bearings, or nothing is uncertain.
     """
     if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
         near = 1 << max(0, samples - 1).bit_length()
@@ -356,10 +338,5 @@ def sweep(
         In their place a CSV file, or values by the names of a study file in SI units.
     verdicts : bool
         Whether to run the whole ensemble of each case, too.
-
-    Raises
-    ------
-    InputError
-        A range or the table of cases is wrong.
     """
     return run_cases(study, asked_cases(vary, cases), verdicts=verdicts, runner=runner)

@@ -7,9 +7,9 @@ import math
 import re
 import textwrap
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.units import printable
 
@@ -47,6 +47,13 @@ class Look:
     """Of the text, as RRGGBB; empty for black."""
     fill: str = ""
     wrap: bool = False
+
+
+class Cell(NamedTuple):
+    """A value with a look of its own."""
+
+    value: object
+    look: Look
 
 
 PLAIN = Look()
@@ -149,6 +156,29 @@ def widths(sheet: Worksheet, *sizes: float) -> None:
                 lines = max(lines, len(textwrap.wrap(cell.value, width)))
         if lines > 1:
             sheet.row_dimensions[number].height = LINE_HEIGHT * lines
+
+
+def add_table(
+    book: Workbook,
+    name: str,
+    heads: Sequence[str],
+    rows: Iterable[Iterable[object]],
+    *,
+    looks: Sequence[Look] = (),
+    sizes: Sequence[float] = (),
+    keep_columns: int = 0,
+    taken: Sequence[str] = (),
+) -> Worksheet:
+    """Add a sheet of headings and rows; a value that is no `Cell` has the look of its column."""
+    sheet = add_sheet(book, name, taken)
+    headings(sheet, heads, keep_columns=keep_columns)
+    for number, row in enumerate(rows, 2):
+        for column, one in enumerate(row, 1):
+            own = one if isinstance(one, Cell) else Cell(one, looks[column - 1] if looks else PLAIN)
+            put(sheet, number, column, own.value, own.look)
+    if sizes:
+        widths(sheet, *sizes)
+    return sheet
 
 
 def workbook_bytes(book: Workbook) -> bytes:

@@ -32,8 +32,15 @@ def run(*, count=5, samples=MADE, outcome="WHIRLS", guidance="outer", touching=T
         "kick": 0.5,
         "cage_pitch_radius": 0.0325,
         "cage_cage_speed": 600.0,
-        "cage_pocket_clearance": play,
         "cage_guidance": guidance,
+        "cage_land_out_of_round": 0.0,
+        "cage_land_lobes": 2,
+        "cage_ramp_time": 0.0,
+        "cage_ramp_start": 0.1,
+        "pocket_angle": ("ball", 2 * np.pi * np.arange(count) / count),
+        "half_play": ("ball", np.full(count, 0.5 * play)),
+        "judged_from": 0.0,
+        "judged_until": 0.0,
         "cage_land_clearance": np.nan if guidance == "ball" else 1e-3,
     }
     study = {"bearing": {"ball_diameter": {"value": 0.0111}}}
@@ -56,6 +63,8 @@ def curve(points=4, **changes):
         "kicks": ("kick", [0.1, 0.5, 2.0]),
         "middle_kick": 0.5,
         "runs": 64,
+        "band_few": 0.1,
+        "band_most": 0.9,
         "chain_restitution_factor": 0.27,
         "chain_restitution_factor_free_spin": 0.07,
         "cage_ball_count": 13,
@@ -70,6 +79,7 @@ def candidates(friction):
     return {
         "material_friction": (at, np.array(friction, dtype=float)),
         "material_restitution_factor": (at, np.full(shape, 0.27)),
+        "material_friction_error": (at, np.zeros(shape)),
         "material_extrapolation": (at, np.full(shape, "", dtype=object)),
         "environment": [f"environment {i}" for i in range(shape[0])],
         "material": [f"material {i}" for i in range(shape[1])],
@@ -90,6 +100,7 @@ def plane(share, *, x=None, y=None, **changes):
         "x_here": 0.27,
         "y_here": 0.22,
         "kick": 0.5,
+        "stopping_most_runs": 16,
         "cage_ball_count": 13,
     }
     x = np.linspace(0.0, 1.0, columns) if x is None else x
@@ -112,6 +123,7 @@ def ranking(**changes):
     columns = {"rank": [[1.0, 2.0, 3.0, 4.0]] * 2, "margin": [[0.1] * 4] * 2, "friction": frictions}
     columns |= {"restitution_factor": [[0.27] * 4] * 2, "verdict": [["STABLE"] * 4] * 2}
     columns |= {f"restitution_threshold{end}": [[0.4] * 4] * 2 for end in ("", "_low", "_high")}
+    columns |= {"friction_error": [[0.0] * 4] * 2}
     columns |= {"extrapolation": np.full((2, 4), "", dtype=object)}
     made = {f"material_{name}": column for name, column in columns.items()}
     made |= {f"overall_{name}": column[0] for name, column in columns.items()} | changes

@@ -38,15 +38,25 @@ ENVIRONMENTS = [
     "liquid nitrogen, Chromex 40",
     "liquid nitrogen, 440C",
 ]
-BALL = (
-    "contact_angle_inner contact_angle_outer load_inner load_outer orbital_speed pitch_angle "
-    "spin_roll_ratio_inner spin_roll_ratio_outer"
-)
 ELLIPSE = "semi_major semi_minor max_pressure approach rolling_speed"
 CURVE = "slope slope_error creep_increment traction_coefficient"
 DAMPING = "race_damping damping_ratio restitution_factor"
 CRITICAL = "restitution_factor critical_friction critical_friction_low critical_friction_high"
 MATERIAL = "name friction restitution_threshold margin probability_stable verdict rank reason"
+KEYS = {
+    ("bearing", "balls"): "contact_angle_inner contact_angle_outer load_inner load_outer orbital_speed "
+    "pitch_angle spin_roll_ratio_inner spin_roll_ratio_outer",
+    ("bearing", ""): "axial_displacement radial_displacement",
+    **{("bearing", f"contacts.{race}"): ELLIPSE for race in ("inner", "outer")},
+    **{("traction", race): CURVE for race in ("inner", "outer")},
+    ("restitution", ""): " ".join(f"{name} {name}_free_spin" for name in DAMPING.split()),
+    ("stability", "curve"): CRITICAL,
+    ("stability", "linear_limit"): "restitution_factor critical_friction",
+    ("rank", ""): "restitution_factor",
+    ("rank", "overall"): MATERIAL,
+    ("rank", "environments.materials"): MATERIAL,
+}
+"""Verb and place in its document -> the keys that scripts rely on."""
 
 EXTRA = {"map": ("--points", "3", "--runs", "2"), "sweep": ("--vary", "film.thickness=0.2..1um:3")}
 """Options without which a verb would take long."""
@@ -86,6 +96,15 @@ def has(record: dict, names: str) -> bool:
     return set(names.split()) <= set(record)
 
 
+def records(found, path: str) -> list[dict]:
+    """Return the records at a place of a document."""
+    places = [found]
+    for key in filter(None, path.split(".")):
+        inside = [one[key] for one in places]
+        places = [one for item in inside for one in (item if isinstance(item, list) else [item])]
+    return places
+
+
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS])
 def test_json_is_one_document_and_writes_nothing(verb, folder, capsys):
     """`--json --quiet` prints exactly what stands in the file, nothing else anywhere, and no NaN."""
@@ -106,47 +125,26 @@ def test_every_answer_says_where_it_comes_from(verb, folder):
     assert "cryogenic-turbopump.toml" in found["study"]["bearing"]["ball_diameter"]["origin"]
 
 
-def test_bearing_has_the_keys_that_scripts_rely_on(folder):
-    """`bearing`: one row for each ball, the ring's displacements, both contacts of the most loaded ball."""
-    found = answer(folder, "bearing")
-    assert len(found["balls"]) == 13
-    assert all(has(ball, BALL) for ball in found["balls"])
-    assert has(found, "axial_displacement radial_displacement contacts")
-    assert all(has(found["contacts"][race], ELLIPSE) for race in ("inner", "outer"))
+@pytest.mark.parametrize(("verb", "path"), KEYS)
+def test_documents_have_the_keys_that_scripts_rely_on(verb, path, folder):
+    """Each record at that place."""
+    found = records(answer(folder, verb), path)
+    assert found
+    assert all(has(one, KEYS[verb, path]) for one in found)
 
 
-def test_traction_has_the_keys_that_scripts_rely_on(folder):
-    """`traction`: slope, its error, and the curve, of equal length, for both races."""
-    found = answer(folder, "traction")
+def test_documents_have_a_row_for_each(folder):
+    """Ball, point of a curve, restitution factor, environment and candidate."""
+    assert len(answer(folder, "bearing")["balls"]) == 13
     for race in ("inner", "outer"):
-        assert has(found[race], CURVE)
-        assert len(found[race]["creep_increment"]) == len(found[race]["traction_coefficient"])
-
-
-def test_restitution_has_the_keys_that_scripts_rely_on(folder):
-    """`restitution`: as printed, and the same with free ball spin."""
-    found = answer(folder, "restitution")
-    assert has(found, DAMPING)
-    assert has(found, " ".join(f"{name}_free_spin" for name in DAMPING.split()))
-
-
-def test_stability_has_the_keys_that_scripts_rely_on(folder):
-    """`stability`: a row for each restitution factor asked for, and the linear limit."""
-    found = answer(folder, "stability")
-    assert [row["restitution_factor"] for row in found["curve"]] == [0.3, 0.6, 0.9]
-    assert all(has(row, CRITICAL) for row in found["curve"])
-    assert all(has(row, "restitution_factor critical_friction") for row in found["linear_limit"])
-    assert found["complete"] is True
-
-
-def test_rank_has_the_keys_that_scripts_rely_on(folder):
-    """`rank`: the four environments under their names, each candidate in each, and overall."""
-    found = answer(folder, "rank")
-    assert has(found, "restitution_factor environments overall")
-    assert [environment["name"] for environment in found["environments"]] == ENVIRONMENTS
-    for rows in (found["overall"], *(environment["materials"] for environment in found["environments"])):
+        curve = answer(folder, "traction")[race]
+        assert len(curve["creep_increment"]) == len(curve["traction_coefficient"])
+    curve, rank = answer(folder, "stability"), answer(folder, "rank")
+    assert [row["restitution_factor"] for row in curve["curve"]] == [0.3, 0.6, 0.9]
+    assert curve["complete"] is True
+    assert [one["name"] for one in rank["environments"]] == ENVIRONMENTS
+    for rows in (rank["overall"], *(one["materials"] for one in rank["environments"])):
         assert {row["name"] for row in rows} == {"Armalon", "Meldin HTC 100"}
-        assert all(has(row, MATERIAL) for row in rows)
 
 
 def test_a_missing_measurement_is_null_with_its_reason(folder):
@@ -166,13 +164,14 @@ def test_what_is_null_has_a_reason(folder):
 
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
 def test_files_are_whole_and_nothing_else_is_left(verb, folder):
-    """Document, summary, dataset, and each figure as PNG and SVG; no temporary file stays."""
+    """Document, text for a terminal, dataset, each figure as PNG and SVG; no temporary file stays."""
     names = {path.name for path in (folder / verb).iterdir()}
     pictures = {name for name in names if name.endswith(".png")}
     assert bool(pictures) == (verb in figures.FIGURES)
-    assert names == pictures | KEPT.get(verb, set()) | {f"{p[:-4]}.svg" for p in pictures} | {
-        f"{verb}{suffix}" for suffix in (".json", ".txt", ".nc")
-    }
+    own = {f"{verb}{suffix}" for suffix in (".json", ".txt", ".nc")}
+    assert names == pictures | KEPT.get(verb, set()) | {f"{p[:-4]}.svg" for p in pictures} | own
+    text = (folder / verb / f"{verb}.txt").read_text(encoding="ascii")
+    assert max(len(line) for line in text.splitlines()) <= 100
 
 
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
@@ -189,16 +188,8 @@ def test_no_figure_is_clipped(folder):
     for path in folder.rglob("*.png"):
         pixels = image.imread(path)[..., :3]
         edges = [pixels[:2], pixels[-2:], pixels[:, :2], pixels[:, -2:]]
-        assert min(edge.min() for edge in edges) > 0.98, (
-            path.name
-        )  # white is 1; a grey hint of antialiasing passes
-
-
-@pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.writes_files])
-def test_the_summary_fits_a_terminal(verb, folder):
-    """The text is ASCII and 100 columns at most."""
-    text = (folder / verb / f"{verb}.txt").read_text(encoding="ascii")
-    assert max(len(line) for line in text.splitlines()) <= 100
+        least = min(edge.min() for edge in edges)
+        assert least > 0.98, path.name  # white is 1; a grey hint of antialiasing passes
 
 
 def test_the_dataset_names_dimensions_and_units(folder):
@@ -212,10 +203,7 @@ def test_the_dataset_names_dimensions_and_units(folder):
     there = {"environment": "liquid nitrogen, 440C", "material": "Armalon"}
     assert float(rank["material_friction"].sel(there)) == 0.08
     assert json.loads(rank.attrs["study"])["bearing"]["ball_count"]["value"] == 13
-
-
-def test_the_dataset_holds_the_numbers_of_the_document(folder):
-    """The same curve in both."""
+    # the numbers of the document
     data = present.load(folder / "traction" / "traction.nc")
     found = answer(folder, "traction")["outer"]["traction_coefficient"]
     np.testing.assert_array_equal(data["traction_coefficient"].sel(race="outer"), found)
@@ -223,29 +211,17 @@ def test_the_dataset_holds_the_numbers_of_the_document(folder):
 
 def test_every_dimensional_variable_has_a_unit(folder):
     """Whatever is a plain number without a unit is in this list of counts and names."""
-    counts = {
-        "most_loaded",
-        "iterations",
-        "whirling",
-        "ball",
-        "run",
-        "runs",
-        "nodes",
-        "sweeps",
-        "slip",
-        "rank",
-        "whirl_direction",
-        "within_reach",
-        "friction_scatter_assumed",
-        *("settles", "whirls", "drifts", "unresolved", "kept_by_land"),
-        "input_mean",  # each in the unit that stands beside it, in input_unit
-        "input_standard_deviation",
-    }
+    counts = (
+        *("most_loaded", "iterations", "whirling", "ball", "run", "runs", "nodes", "sweeps", "slip", "rank"),
+        *("whirl_direction", "within_reach", "friction_scatter_assumed", "settles", "whirls", "drifts"),
+        *("unresolved", "kept_by_land"),
+        *("input_mean", "input_standard_deviation"),  # each in the unit beside it, in input_unit
+    )
     for verb in (verb.name for verb in VERBS if verb.writes_files):
         data = present.load(folder / verb / f"{verb}.nc")
         for name, variable in data.variables.items():
             if variable.dtype.kind == "f":
-                known = "units" in variable.attrs or any(str(name).endswith(count) for count in counts)
+                known = "units" in variable.attrs or str(name).endswith(counts)
                 assert known, f"{verb}: {name}"
 
 
@@ -274,9 +250,8 @@ def test_what_new_writes_is_a_study(capsys):
 
 def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     """Seven materials without a datum at 90 K are one note; what matters and what is assumed comes first."""
-    bare = (resources.files("separatrix") / "examples" / "cryogenic-turbopump.toml").read_text(
-        encoding="utf-8"
-    )
+    shipped = resources.files("separatrix") / "examples" / "cryogenic-turbopump.toml"
+    bare = shipped.read_text(encoding="utf-8")
     lines = [line for line in bare.splitlines() if "ball_cage_stiffness" not in line]
     Path("cold.toml").write_text("\n".join(lines).replace('"77 K"', '"90 K"'))
     assert main(["check", "cold.toml"]) == 0
@@ -285,14 +260,8 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert max(map(len, said.splitlines())) <= 96
     assert said.count("not stated at 90 K") <= 3
     assert said.count("Note: ") == 1
-    for words in (
-        "Speed parameter",
-        "million mm rpm",
-        "Pressure at rest",
-        "maximum",
-        "Assumed, as the study",
-    ):
-        assert words in said
+    words = ("Speed parameter", "million mm rpm", "Pressure at rest", "maximum", "Assumed, as the study")
+    assert all(one in said for one in words)
     assert main(["check", "cold.toml", "--full"]) == 0
     whole = capsys.readouterr().out
     assert "cold.toml, line" in whole

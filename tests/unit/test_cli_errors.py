@@ -125,14 +125,8 @@ def test_eight_mistakes_are_eight_lines(verb, capsys):
     Path("study.toml").write_text(text)
     lines = refused(capsys, verb, "study.toml").splitlines()
     keys = (
-        "ball_material",
-        "ring_material",
-        "inner_speed",
-        "axial_load",
-        "material",
-        "mass",
-        "runs",
-        "friction",
+        *("ball_material", "ring_material", "inner_speed", "axial_load"),
+        *("material", "mass", "runs", "friction"),
     )
     assert len(lines) == len(keys)
     assert all(f"] {key} " in line for key, line in zip(keys, lines, strict=True))
@@ -149,17 +143,6 @@ def test_a_file_that_is_no_study_is_refused(content, said, capsys):
     assert said in refused(capsys, "check", "study.toml")
 
 
-def test_a_folder_is_no_study(capsys):
-    """A folder in place of a file."""
-    Path("folder.toml").mkdir()
-    assert "folder" in refused(capsys, "check", "folder.toml")
-
-
-def test_a_missing_study_names_the_shipped_ones(capsys):
-    """An unknown name is answered with the nearest shipped study."""
-    assert "cryogenic-turbopump" in refused(capsys, "rank", "cryogenic-turbopmp")
-
-
 USAGE = {
     "no verb": ([], "is missing; choose one of new, check"),
     "unknown verb": (["rnak", "le7"], "rnak"),
@@ -173,14 +156,31 @@ USAGE = {
     "out without a folder": (["bearing", "le7", "--out"], "--out"),
     "new without a path": (["new"], "PATH"),
     "study with control characters": (["bearing", "a\x1b[31m\nb"], ""),
+    "a folder for a study": (["check", "folder.toml"], "folder"),
+    "the nearest shipped study": (["rank", "cryogenic-turbopmp"], "cryogenic-turbopump"),
+    "out that is a file": (["rank", "cryogenic-turbopump", "--out", "taken"], "--out"),
+    "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken/below"], "--out"),
+    "default folder that is a file": (["bearing", "study.toml"], "--out"),
+    "out from an unset variable": (["bearing", "le7", "--out", ""], "--out"),
+    "out longer than a file system takes": (["check", "le7", "--out", "a" * 300], "--out"),
+    "a wrong study, before its folder is made": (["bearing", "empty.toml", "--out", "deep/folder"], "empty"),
+    "new over a file": (["new", "taken"], "exists"),
+    "new over a folder": (["new", "folder.toml"], "folder"),
+    "new without its folder": (["new", "nowhere/mine.toml"], "nowhere"),
 }
 
 
 @pytest.mark.parametrize("case", USAGE)
 def test_wrong_usage_is_refused_in_one_line(case, capsys):
-    """Each misuse of the command line itself."""
+    """Each misuse of the command line itself; what is there stays as it was."""
+    Path("folder.toml").mkdir()
+    Path("study.toml").write_text(VALID)
+    Path("empty.toml").write_text("")
+    for taken in ("taken", "study"):
+        Path(taken).write_text("mine")
     arguments, said = USAGE[case]
     assert said in refused(capsys, *arguments)
+    assert Path("taken").read_text() == Path("study").read_text() == "mine"
 
 
 @pytest.mark.parametrize(
@@ -212,31 +212,6 @@ def test_an_option_that_is_no_whole_number_is_refused_in_our_words(verb, option,
     assert line == f'separatrix: {option} must be a whole number; got "{shown}". {cure}\n'
 
 
-def test_out_that_is_a_file_is_refused_before_the_work(capsys):
-    """`--out` names a file: refused, and the file is as it was."""
-    Path("taken").write_text("mine")
-    assert "--out" in refused(capsys, "rank", "cryogenic-turbopump", "--out", "taken")
-    assert "--out" in refused(capsys, "rank", "cryogenic-turbopump", "--out", "taken/below")
-    assert Path("taken").read_text() == "mine"
-
-
-def test_a_default_folder_that_is_a_file_is_refused(capsys):
-    """Without `--out` the folder is named after the study; a file of that name is not touched."""
-    Path("study.toml").write_text(VALID)
-    Path("study").write_text("mine")
-    assert "--out" in refused(capsys, "bearing", "study.toml")
-
-
-def test_out_without_a_name_is_refused(capsys):
-    """`--out ""`, as from a variable that is not set."""
-    assert "--out" in refused(capsys, "bearing", "le7", "--out", "")
-
-
-def test_out_with_a_name_too_long_for_a_file_system_is_refused(capsys):
-    """`--out` of 300 characters, where a file system takes 255."""
-    assert "--out" in refused(capsys, "check", "le7", "--out", "a" * 300)
-
-
 def test_a_study_named_by_dots_alone_does_not_write_above(capsys):
     """The file `...toml` has the stem `..`: its default folder must not be the one above."""
     Path("below").mkdir()
@@ -244,22 +219,6 @@ def test_a_study_named_by_dots_alone_does_not_write_above(capsys):
     Path("...toml").write_text(VALID)
     assert "--out" in refused(capsys, "bearing", "...toml")
     assert [path.name for path in Path("..").iterdir()] == ["below"]
-
-
-def test_a_wrong_study_does_not_make_the_folder(capsys):
-    """The study is read before the folder is made."""
-    Path("study.toml").write_text("")
-    refused(capsys, "bearing", "study.toml", "--out", "deep/folder")
-
-
-def test_new_does_not_overwrite(capsys):
-    """`new` refuses what exists: a file, a folder, a path without a folder."""
-    Path("mine.toml").write_text("mine")
-    Path("folder").mkdir()
-    assert "exists" in refused(capsys, "new", "mine.toml")
-    assert "folder" in refused(capsys, "new", "folder")
-    assert "nowhere" in refused(capsys, "new", "nowhere/mine.toml")
-    assert Path("mine.toml").read_text() == "mine"
 
 
 @pytest.mark.parametrize("verb", ["restitution", "stability", "map", "simulate", "rank"])

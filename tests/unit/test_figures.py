@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from separatrix import figures
 from separatrix.errors import InputError
+from separatrix.figures.chain import signed
 from separatrix.figures.map import sweep
 from separatrix.figures.ranking import file_name, overview, rank_texts, text_order
 from separatrix.figures.sensitivity import bearings
@@ -24,7 +25,6 @@ from separatrix.figures.style import (
     settled,
     spread,
 )
-from separatrix.figures.traction import signed
 
 
 def test_labels_keep_their_distance_and_order():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from separatrix.figures import motion, simulation
-from separatrix.figures.motion import AROUND, half_plays, land_boundary, pocket_angles, pocket_boundary
+from separatrix.figures.motion import AROUND, land_boundary, pocket_boundary
 from separatrix.figures.style import journal
 
 ODD = {
@@ -119,15 +119,6 @@ def test_one_pocket_leaves_the_way_along_its_ball_free():
     assert reach.tolist() == [np.inf, 1.0, np.inf]
 
 
-def test_pockets_are_where_the_run_says():
-    """Angles and plays of the run come before those of an even cage."""
-    uneven = drawn.run(pocket_angle=("ball", [0, 1, 2, 4, 5]), half_play=("ball", [1e-4] * 5))
-    assert pocket_angles(drawn.run())[1] == pytest.approx(2 * np.pi / 5)
-    assert half_plays(drawn.run()).tolist() == [3e-4] * 5
-    assert pocket_angles(uneven).tolist() == [0, 1, 2, 4, 5]
-    assert half_plays(uneven).tolist() == [1e-4] * 5
-
-
 @pytest.mark.parametrize(("guidance", "side"), [("outer", 1), ("inner", -1)])
 @pytest.mark.parametrize("lobes", [2, 3])
 def test_on_the_land_boundary_the_depth_is_zero(guidance, side, lobes):
@@ -179,7 +170,7 @@ def test_a_source_has_one_look_everywhere():
 
 @pytest.mark.parametrize(("judged", "spans"), [({"judged_from": 0.008, "judged_until": 0.009}, 3), ({}, 0)])
 def test_the_judged_part_of_a_run_is_shaded(judged, spans):
-    """In energy, offset and work; nothing in a file of an earlier version, which does not record it."""
+    """In energy, offset and work; nothing where the run is not judged."""
     page = simulation.run(drawn.run(samples=40, **judged))
     shaded = [patch for axes in page.axes for patch in axes.patches if patch.get_alpha() == 0.2]
     assert [float(patch.get_xy()[0]) for patch in shaded] == pytest.approx([8.0] * spans)

@@ -17,8 +17,7 @@ from separatrix.study_file.document import SECTIONS, load
 from separatrix.study_file.sections import READERS
 from separatrix.study_file.templates import TEMPLATE, study_workbook, template_keys, template_workbook
 from separatrix.units import parse
-from separatrix.workbook import results_workbook
-from separatrix.workbook.ranking import OWN_SHEETS
+from separatrix.workbook import OWN_SHEETS, results_workbook
 from separatrix.workbook_looks import (
     add_sheet,
     new_workbook,

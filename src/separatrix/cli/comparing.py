@@ -16,10 +16,9 @@ from separatrix.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
-VERBS = ("simulate", "rank")
-NUMBERS = ("kick", "run", "end_energy", "largest_offset", "largest_contact_force", "outcome")
-"""Single values of a saved simulation; not every version has each."""
+    from separatrix.present.text.compare import ComparedRankings, ComparedRuns, Difference, Environment
 
+VERBS = ("simulate", "rank")
 DRAWN: dict[str, int] = {
     **dict.fromkeys(("outcome", "kick", "largest_offset"), 0),
     **dict.fromkeys(("time", "land_force", "kinetic_energy", "spring_energy", "land_energy"), 1),
@@ -28,23 +27,21 @@ DRAWN: dict[str, int] = {
 }
 """What a comparison of simulations takes from each: variable and number of its dimensions."""
 
-MOST = 1e30
-"""Magnitude from which a number cannot be drawn; no run comes near it."""
-
-RANKED = ("verdict", "margin", "probability_stable", "friction", "restitution_threshold")
-"""What a comparison of rankings takes of each material."""
-
+TABLED = ("verdict", "margin", "probability_stable", "friction", "restitution_threshold")
 WANTED: dict[str, dict[str, int]] = {
     "simulate": DRAWN,
     "rank": {
         "material": 1,
         "environment": 1,
-        **{f"overall_{name}": 1 for name in RANKED},
-        **{f"material_{name}": 2 for name in RANKED},
+        **{f"overall_{name}": 1 for name in TABLED},
+        **{f"material_{name}": 2 for name in TABLED},
     },
 }
 TEXTS = ("outcome", "material", "environment", "overall_verdict", "material_verdict")
 """What an answer of each verb must have, with number of dimensions, and which of it are texts."""
+
+MOST = 1e30
+"""Magnitude from which a number cannot be drawn; no run comes near it."""
 
 FRICTION = "cage.ball_cage_friction"
 """Key of the pocket friction, which a study may leave to its candidates."""
@@ -52,6 +49,9 @@ FRICTION = "cage.ball_cage_friction"
 OVERALL = "Overall: mean friction over the measured environments"
 BESIDE = ("record", "table", "other_tests", "distribution")
 """Parts of a resolved study that are not inputs: whole records of the library."""
+
+Inputs = Iterator[tuple[str, tuple[Any, str | None]]]
+"""Names of inputs, each with its value and unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +63,11 @@ class Saved:
     verb: str
     title: str
     study: Mapping[str, Any]
+
+    @property
+    def named(self) -> dict[str, Any]:
+        """Which answer it is."""
+        return {"path": str(self.path), "title": self.title, "seed": int(self.data.attrs["seed"])}
 
 
 def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> int:
@@ -82,29 +87,30 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
     InputError
         One of them is not a saved answer, they answer different questions, or the folder cannot be written.
     """
+    from separatrix import __version__, figures
+    from separatrix.present import plain
     from separatrix.present.text.compare import compare as in_words
 
-    pair = read(first), read(second)
-    if pair[0].verb != pair[1].verb:
-        rule = f"must be an answer of {pair[0].verb}, as {first} is"
-        raise InputError(str(second), rule, got=pair[1].verb)
-    found = document(*pair)
+    a, b = read(first), read(second)
+    if a.verb != b.verb:
+        raise InputError(str(second), f"must be an answer of {a.verb}, as {first} is", got=b.verb)
+    found = _runs(a, b) if a.verb == "simulate" else _rankings(a, b)
+    document = {"separatrix_version": __version__, "verb": "compare", "of": a.verb, **plain(found)}
+    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     folder = out or (None if as_json else Path("compare"))
     if folder is not None:
-        with writable_folder(folder):
-            _write(pair, found, folder)
-    answer(json.dumps(found, indent=1, allow_nan=False) + "\n" if as_json else in_words(found, folder))
+        with writable_folder(folder), staged(folder) as stage:
+            (stage / "compare.json").write_text(text, encoding="utf-8")
+            (stage / "compare.txt").write_text(harmless(in_words(found, folder)), encoding="utf-8")
+            if a.verb == "simulate":
+                names = (str(first), str(second)) if a.title == b.title else ("", "")  # else by their titles
+                figures.save_all(figures.draw("compare", a.data, b.data, names=names), stage)
+    answer(text if as_json else in_words(found, folder))
     return 0
 
 
 def read(path: Path) -> Saved:
-    """Return a saved answer of `simulate` or `rank`.
-
-    Raises
-    ------
-    InputError
-        There is none, it answers another question, or it lacks something that such an answer has.
-    """
+    """Return a saved answer of `simulate` or `rank` that has all that such an answer has."""
     from separatrix.present import load
 
     here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
@@ -148,25 +154,19 @@ def _study(data: xr.Dataset, path: Path) -> dict[str, Any]:
     raise InputError(str(path), "contains a study that separatrix did not write")
 
 
-def document(first: Saved, second: Saved) -> dict[str, Any]:
-    """Return the numbers of each answer, and the inputs that differ."""
-    from separatrix import __version__
+def _runs(first: Saved, second: Saved) -> ComparedRuns:
+    from separatrix.present.text.compare import ComparedRuns, Run
 
-    found: dict[str, Any] = {"separatrix_version": __version__, "verb": "compare", "of": first.verb}
-    pair = first, second
-    named = [{"path": str(one.path), "title": one.title, "seed": int(one.data.attrs["seed"])} for one in pair]
-    if first.verb == "simulate":
-        found["runs"] = [known | _in_numbers(one.data) for known, one in zip(named, pair, strict=True)]
-    else:
-        found |= {"rankings": named, "environments": list(_side_by_side(first.data, second.data))}
-    return found | {"differences": list(differences(first, second))}
+    def run(one: Saved) -> Run:
+        names = ("kick", "run", "end_energy", "largest_offset", "largest_contact_force", "outcome")
+        known = {name: _single(one.data, name) for name in names}
+        return Run(**one.named, **known, largest_land_force=float(abs(one.data["land_force"]).max()))
+
+    return ComparedRuns(runs=(run(first), run(second)), differences=tuple(differences(first, second)))
 
 
-def _in_numbers(data: xr.Dataset) -> dict[str, Any]:
-    """Return the single numbers of a simulation, and the largest force of its land."""
-    values = {name: data[name].item() for name in NUMBERS if name in data and data[name].size == 1}
-    values["largest_land_force"] = float(abs(data["land_force"]).max())
-    return {name: _or_none(value) for name, value in values.items()}
+def _single(data: xr.Dataset, name: str) -> Any:
+    return _or_none(data[name].item()) if name in data and data[name].size == 1 else None
 
 
 def _or_none(value: Any) -> Any:
@@ -175,48 +175,55 @@ def _or_none(value: Any) -> Any:
     return None if is_absent else value
 
 
-def _side_by_side(first: xr.Dataset, second: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield the materials of two rankings, overall and in each environment that either has."""
+def _rankings(first: Saved, second: Saved) -> ComparedRankings:
+    """Return the materials of two rankings, overall and in each environment that either has."""
+    from separatrix.present.text.compare import ComparedRankings, Environment, Named, Pair, Standing
+
+    def rows(data: xr.Dataset, prefix: str) -> dict[str, Standing]:
+        columns = {name: data[prefix + name].values.tolist() for name in TABLED}
+        return {
+            str(material): Standing(**{name: _or_none(column[i]) for name, column in columns.items()})
+            for i, material in enumerate(data["material"].values)
+        }
+
     tables = []
-    for data in (first, second):
-        parts = {str(name): data.isel(environment=i) for i, name in enumerate(data["environment"].values)}
-        here = {name: _rows(part, "material_") for name, part in parts.items()}
-        tables.append({OVERALL: _rows(data, "overall_")} | here)
-    for environment in {**tables[0], **tables[1]}:
-        one, other = (table.get(environment, {}) for table in tables)
-        names = {**one, **other}
-        rows = [{"name": name, "first": one.get(name), "second": other.get(name)} for name in names]
-        yield {"name": environment, "materials": rows}
+    for data in (first.data, second.data):
+        names = [str(name) for name in data["environment"].values]
+        here = {name: rows(data.isel(environment=i), "material_") for i, name in enumerate(names)}
+        tables.append({OVERALL: rows(data, "overall_")} | here)
+    environments: list[Environment] = []
+    for name in {**tables[0], **tables[1]}:
+        one, other = (table.get(name, {}) for table in tables)
+        pairs = [Pair(name=key, first=one.get(key), second=other.get(key)) for key in {**one, **other}]
+        environments.append(Environment(name=name, materials=tuple(pairs)))
+    return ComparedRankings(
+        rankings=(Named(**first.named), Named(**second.named)),
+        environments=tuple(environments),
+        differences=tuple(differences(first, second)),
+    )
 
 
-def _rows(data: xr.Dataset, prefix: str) -> dict[str, dict[str, Any]]:
-    """Return material -> its numbers; None where a material was not measured."""
-    columns = {name: data[prefix + name].values.tolist() for name in RANKED}
-    return {
-        str(material): {name: _or_none(column[i]) for name, column in columns.items()}
-        for i, material in enumerate(data["material"].values)
-    }
-
-
-def differences(first: Saved, second: Saved) -> Iterator[dict[str, Any]]:
+def differences(first: Saved, second: Saved) -> Iterator[Difference]:
     """Yield each input that differs: keys of the study, then options of the command."""
+    from separatrix.present.text.compare import Difference
+
     one, other = (dict(_all_inputs(saved)) for saved in (first, second))
     for key in {**one, **other}:
         a, b = one.get(key, (None, None)), other.get(key, (None, None))
         if a[0] != b[0]:
-            yield {"key": key, "first": a[0], "second": b[0], "unit": a[1] or b[1]}
+            yield Difference(key=key, first=a[0], second=b[0], unit=a[1] or b[1])
 
 
-def _all_inputs(saved: Saved) -> Iterator[tuple[str, tuple[Any, str | None]]]:
+def _all_inputs(saved: Saved) -> Inputs:
     """Yield every input of an answer; of a simulation also kick and run, and the friction that it took."""
     yield from sorted(_inputs(saved.study), key=lambda pair: pair[0])
     taken = (("--kick", "kick", "m/s"), ("--run", "run", None), (FRICTION, "cage_ball_cage_friction", "-"))
     for key, name, unit in taken if saved.verb == "simulate" else ():
         if name in saved.data and saved.data[name].size == 1:
-            yield key, (_or_none(saved.data[name].item()), unit)
+            yield key, (_single(saved.data, name), unit)
 
 
-def _inputs(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, tuple[Any, str | None]]]:
+def _inputs(node: Mapping[str, Any], path: str = "") -> Inputs:
     """Yield name, value and unit of every input of a resolved study; of an uncertain one what is known."""
     if "value" in node:
         known = node.get("distribution")
@@ -232,8 +239,7 @@ def _inputs(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, tupl
             yield from _frictions(item)
 
 
-def _frictions(candidates: list[Any]) -> Iterator[tuple[str, tuple[Any, str | None]]]:
-    """Yield the mean friction of each candidate in each environment, and its material."""
+def _frictions(candidates: list[Any]) -> Inputs:
     for one in (one for one in candidates if isinstance(one, Mapping)):
         at = f"friction of {one.get('name')}"
         friction = one.get("friction")
@@ -242,19 +248,3 @@ def _frictions(candidates: list[Any]) -> Iterator[tuple[str, tuple[Any, str | No
                 yield f"{at} in {environment}", (measured.get("mean"), "-")
         if isinstance(one.get("material"), Mapping):
             yield from _inputs(one["material"], f"material of {one.get('name')}")
-
-
-def _write(pair: tuple[Saved, Saved], found: Mapping[str, Any], folder: Path) -> None:
-    """Write document and text, and the figure of simulations, all or none."""
-    from separatrix import figures
-    from separatrix.present.text.compare import compare as in_words
-
-    with staged(folder) as stage:
-        (stage / "compare.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-        (stage / "compare.txt").write_text(harmless(in_words(found, folder)), encoding="utf-8")
-        if pair[0].verb == "simulate":
-            paths = str(pair[0].path), str(pair[1].path)
-            names = paths if pair[0].title == pair[1].title else ("", "")  # else by their titles
-            for name, figure in figures.draw("compare", pair[0].data, pair[1].data, names=names):
-                for suffix in (".png", ".svg"):
-                    figures.save(figure, stage / f"{name}{suffix}")

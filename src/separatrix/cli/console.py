@@ -111,36 +111,20 @@ def write(stream: TextIO | None, text: str) -> None:
 
 
 def answer(text: str) -> None:
-    """Write the answer to standard output; a reader that went away (`| head`) is no error.
-
-    Raises
-    ------
-    InputError
-        The output cannot be written, for instance to a full disk.
-    """
+    """Write the answer to standard output; a reader that went away (`| head`) is no error, a full disk is."""
     try:
         write(sys.stdout, text)
-    except BrokenPipeError:
-        _discard_standard_output()
     except OSError as error:
-        _discard_standard_output()
-        raise InputError("Standard output", f"cannot be written ({error.strerror or error})") from error
-
-
-def _discard_standard_output() -> None:
-    """Point standard output at nothing, so that the interpreter's last flush does not complain."""
-    with contextlib.suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        with contextlib.suppress(
+            OSError, ValueError
+        ):  # so that the interpreter's last flush has no complaint
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise InputError("Standard output", f"cannot be written ({error.strerror or error})") from error
 
 
 class Life:
-    """How far a verb is; called with (done, total) by the work.
-
-    Parameters
-    ----------
-    title : str
-        Verb and study.
-    """
+    """How far a verb is; called with (done, total) by the work. Its title is verb and study."""
 
     def __init__(self, title: str) -> None:
         self.title, self.begun = title, time.monotonic()
@@ -186,20 +170,14 @@ class Silent(Life):
 
 @contextlib.contextmanager
 def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
-    """Yield what the work tells how far it is; with `quiet` nobody hears of it."""
+    """Yield what the work tells how far it is: a bar on a terminal that goes away at the end, else lines."""
     if quiet or sys.stderr is None:
         yield Silent(title)
-    elif sys.stderr.isatty():
-        with _bar(title) as life:
-            yield life
-    else:
+        return
+    if not sys.stderr.isatty():
         with _lines(title) as life:
             yield life
-
-
-@contextlib.contextmanager
-def _bar(title: str) -> Iterator[Life]:
-    """A bar that goes away when the work is done."""
+        return
     from rich.console import Console
     from rich.markup import escape
     from rich.progress import Progress

@@ -42,14 +42,13 @@ def _remove_left_behind(folder: Path) -> None:
 
 def _is_alive(process: int) -> bool:
     """Whether there is such a process; where the system cannot be asked without harm, it counts as alive."""
-    if os.name != "posix":
-        return True
-    try:
-        os.kill(process, 0)  # asks, sends nothing
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):  # it belongs to another user; or the number is none of a process
-        return True
+    if os.name == "posix":
+        try:
+            os.kill(process, 0)  # asks, sends nothing
+        except ProcessLookupError:
+            return False
+        except (OSError, OverflowError):  # it belongs to another user; or the number is none of a process
+            return True
     return True
 
 
@@ -57,12 +56,7 @@ def _is_alive(process: int) -> bool:
 def staged(folder: Path) -> Iterator[Path]:
     """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
 
-    Such folders of processes that were killed are removed first.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or is full.
+    Such folders of processes that were killed are removed first. A folder that cannot be written is refused.
     """
     try:
         _remove_left_behind(folder)
@@ -76,45 +70,26 @@ def staged(folder: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def writable_folder(path: Path) -> Iterator[Path]:
-    """Make the folder and see that it can be written, before the long work; take it away if left empty.
+    """Make the folder and its parents, and see that it can be written, before the long work.
 
-    Parameters
-    ----------
-    path : Path
-        The folder; its parents are made too.
-
-    Raises
-    ------
-    InputError
-        It is a file, or cannot be made or written.
+    Folders that it made and that are left empty are taken away. One that cannot be written is refused.
     """
-    missing: list[Path] = []
+    probe, missing = path / f"{_prefix()}{uuid.uuid4().hex}", list[Path]()
     try:
-        _make_writable(path, missing)
+        try:
+            missing += [folder for folder in (path, *path.parents) if not folder.exists()]
+            path.mkdir(parents=True, exist_ok=True)
+            probe.touch(exist_ok=False)
+        except OSError as error:
+            raise _cannot_write(path, error) from error
+        finally:  # also where an interrupt comes just after it was made
+            with contextlib.suppress(OSError):
+                probe.unlink()
         yield path
     finally:  # also where an interrupt comes before the work
-        _remove_empty(missing)
-
-
-def _make_writable(path: Path, missing: list[Path]) -> None:
-    """Make the folder, and write in it; note which folders were not there."""
-    probe = path / f"{_prefix()}{uuid.uuid4().hex}"
-    try:
-        missing += [folder for folder in (path, *path.parents) if not folder.exists()]
-        path.mkdir(parents=True, exist_ok=True)
-        probe.touch(exist_ok=False)
-    except OSError as error:
-        raise _cannot_write(path, error) from error
-    finally:  # also where an interrupt comes just after it was made
         with contextlib.suppress(OSError):
-            probe.unlink()
-
-
-def _remove_empty(folders: list[Path]) -> None:
-    """Remove those folders, deepest first, that are empty."""
-    with contextlib.suppress(OSError):
-        for folder in folders:
-            folder.rmdir()
+            for folder in missing:  # the deepest first
+                folder.rmdir()
 
 
 def _cannot_write(path: Path, error: OSError) -> InputError:
@@ -135,13 +110,7 @@ def _exists_already(path: Path) -> InputError:
 
 
 def write_new(path: Path, content: bytes) -> None:
-    """Write a file that must not exist yet.
-
-    Raises
-    ------
-    InputError
-        There is something of that name, or the folder cannot be written.
-    """
+    """Write a file that must not exist yet."""
     try:
         with path.open("xb") as file:
             file.write(content)

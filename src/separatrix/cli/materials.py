@@ -10,23 +10,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from separatrix.cli.console import answer
+from separatrix.cli.verbs import Json
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
     from separatrix.library import Content, FrictionTable, Library, Record
+    from separatrix.present.text.materials import Shown
 
-ANSWERED = 0
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
-Kind = Annotated[
-    str | None,
-    typer.Option(
-        "--kind", metavar="KIND", help="bearing material, cage material, film, fluid, friction table."
-    ),
-]
-Libraries = Annotated[
-    list[str] | None,
-    typer.Option("--library", metavar="PATH", help="A library file or folder to read too; may be repeated."),
-]
+KIND_HELP = "bearing material, cage material, film, fluid, friction table."
+Kind = Annotated[str | None, typer.Option("--kind", metavar="KIND", help=KIND_HELP)]
+LIBRARY_HELP = "A library file or folder to read too; may be repeated."
+Libraries = Annotated[list[str] | None, typer.Option("--library", metavar="PATH", help=LIBRARY_HELP)]
+AT_HELP = 'For instance "77 K": the data that serve there.'
+UNDER_HELP = 'State of a fluid there [default: "101325 Pa"].'
 HELP = "The library of materials; check one of your own, add to it."
 EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
@@ -37,7 +33,7 @@ EPILOG = (
 def application() -> typer.Typer:
     """Return the verbs below `materials`."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    verbs: dict[str, tuple[Callable[..., int], str]] = {
+    verbs: dict[str, tuple[Callable[..., None], str]] = {
         "list": (_list, "Every record: its numbers, how sure they are, and its library."),
         "show": (_show, "One record whole: every number with source, conditions and confidence."),
         "check": (_check, "Read a library file; say what it holds."),
@@ -48,46 +44,48 @@ def application() -> typer.Typer:
     return app
 
 
-def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> int:
+def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> None:
+    from separatrix.present.text.materials import listed
+
     known = _library(library)
-    kinds = [_known_kind(kind)] if kind is not None else _kinds()
-    records = [record for name in kinds for record in known.records(name).values()]
-    document = _head("list") | {
-        "libraries": [file.plain() for file in known.files],
-        "materials": [record.plain() for record in records],
-    }
-    return _deliver(document, "listed", as_json=json)
+    records = [record for name in _kinds(kind) for record in known.records(name).values()]
+    _deliver(
+        "list",
+        {
+            "libraries": [file.plain() for file in known.files],
+            "materials": [record.plain() for record in records],
+        },
+        None if json else listed(records),
+    )
 
 
 def _show(
     name: Annotated[str, typer.Argument(metavar="NAME", help="A material, film, fluid or friction table.")],
     kind: Kind = None,
-    temperature: Annotated[
-        str | None, typer.Option(metavar="T", help='For instance "77 K": the data that serve there.')
-    ] = None,
-    pressure: Annotated[
-        str | None, typer.Option(metavar="P", help='State of a fluid there [default: "101325 Pa"].')
-    ] = None,
+    temperature: Annotated[str | None, typer.Option(metavar="T", help=AT_HELP)] = None,
+    pressure: Annotated[str | None, typer.Option(metavar="P", help=UNDER_HELP)] = None,
     library: Libraries = None,
     json: Json = False,
-) -> int:
+) -> None:
+    from separatrix.present.text.materials import shown
+
     found = _found(_library(library), name, kind)
     at = None if temperature is None else _quantity(temperature, "K", "--temperature", 1e-3, 5000.0)
     under = None if pressure is None else _quantity(pressure, "Pa", "--pressure", 1e-3, 1e11)
     if under is not None and (at is None or all(record.kind != "fluid" for record in found)):
         raise InputError("--pressure", "is for a fluid, together with --temperature")
-    document = _head("show") | {"records": [_whole(record, at, under) for record in found]}
-    return _deliver(document, "shown", as_json=json)
+    views = [_shown(record, at, under) for record in found]
+    _deliver("show", {"records": [_plain(one) for one in views]}, None if json else shown(views))
 
 
 def _check(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file.")], json: Json = False
-) -> int:
+) -> None:
     from separatrix.library import joined, read_library
 
     content = read_library(file)
     joined([content])
-    return _deliver(_head("check") | _summary(content), "checked", as_json=json)
+    _summary("check", content, None, as_json=json)
 
 
 def _add(
@@ -96,31 +94,36 @@ def _add(
         str | None, typer.Option("--to", metavar="LIBRARY", help="The library file to add to.")
     ] = None,
     json: Json = False,
-) -> int:
+) -> None:
     from separatrix.library import add_records
 
     if not to:
         cure = "For instance: --to materials.toml."
         raise InputError("--to", "is missing: the library file to add to", cure=cure)
-    added = add_records(file, Path(to))
-    return _deliver(_head("add") | _summary(added) | {"library": to}, "added", as_json=json)
+    _summary("add", add_records(file, Path(to)), to, as_json=json)
 
 
-def _head(verb: str) -> dict[str, Any]:
+def _deliver(verb: str, document: dict[str, Any], text: str | None) -> None:
     from separatrix import __version__
 
-    return {"separatrix_version": __version__, "verb": f"materials {verb}"}
+    if text is None:
+        document = {"separatrix_version": __version__, "verb": f"materials {verb}", **document}
+        text = plain_json.dumps(document, indent=1, allow_nan=False) + "\n"
+    answer(text)
 
 
-def _deliver(document: dict[str, Any], report: str, *, as_json: bool) -> int:
-    """Answer with the document, or with the text of it that `text.materials` makes under this name."""
-    if as_json:
-        answer(plain_json.dumps(document, indent=1, allow_nan=False) + "\n")
-        return ANSWERED
-    from separatrix.present.text import materials
+def _summary(verb: str, content: Content, library: str | None, *, as_json: bool) -> None:
+    """Answer with what a library file holds: its records, and how many of their numbers are guesses."""
+    from dataclasses import asdict
 
-    answer(getattr(materials, report)(document))
-    return ANSWERED
+    from separatrix.present.text.materials import added, checked, counts
+
+    records = [counts(record) for record in content.records]
+    document = {**content.file.plain(), "records": [asdict(one) for one in records]}
+    if library is not None:
+        document["library"] = library
+    text = checked(content.file, records) if library is None else added(library, records)
+    _deliver(verb, document, None if as_json else text)
 
 
 def _library(named: list[str] | None) -> Library:
@@ -135,21 +138,18 @@ def _library(named: list[str] | None) -> Library:
     return with_files(paths)
 
 
-def _kinds() -> list[str]:
+def _kinds(kind: str | None) -> tuple[str, ...]:
     from separatrix.library import KINDS
-
-    return list(KINDS)
-
-
-def _known_kind(kind: str) -> str:
     from separatrix.toml_values import nearest
     from separatrix.units import shown
 
+    if kind is None:
+        return KINDS
     spelled = kind.strip().casefold().replace("_", " ")
-    for known in _kinds():
-        if spelled in (known, f"{known}s"):
-            return known
-    raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, _kinds()))
+    found = tuple(known for known in KINDS if spelled in (known, f"{known}s"))
+    if not found:
+        raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, KINDS))
+    return found
 
 
 def _found(library: Library, name: str, kind: str | None) -> list[Record | FrictionTable]:
@@ -157,16 +157,15 @@ def _found(library: Library, name: str, kind: str | None) -> list[Record | Frict
     from separatrix.toml_values import nearest
     from separatrix.units import shown
 
-    kinds = _kinds() if kind is None else [_known_kind(kind)]
+    kinds = _kinds(kind)
     found = [records[name] for records in map(library.records, kinds) if name in records]
     fluid = library.fluid(name) if "fluid" in kinds and not found else None
     if fluid is not None:
         return [fluid]
     if not found:
+        rule = f"is not a {kind or 'record'} of the library"
         names = [known for each in kinds for known in library.names(each)]
-        raise InputError(
-            "NAME", f"is not a {kind or 'record'} of the library", shown(name), nearest(name, names)
-        )
+        raise InputError("NAME", rule, shown(name), nearest(name, names))
     return found
 
 
@@ -180,44 +179,27 @@ def _quantity(text: str, unit: str, option: str, low: float, high: float) -> flo
     return value
 
 
-def _whole(
-    record: Record | FrictionTable, temperature: float | None, pressure: float | None
-) -> dict[str, Any]:
-    """The record as plain data; at a temperature with what serves there, or with the state of a fluid."""
+def _shown(record: Record | FrictionTable, temperature: float | None, pressure: float | None) -> Shown:
+    """The record; at a temperature with what serves there, or with the state of a fluid."""
     from separatrix.library import Record, as_material
     from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state, other_phase
+    from separatrix.present.text.materials import Shown
 
-    whole = record.plain()
     if temperature is None or not isinstance(record, Record):
-        return whole
+        return Shown(record=record)
     if record.kind != "fluid":
         material = as_material(record, temperature)
-        taken = {} if material.record is None else dict(material.record["taken"])
-        return whole | {"taken": taken, "taken_at": temperature, "cautions": list(material.cautions)}
+        taken = (material.record or {}).get("taken", {})
+        return Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
     state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
-    cautions = [*contradictions(whole, temperature), *other_phase(record, state)]
-    return whole | {"state": state.plain(), "cautions": cautions}
+    cautions = [*contradictions(record.plain(), temperature), *other_phase(record, state)]
+    return Shown(record=record, state=state, cautions=cautions)
 
 
-def _summary(content: Content) -> dict[str, Any]:
-    """What a library file holds: its records, and how many of their numbers are guesses."""
-    return {**content.file.plain(), "records": [_counts(record) for record in content.records]}
-
-
-def _counts(record: Record | FrictionTable) -> dict[str, Any]:
-    from separatrix.library import Record
-
-    data = [d for several in record.data.values() for d in several] if isinstance(record, Record) else []
-    return {
-        "kind": record.kind,
-        "name": record.name,
-        "line": record.line,
-        "replaces": record.replaces,
-        "numbers": len(data) if isinstance(record, Record) else _measured(record),
-        "guesses": sum(d.confidence.startswith("guess") for d in data),
-        "without_temperature": sum(d.temperature is None for d in data),
-    }
-
-
-def _measured(table: FrictionTable) -> int:
-    return sum(value is not None for row in table.friction.values() for value in row.values())
+def _plain(one: Shown) -> dict[str, Any]:
+    whole = one.record.plain()
+    if one.state is not None:
+        return whole | {"state": one.state.plain(), "cautions": list(one.cautions)}
+    if one.taken_at is not None:
+        return whole | {"taken": dict(one.taken), "taken_at": one.taken_at, "cautions": list(one.cautions)}
+    return whole

@@ -43,13 +43,6 @@ class TribometerOptions:
 def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
     """Read and reduce logs, show what was read, write the files; return the exit status.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        The logs, each of one or several tests.
-    options : TribometerOptions
-        Where the answer goes.
-
     Raises
     ------
     InputError
@@ -62,10 +55,9 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
     if options.run_in is not None:
         place(options.run_in, "--run-in")
     with contextlib.ExitStack() as folders:
-        if options.out is not None:
-            folders.enter_context(writable_folder(options.out.parent))
-        if options.plots_folder is not None:
-            folders.enter_context(writable_folder(options.plots_folder))
+        for folder in (options.out and options.out.parent, options.plots_folder):
+            if folder is not None:
+                folders.enter_context(writable_folder(folder))
         from separatrix.friction.tribometer import tribometer as reduced  # before the work is timed
 
         with progress_bar("tribometer", quiet=options.quiet) as progress:
@@ -83,7 +75,8 @@ def tribometer(paths: Sequence[Path], options: TribometerOptions) -> int:
 
 
 def _refuse_out(out: Path) -> None:
-    """Refuse a friction file that has another name, or that exists."""
+    from separatrix.friction.file import exists_already
+
     try:
         folder, exists = out.is_dir(), out.exists() or out.is_symlink()
     except OSError as error:
@@ -93,19 +86,16 @@ def _refuse_out(out: Path) -> None:
         cure = 'Name a file like "friction.toml".'
         raise InputError("--out", f"must name a file that ends in {SUFFIX}", shown(str(out)), cure)
     if exists:
-        from separatrix.friction.file import exists_already
-
         raise exists_already(out)
 
 
 def _deliver(found: ReducedLogs, options: TribometerOptions) -> None:
-    """Write the files, then the answer."""
     from separatrix.friction.file import exists_already, friction_text
     from separatrix.present.text.tribometer import tribometer as in_words
     from separatrix.present.tribometer import tribometer as document
 
     out, plots = options.out, options.plots_folder
-    answered = document(found, written=None if out is None else str(out))
+    written = None if out is None else str(out)
     if plots is not None:
         _draw(found, options, plots)
     if out is not None and found.friction_tests is not None:
@@ -114,9 +104,9 @@ def _deliver(found: ReducedLogs, options: TribometerOptions) -> None:
             if out.exists():  # since the first check
                 raise exists_already(out)
     if options.json:
-        answer(json.dumps(answered, indent=1, allow_nan=False) + "\n")
+        answer(json.dumps(document(found, written=written), indent=1, allow_nan=False) + "\n")
     else:
-        answer(in_words(answered, plots=None if plots is None else str(plots)))
+        answer(in_words(found, written=written, plots=None if plots is None else str(plots)))
 
 
 def _draw(found: ReducedLogs, options: TribometerOptions, folder: Path) -> None:

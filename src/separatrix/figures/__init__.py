@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
-from separatrix.figures import (
-    bearing,
-    map,
-    ranking,
-    restitution,
-    sensitivity,
-    simulation,
-    stability,
-    traction,
-)
+from separatrix.figures import chain, map, ranking, sensitivity, simulation, stability
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
-__all__ = ["draw", "plot", "save"]
+__all__ = ["draw", "plot", "save", "save_all"]
 
 FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
-    "bearing": bearing.figures,
-    "traction": traction.figures,
-    "restitution": restitution.figures,
+    "bearing": chain.bearing,
+    "traction": chain.traction,
+    "restitution": chain.restitution,
     "stability": stability.figures,
     "map": map.figures,
     "simulate": simulation.figures,
@@ -53,11 +45,6 @@ def draw(
         From `present.dataset` or `present.load`; only `compare` takes a second one.
     names : tuple of str
         What `compare` writes above the two columns; by default the titles of the studies.
-
-    Raises
-    ------
-    InputError
-        `compare` lacks its second simulation, or another verb has one.
     """
     if (verb == "compare") != (other is not None):
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
@@ -72,14 +59,15 @@ def draw(
                 yield name, settled(headed(figure, data))
 
 
-def plot(verb: str, data: xr.Dataset, name: str | None = None) -> Figure:
-    """Return the first picture of an answer, or the one whose file has this name.
+def save_all(pictures: Iterable[tuple[str, Figure]], folder: Path) -> None:
+    """Write pictures with their names into a folder, each as PNG and SVG."""
+    for name, figure in pictures:
+        for suffix in (".png", ".svg"):
+            save(figure, folder / f"{name}{suffix}")
 
-    Raises
-    ------
-    InputError
-        The answer has no such picture.
-    """
+
+def plot(verb: str, data: xr.Dataset, name: str | None = None) -> Figure:
+    """Return the first picture of an answer, or the one whose file has this name."""
     for found, figure in draw(verb, data):
         if name is None or found == name:
             return figure

@@ -23,10 +23,8 @@ from separatrix.errors import InputError
 from separatrix.figures.motion import (
     AROUND,
     fastest_whirl,
-    half_plays,
     land_boundary,
     orbit_reach,
-    pocket_angles,
     pocket_boundary,
     ring,
     smooth_path,
@@ -83,11 +81,6 @@ def animate(
         Whether the picture is fixed in space; else it turns with the ball set.
     progress : callable, optional
         Called with (done, total) frames.
-
-    Raises
-    ------
-    InputError
-        The kind is unknown, or what writes it is not installed.
     """
     kind = path.suffix[1:].lower() if kind is None else kind
     if kind not in KINDS:
@@ -109,13 +102,7 @@ def animate(
 
 
 def video_encoder() -> ModuleType:
-    """Return the package that brings a video encoder along.
-
-    Raises
-    ------
-    InputError
-        It is not installed.
-    """
+    """Return the package that brings a video encoder along; refused where it is not installed."""
     try:
         import imageio_ffmpeg
     except ImportError as error:
@@ -137,7 +124,6 @@ def _beside(path: Path) -> Iterator[Path]:
 
 
 def _write_gif(film: Iterator[Image.Image], part: Path) -> None:
-    """Write the frames as a GIF that repeats, all in the same colours."""
     colours = palette()
     images = (image.quantize(palette=colours, dither=Image.Dither.NONE) for image in film)
     how: Look = {"save_all": True, "duration": 1000 // A_SECOND, "loop": 0}
@@ -156,7 +142,6 @@ def palette() -> Image.Image:
 
 
 def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> None:
-    """Write the frames as H.264 video."""
     first = next(film)
     try:
         pipe = encoder.write_frames(str(part), first.size, fps=A_SECOND, quality=7, macro_block_size=2)
@@ -230,7 +215,6 @@ def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Imag
 
 
 def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> None:
-    """Write what the picture shows, and on which scales."""
     pocket, land = (format_number(float(np.abs(one).max()), 3) for one in (at.force, at.land_force))
     arrow: Look = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
     named = [(Line2D([], [], color=VERMILION, **arrow), f"force of a pocket on the cage, up to {pocket} N")]
@@ -259,7 +243,6 @@ def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
 
 
 def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
-    """Draw the energy against time, with a dot at the frame's."""
     draw_energy(axes, data)
     parts = shown_parts(data, moments)
     for first, last in parts if len(parts) > 1 else ():
@@ -283,7 +266,7 @@ def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
     (outline,) = axes.plot([], [], color=BLACK, lw=0.6)
     (tail,) = axes.plot([], [], color=BLUE, lw=0.8)
     (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.5)
-    pockets = pocket_boundary(pocket_angles(data), half_plays(data))
+    pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
     pockets = np.where(np.isfinite(pockets), pockets, np.nan)
     samples = [np.asarray(data[name].values) for name in ("time", "position", "velocity")]
 
@@ -299,7 +282,6 @@ def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
 
 
 def _cage(axes: Axes, at: Scene) -> Part:
-    """Draw what moves in the plan of the bearing: cage, balls and forces."""
     axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
     axes.set_axis_off()
     count = at.angles.size

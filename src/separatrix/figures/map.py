@@ -116,13 +116,12 @@ def stability_map(data: xr.Dataset) -> Figure:
             axes.contour(*values, share, levels=[HALF], colors=[colour], linewidths=[width])
         axes.plot([], [], color=VERMILION, lw=1.6, label="half of the runs whirl")
     names = parameter(data, "x"), parameter(data, "y")
-    if set(names) == set(NAMES) and "cage_ball_count" in data:
+    if set(names) == set(NAMES):
         swapped = names[0] == "ball_cage_friction"
         draw_linear_limit(axes, int(data["cage_ball_count"]), swapped=swapped, halo=True)
     _mark_study(axes, data)
-    kick = f"{float(data['kick']):g} m/s" if "kick" in data else "of the study"
-    kick = "as on the axis" if "kick" in names else kick
-    runs = f", at most {int(data['stopping_most_runs'])} runs a point" if "stopping_most_runs" in data else ""
+    kick = "as on the axis" if "kick" in names else f"{float(data['kick']):g} m/s"
+    runs = f", at most {int(data['stopping_most_runs'])} runs a point"
     axes.set_title(f"Share of the runs that whirl, kick {kick}{runs}")
     colour_bar(mesh, [axes], "share of the runs that whirl [-]", pad=0.02, aspect=30)
     legend_below(figure, [axes])
@@ -130,7 +129,6 @@ def stability_map(data: xr.Dataset) -> Figure:
 
 
 def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
-    """Hatch cells."""
     x, y = edges
     corners = [
         [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]
@@ -141,8 +139,7 @@ def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
 
 
 def _mark_study(axes: Axes, data: xr.Dataset) -> None:
-    """Mark the study's own point, if it has one in the map."""
-    found = [float(data.get(f"{name}_here", np.nan)) / shown_unit(data, name)[0] for name in "xy"]
+    found = [float(data[f"{name}_here"]) / shown_unit(data, name)[0] for name in "xy"]
     limits = axes.get_xlim(), axes.get_ylim()
     if all(low <= value <= high for value, (low, high) in zip(found, limits, strict=True)):
         look: Look = {"mfc": "white", "mec": BLACK, "mew": 1.0, "ls": ""}
@@ -151,8 +148,7 @@ def _mark_study(axes: Axes, data: xr.Dataset) -> None:
 
 def parameter(data: xr.Dataset, name: str) -> str:
     """Return the name of the parameter along x or y."""
-    key = f"{name}_parameter"
-    return str(data[key].values) if key in data else str(data.attrs.get(key, name))
+    return str(data[f"{name}_parameter"].values)
 
 
 def shown_unit(data: xr.Dataset, name: str) -> tuple[float, str]:

@@ -41,21 +41,6 @@ def ring(radius: Array | float, angle: Array) -> Array:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
 
 
-def pocket_angles(data: xr.Dataset) -> Array:
-    """Return the angle of each pocket in the frame of the ball set [rad]; even unless the data differ."""
-    if "pocket_angle" in data:
-        return np.asarray(data["pocket_angle"].values, dtype=float)
-    count = data.sizes["ball"]
-    return 2 * np.pi * np.arange(count) / count
-
-
-def half_plays(data: xr.Dataset) -> Array:
-    """Return half the play of each ball in its pocket [m]."""
-    if "half_play" in data:
-        return np.asarray(data["half_play"].values, dtype=float)
-    return np.full(data.sizes["ball"], 0.5 * float(data["cage_pocket_clearance"]))
-
-
 def pocket_boundary(angles: Array, plays: Array) -> Array:
     """Return how far the centre may go in each direction until a pocket touches its ball [m].
 
@@ -69,11 +54,10 @@ def pocket_boundary(angles: Array, plays: Array) -> Array:
 
 def land_boundary(data: xr.Dataset) -> Array | None:
     """Return how far the centre may go in each direction until the land touches [m]; None without one."""
-    clearance = float(data.get("cage_land_clearance", np.nan))
-    guidance = str(data["cage_guidance"].values) if "cage_guidance" in data else "ball"
+    clearance, guidance = float(data["cage_land_clearance"]), str(data["cage_guidance"].values)
     if guidance == "ball" or not np.isfinite(clearance):
         return None
-    wave, lobes = float(data.get("cage_land_out_of_round", 0.0)), int(data.get("cage_land_lobes", 2))
+    wave, lobes = float(data["cage_land_out_of_round"]), int(data["cage_land_lobes"])
     sign = (-1) ** lobes if guidance == "inner" else 1
     return 0.5 * clearance - wave * sign * np.cos(lobes * AROUND)
 
@@ -102,7 +86,7 @@ def last_turns(path: Array) -> int:
 
 def largest_play(data: xr.Dataset) -> float | None:
     """Return half the largest play of the pockets [m]; None if the centre stays far within."""
-    play, land = float(half_plays(data).max()), land_boundary(data)
+    play, land = float(data["half_play"].max()), land_boundary(data)
     far = float(np.hypot(*data["position"].values.T).max())
     return play if land is None or play <= BEYOND * max(far, float(land.max())) else None
 
@@ -124,7 +108,9 @@ def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
     first, land = last_turns(path), land_boundary(data)
     if first:
         axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
-    pockets = pocket_boundary(pocket_angles(data), half_plays(data)) if largest_play(data) else None
+    pockets = (
+        pocket_boundary(data["pocket_angle"].values, data["half_play"].values) if largest_play(data) else None
+    )
     for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance")):
         if radius is not None and radius.max() > 0.0:
             axes.plot(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from separatrix.figures.motion import half_plays, pocket_angles, ring
+from separatrix.figures.motion import ring
 from separatrix.figures.style import study_of
 from separatrix.units import Array
 
@@ -114,7 +114,7 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     the pockets and the cage in the picture, on two digits; at least 1.
     """
     data = data.isel(time=moments)
-    radius, play = float(data["cage_pitch_radius"]), half_plays(data)
+    radius, play = float(data["cage_pitch_radius"]), data["half_play"].values
     pitch = 2 * np.pi * radius / max(3, data.sizes["ball"])
     diameter = study_of(data).get("bearing", {}).get("ball_diameter", {}).get("value")
     ball = 0.5 * float(0.75 * pitch if diameter is None else diameter)
@@ -125,13 +125,13 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     guidance, clearance = str(data["cage_guidance"].values), float(data["cage_land_clearance"])
     guided, turn = guidance != "ball" and np.isfinite(clearance), turned_by(data)
     side, half_width = -1 if guidance == "inner" else 1, 2 * RAIL * ball
-    wave = enlarged * float(data.get("cage_land_out_of_round", 0.0)) if guided else 0.0
-    waved = wave * np.cos(int(data.get("cage_land_lobes", 2)) * ROUND)
+    wave = enlarged * float(data["cage_land_out_of_round"]) if guided else 0.0
+    waved = wave * np.cos(int(data["cage_land_lobes"]) * ROUND)
     inner, outer = (radius + s * (half_width + (waved if s == side else 0.0)) for s in (-1, 1))
     return Scene(
         radius=radius,
         ball=ball,
-        angles=pocket_angles(data),
+        angles=data["pocket_angle"].values,
         walls=np.arcsin(np.clip((ball + enlarged * play) / radius, 0.0, 1.0)),
         offset=enlarged * data["position"].values,
         turn=enlarged * data["rotation"].values,
@@ -150,7 +150,7 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
 def turned_by(data: xr.Dataset) -> Array:
     """Return the angle by which the ball set has turned at each sample [rad], with its start-up ramp."""
     time, speed = np.asarray(data["time"].values, dtype=float), float(data["cage_cage_speed"])
-    ramp, start = float(data.get("cage_ramp_time", 0.0)), float(data.get("cage_ramp_start", 0.1))
+    ramp, start = float(data["cage_ramp_time"]), float(data["cage_ramp_start"])
     if not ramp > 0.0:
         return np.asarray(speed * time)
     within = np.minimum(time, ramp)

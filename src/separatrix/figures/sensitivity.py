@@ -52,7 +52,6 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def _floats(data: xr.Dataset, name: str, *dims: str) -> Array:
-    """Return numbers with NaN where they are absent; the dimensions in this order if given."""
     return np.asarray(data[name].transpose(*dims).values, dtype=float)
 
 
@@ -63,7 +62,6 @@ def _chance(data: xr.Dataset, of: str, *dims: str) -> tuple[Array, Array]:
 
 
 def _title(axes: Axes, title: str, text: str = "") -> None:
-    """Write a title, and below it a text in grey, all above the axes."""
     rows = [row for line in text.splitlines() for row in textwrap.wrap(line, 85)]
     axes.set_title(title[:1].upper() + title[1:], pad=6 + 9 * len(rows))
     axes.annotate("\n".join(rows), (0, 1), xytext=(0, 5), **BESIDE)

@@ -72,7 +72,7 @@ def run(data: xr.Dataset) -> Figure:
     energy.set_title("b  Energy; shaded: the judged part")
     _offset(offset, data)
     _work(work, data)
-    if "judged_from" in data and float(data["judged_until"]) > float(data["judged_from"]):
+    if float(data["judged_until"]) > float(data["judged_from"]):
         for axes in (energy, offset, work):
             ends = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
             axes.axvspan(*ends, color=GREY, alpha=0.2, lw=0, zorder=0)
@@ -289,7 +289,6 @@ def contact_counts(force: Array) -> Array:
 
 
 def _contacts(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the share of each pocket in the contacts of all."""
     counts = contact_counts(data["contact_force"].values)
     total = counts.sum()
     forward, backward = 100 * counts / (total or 1.0)

@@ -126,8 +126,7 @@ def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     axes.fill_between(eta, *scatter, color=BLUE, alpha=0.35, lw=0, label="its 95 % interval")
     if has_band(data):
         _band(axes, data, top)
-    if "cage_ball_count" in data:
-        draw_linear_limit(axes, int(data["cage_ball_count"]))
+    draw_linear_limit(axes, int(data["cage_ball_count"]))
     hard = data.get("hard_limit_critical_friction")
     if hard is not None and np.isfinite(hard.values.astype(float)).any():
         label = "hard-impact limit: walls, no land, balls at rest"
@@ -152,7 +151,7 @@ def _band(axes: Axes, data: xr.Dataset, top: float) -> None:
     several = kicks.size > 1
     label = "sub-critical band: the kick decides ({})" if several else "scatter of the runs, kick {}"
     axes.fill_between(eta, low, high, color=BLUE, alpha=0.15, lw=0, label=label.format(kicks_text(data)))
-    few, most = float(data.get("band_few", 0.1)), float(data.get("band_most", 0.9))
+    few, most = float(data["band_few"]), float(data["band_most"])
     every = "every kick" if several else "that kick"
     above = rf"$f_{{high}}$: above it {100 * most:.0f} % or more whirl from {every}"
     below = rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more settle from {every}"
@@ -189,7 +188,7 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
         return data[name].transpose("environment", "material").values.astype(float)
 
     friction, own = table("material_friction"), table("material_restitution_factor")
-    error = np.nan_to_num(table("material_friction_error") if "material_friction_error" in data else 0 * own)
+    error = np.nan_to_num(table("material_friction_error"))
     order = np.argsort(_measured_mean(friction), kind="stable")
     data, friction, own, error = data.isel(material=order), friction[:, order], own[:, order], error[:, order]
     count, top = order.size, axes.get_ylim()[1]

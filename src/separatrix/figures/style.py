@@ -111,13 +111,7 @@ def settled(figure: Figure) -> Figure:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format of the ending; the same data give the same bytes.
-
-    Raises
-    ------
-    InputError
-        The ending is not one of `NOTHING`.
-    """
+    """Write the figure in the format of the ending, one of `NOTHING`; the same data give the same bytes."""
     if path.suffix not in NOTHING:
         raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
     with journal():
@@ -154,16 +148,9 @@ def label_lines(
 ) -> None:
     """Write labels at the right ends of lines, moved apart where they would overlap.
 
-    Parameters
-    ----------
-    axes : Axes
-        Its limits and scales must be final.
-    labels : sequence of (x, y, text, colour)
-        Ends of the lines, in data.
-    gap : float
-        Least distance of two labels, as a share of the height.
-    colour : str or None
-        Of the text; the line's own if None. A label that had to move is tied to its line.
+    Labels are (x, y, text, colour) at the ends of the lines, in data; limits and scales must be final. `gap`
+    is the least distance of two, as a share of the height; `colour` that of the text, by default the line's.
+    A label that had to move is tied to its line.
     """
     share = axes.transData - axes.transAxes
     wanted = [float(share.transform((x, y))[1]) for x, y, _, _ in labels]
@@ -246,7 +233,7 @@ def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     """
     study = study_of(data)
     seed = f"seed {int(data.attrs['seed'])}" if "seed" in data.attrs else ""
-    around, run = list(_operating_point(study, varied(data))), ""
+    around, run = list(_operating_point(data, study)), ""
     if "outcome" in data:
         run = _run(data, study, seed)
     elif data.attrs.get("verb") in RANDOM and seed:
@@ -255,51 +242,37 @@ def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     return [line for part in parts for line in cut(part, width)]
 
 
-def quantity(value: float, unit: str) -> str:
-    """Return a number with the unit that an engineer would write it in."""
-    return format_quantity(value, unit).replace(" um", " \N{MICRO SIGN}m")
-
-
 def cut(text: str, width: int) -> list[str]:
     """Return a text on at most two lines."""
     return textwrap.wrap(text, width, max_lines=2, placeholder=" ...")
 
 
-def varied(data: xr.Dataset) -> set[str]:
-    """Return the last words of the keys that a map or a sweep varies: the study's own values are not used."""
+def _operating_point(data: xr.Dataset, study: Mapping[str, Any]) -> Iterator[str]:
+    """Yield medium, speed and load, and film, as far as the study gives them and no axis varies them."""
     axes = [str(data[key].values) for key in ("x_parameter", "y_parameter") if key in data]
     cases = data["parameter"].values if "parameter" in data else ()
-    return {str(name).rpartition(".")[2] for name in (*axes, *cases)}
+    without = {str(name).rpartition(".")[2] for name in (*axes, *cases)}
 
+    def known(section: str, key: str, unit: str = "") -> str:
+        value = None if key in without else study.get(section, {}).get(key, {}).get("value")
+        if unit and value:
+            return format_quantity(value, unit).replace(" um", " \N{MICRO SIGN}m")
+        return str(value or "")
 
-def _operating_point(study: Mapping[str, Any], without: set[str]) -> Iterator[str]:
-    """Yield medium, speed and load, and film, as far as the study gives them and nothing varies them."""
-
-    def known(section: str, key: str) -> Any:
-        return None if key in without else study.get(section, {}).get(key, {}).get("value")
-
-    fluid, temperature = known("operation", "fluid"), known("operation", "temperature")
-    medium = [str(fluid)] if fluid else []
-    medium += [quantity(temperature, "K")] if temperature else []
-    if medium:
-        yield ", ".join(medium)
-    for key, words in (("inner_speed", "inner ring"), ("outer_speed", "outer ring")):
-        if known("operation", key):
-            yield f"{words} {quantity(known('operation', key), 'rad/s')}"
-    for key, words in (("axial_load", "axial"), ("radial_load", "radial")):
-        if known("operation", key):
-            yield f"{quantity(known('operation', key), 'N')} {words}"
+    medium = known("operation", "fluid"), known("operation", "temperature", "K")
+    inner, outer = (known("operation", f"{race}_speed", "rad/s") for race in ("inner", "outer"))
+    loads = ((known("operation", f"{words}_load", "N"), words) for words in ("axial", "radial"))
+    yield from filter(None, [", ".join(filter(None, medium))])
+    yield from (f"{race} ring {speed}" for race, speed in (("inner", inner), ("outer", outer)) if speed)
+    yield from (f"{load} {words}" for load, words in loads if load)
     film = study.get("film", {})
     if not film.get("is_bare", not film):
-        thickness = known("film", "thickness")
-        of = "" if thickness is None else f", {quantity(thickness, 'm')}"
-        yield f"{_material(film)}{of}"
+        yield ", ".join(filter(None, [_material(film), known("film", "thickness", "m")]))
     elif film:
         yield "bare races"
 
 
 def _material(section: Mapping[str, Any]) -> str:
-    """Return the name of the material of a section; empty without one."""
     record = section.get("material") or {}
     return str(record.get("name") or record.get("value") or "")
 

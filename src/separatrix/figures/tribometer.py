@@ -72,7 +72,6 @@ def page(data: xr.Dataset) -> Figure:
 
 
 def _page(data: xr.Dataset) -> Figure:
-    """Return the page, not laid out yet."""
     beside = [name for name in BESIDE if f"trace_{name}" in data][:3]
     lines = heading(data)
     height = 2.4 + ROWS + (0.8 * ROWS if beside else 0.0)
@@ -181,7 +180,6 @@ def _trace(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _limits(data: xr.Dataset) -> tuple[float, float]:
-    """Return the limits of friction: all rows, from zero if that is near."""
     low, high = float(data["trace_low"].min()), float(data["trace_high"].max())
     low = min(low, 0.0) if low < 0.5 * high else low
     room = 0.05 * (high - low) or 0.05 * abs(high) or 1.0
@@ -189,7 +187,6 @@ def _limits(data: xr.Dataset) -> tuple[float, float]:
 
 
 def _distribution(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the shares of rows, and of cycles, over friction."""
     edges = np.asarray(data["edge"].values)
     axes.stairs(100 * data["row_share"].values, edges, fill=True, color=SKY, alpha=0.6, label="rows")
     if "cycle_share" in data:
@@ -245,7 +242,6 @@ def _spectrum(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _beside(axes: Axes, data: xr.Dataset, name: str, letter: str) -> None:
-    """Draw what else was logged."""
     size, label = scale(data)
     words, factor = BESIDE[name]
     axes.plot(data["trace"] / size, factor * data[f"trace_{name}"], color=BLUE, lw=0.8)

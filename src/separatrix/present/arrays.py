@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 RACES = ("inner", "outer")
-
-RENAMED = {"restitution_factor": "chain_restitution_factor"}
-"""Single numbers that have the name of a dimension."""
-
 Columns = dict[str, Leaf]
 """Variables by name; every leaf has its axes."""
 
@@ -36,11 +32,6 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
 
     A missing number is the netCDF missing value, a missing text is empty; its reason is in the variable
     `reason` beside it.
-
-    Parameters
-    ----------
-    verb, answer, study, notes
-        As for `document`.
     """
     from separatrix import __version__
     from separatrix.study_file import resolved
@@ -62,11 +53,11 @@ def to_xarray(answer: object) -> xr.Dataset:
     """Return the labelled arrays of an answer, with their units, without the study behind it."""
     node = arranged(answer)
     complete = {"complete": json.dumps(plain(node.pop("complete")))} if "complete" in node else {}
-    for name, other in RENAMED.items():
-        if isinstance(item := node.get(name), Leaf) and item.axes is None:
-            node[other] = node.pop(name)
+    eta = node.get("restitution_factor")
+    if isinstance(eta, Leaf) and eta.axes is None:  # a single number with the name of a dimension
+        node["chain_restitution_factor"] = node.pop("restitution_factor")
     with null_if_not_finite():
-        variables = {name: _variable(leaf) for name, leaf in _flat(node).items()}
+        variables = {name: variable(leaf) for name, leaf in _flat(node).items()}
     return xr.Dataset(variables, attrs=complete)
 
 
@@ -112,13 +103,7 @@ def save(data: xr.Dataset, path: Path) -> None:
 
 
 def load(path: Path | str) -> xr.Dataset:
-    """Return a saved dataset, in memory.
-
-    Raises
-    ------
-    InputError
-        There is no such file, or it is not one of ours: see `container`.
-    """
+    """Return a saved dataset, in memory; a file that is not one of ours is refused: see `container`."""
     path = Path(path)
     check_container(path)
     try:
@@ -189,11 +174,8 @@ def _stacked(table: Table) -> Columns:
     return columns
 
 
-def _blank(like: object) -> object:
-    return [_blank(one) for one in like] if isinstance(like, list) else None
-
-
-def _variable(leaf: Leaf) -> xr.Variable:
+def variable(leaf: Leaf) -> xr.Variable:
+    """Return a leaf with its axes as a variable with its unit."""
     attributes = {"units": leaf.unit, "long_name": leaf.long_name}
     attrs = {name: value for name, value in attributes.items() if value}
     return xr.Variable(leaf.axes or (), _array(leaf.value, is_text=leaf.unit is None), attrs=attrs)
@@ -227,3 +209,7 @@ def _filled(values: object, missing: object) -> object:
     if isinstance(values, list):
         return [_filled(value, missing) for value in values]
     return missing if values is None else values
+
+
+def _blank(like: object) -> object:
+    return [_blank(one) for one in like] if isinstance(like, list) else None

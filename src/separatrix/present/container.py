@@ -44,11 +44,8 @@ _SAVE_AGAIN = "Only files that separatrix wrote are read; compute this one again
 def check_container(path: Path) -> None:
     """Refuse a file of results that is no plain one.
 
-    Raises
-    ------
-    InputError
-        It is not HDF5, is larger than `MOST_BYTES`, has links, groups, external, virtual or compressed data,
-        data of a type that no result has, or more data than bytes.
+    It is not HDF5, is larger than `MOST_BYTES`, has links, groups, external, virtual or compressed data, data
+    of a type that no result has, or more data than bytes.
     """
     where = str(path)
     size = size_of(path, where)

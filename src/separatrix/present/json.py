@@ -35,16 +35,8 @@ class NotFiniteError(SeparatrixError, ArithmeticError):
 def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> Document:
     """Return an answer as plain data: SI units, no NaN, None where something is absent.
 
-    Parameters
-    ----------
-    verb : str
-        The question.
-    answer : record
-        What was computed for it.
-    study : Study
-        What was asked; its resolved inputs go into the answer with their sources.
-    notes : sequence of str
-        Warnings about validity; those in the answer are added.
+    The resolved inputs of the study go into it with their sources; the notes and those of the answer are its
+    warnings.
     """
     from separatrix import __version__
     from separatrix.present.shapes import all_notes, shape
@@ -83,21 +75,12 @@ def null_if_not_finite() -> Iterator[list[str]]:
 
 
 def plain(value: object, path: str = "result") -> Any:
-    """Return a record, a node or a container of them as what JSON can hold.
-
-    Parameters
-    ----------
-    value : object
-        A record, array, number, text, enumeration, None, or a container of them.
-    path : str
-        Its place in the answer, for the message.
+    """Return a record, a node or a container of them as what JSON can hold; `path` is its place in messages.
 
     Raises
     ------
     NotFiniteError
         A number is NaN or infinite, and that is not inside `document`.
-    TypeError
-        Something that has no plain form.
     """
     if isinstance(value, Leaf):
         return plain(value.value, path)

@@ -45,17 +45,13 @@ Record = TypeVar("Record")
 def _(found: Equilibrium) -> Node:
     """A row for each ball."""
     node = fields_of(found)
-    balls = {name: node.pop(name) for name, item in [*node.items()] if _is_of_balls(item)}
     rows: list[Node] = [{"ball": Leaf(ball)} for ball in range(found.azimuth.size)]
-    for name, item in balls.items():
-        if isinstance(item, Leaf) and isinstance(item.value, np.ndarray | tuple):
-            for row, value in zip(rows, item.value, strict=True):
-                row[name] = Leaf(value, item.unit, item.axes[1:] if item.axes else None)
+    for name, item in [*node.items()]:
+        if isinstance(item, Leaf) and item.axes and item.axes[0] == "ball":
+            del node[name]
+            for row, value in zip(rows, np.asarray(item.value), strict=True):
+                row[name] = Leaf(value, item.unit, item.axes[1:])
     return {"balls": Table(rows, Rows("ball", label="ball")), "most_loaded": Leaf(found.most_loaded), **node}
-
-
-def _is_of_balls(item: object) -> bool:
-    return isinstance(item, Leaf) and item.axes is not None and item.axes[0] == "ball"
 
 
 @shape.register
@@ -333,7 +329,6 @@ def _drivers(record: UncertainStudy, places: Sequence[str], materials: Sequence[
 
 
 def _smooth(record: UncertainStudy) -> Node:
-    """Sobol indices of what the chain computes smoothly."""
     if not record.shares:
         return {}
     names = [one.name for one in record.shares[0].total]

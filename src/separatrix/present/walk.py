@@ -18,6 +18,11 @@ class Leaf(NamedTuple):
     axes: tuple[str, ...] | None = None
     long_name: str = ""
 
+    @property
+    def number(self) -> float | None:
+        """The value, if it is a number."""
+        return self.value if isinstance(self.value, float) else None
+
 
 class Group(NamedTuple):
     """A record inside a record; `prefix` goes before its names in a dataset, None for its own name."""

@@ -10,9 +10,8 @@ from separatrix.present.text.cage import simulate
 from separatrix.present.text.chain import bearing, restitution, traction
 from separatrix.present.text.ranking import every_environment, only_table, rank
 from separatrix.present.text.sensitivity import sensitivity
-from separatrix.present.text.stability import stability, stability_map
+from separatrix.present.text.stability import stability, stability_map, sweep
 from separatrix.present.text.study import at_their_means, check, every_input
-from separatrix.present.text.sweep import sweep
 from separatrix.present.text.tables import heading, paragraph
 
 if TYPE_CHECKING:

@@ -1,206 +1,212 @@
-"""Text of the library: lists of records, one record whole, what a file holds."""
+"""Text of the library: lists of records, records whole, and what a file holds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass, field
 
-from separatrix.present.text.tables import ABSENT, facts, heading, number, paragraph, quantity, section, table
-from separatrix.units import format_quantity
+from separatrix.library import Datum, FrictionTable, LibraryFile, Record
+from separatrix.library.fluids import FluidState
+from separatrix.present.text.tables import (
+    ABSENT,
+    facts,
+    friction_table,
+    heading,
+    number,
+    paragraph,
+    quantity,
+    section,
+    table,
+)
+from separatrix.units import Kelvin, format_quantity
 
-Entry = Mapping[str, Any]
-NUMBERS = ("elastic_modulus", "poisson_ratio", "density")
+AnyRecord = Record | FrictionTable
+
 WORDS = {
-    "elastic_modulus": "elastic modulus",
     "poisson_ratio": "Poisson's ratio",
-    "density": "density",
-    "viscosity": "viscosity",
-    "heat_capacity": "heat capacity",
     "triple_temperature": "triple point",
     "boiling_temperature": "boiling point",
-    "critical_temperature": "critical temperature",
-    "critical_pressure": "critical pressure",
 }
-_POINTS = ("point", "critical temperature", "critical pressure")
+"""Properties whose key is not their name."""
+
+POINTS = ("point", "critical temperature", "critical pressure")
 """Properties that are no function of temperature."""
 
 
-def listed(document: Entry) -> str:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shown:
+    """A record, and what of it serves at a temperature: a datum of each property, or the state of a fluid."""
+
+    record: AnyRecord
+    taken_at: Kelvin | None = None
+    taken: Mapping[str, int] = field(default_factory=dict)
+    state: FluidState | None = None
+    cautions: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counts:
+    """What a record of a library file holds, and how many of its numbers are guesses."""
+
+    kind: str
+    name: str
+    line: int | None
+    replaces: bool
+    numbers: int
+    guesses: int
+    without_temperature: int
+
+
+def counts(record: AnyRecord) -> Counts:
+    """Count the numbers of a record."""
+    data: list[Datum] = []
+    if isinstance(record, FrictionTable):
+        numbers = sum(value is not None for row in record.friction.values() for value in row.values())
+    else:
+        data = [datum for several in record.data.values() for datum in several]
+        numbers = len(data)
+    return Counts(
+        kind=record.kind,
+        name=record.name,
+        line=record.line,
+        replaces=record.replaces,
+        numbers=numbers,
+        guesses=sum(datum.confidence.startswith("guess") for datum in data),
+        without_temperature=sum(datum.temperature is None for datum in data),
+    )
+
+
+def listed(records: Sequence[AnyRecord]) -> str:
     """Return every record in one table for each kind."""
-    kinds = dict.fromkeys(record["kind"] for record in document["materials"])
     blocks = [heading("Library of materials")]
-    for kind in kinds:
-        records = [record for record in document["materials"] if record["kind"] == kind]
-        blocks.append(section(f"{kind.capitalize()}s", _TABLES.get(kind, _solids)(records)))
+    for kind in dict.fromkeys(record.kind for record in records):
+        headers: tuple[str, ...] = ("", "E", "nu", "density", "at", "confidence in E", "library")
+        if kind == "fluid":
+            headers = ("", "also", "phase", "boils at", "critical", "library")
+        elif kind == "friction table":
+            headers = ("", "materials", "environments", "confidence", "library")
+        rows = [[one.name, *_row(one), one.file.label] for one in records if one.kind == kind]
+        blocks.append(
+            section(f"{kind.capitalize()}s", table(headers, rows, left=3 if kind == "fluid" else 1))
+        )
     several = "Where a record has several data of one property the first is listed; `show NAME` has all."
     return "\n\n".join([*blocks, paragraph(several, indent="")]) + "\n"
 
 
-def _solids(records: Sequence[Entry]) -> str:
-    headers = ("", "E", "nu", "density", "at", "confidence in E", "library")
-    return table(headers, [_solid(record) for record in records])
-
-
-def _solid(record: Entry) -> list[str]:
-    first = {key: record["data"][key][0] for key in NUMBERS if key in record["data"]}
-    modulus = first["elastic_modulus"]
-    data = record["data"]["elastic_modulus"]
-    several = f" (first of {len(data)})" if data[1:] else ""
-    density = first.get("density")
+def _row(record: AnyRecord) -> list[str]:
+    """Return what the list has of a record between its name and its library."""
+    if isinstance(record, FrictionTable):
+        sizes = (str(len(record.friction)), str(len(record.environments)))
+        return [*sizes, record.confidence.partition(";")[0]]
+    first = {key: data[0] for key, data in record.data.items()}
+    if record.kind == "fluid":
+        points = (first.get(f"{key}_temperature") for key in ("boiling", "critical"))
+        also = ", ".join(record.facts.get("aliases") or ()) or ABSENT
+        return [also, record.facts["phase"], *map(_given, points)]
+    modulus, density = first["elastic_modulus"], first.get("density")
+    count = len(record.data["elastic_modulus"])
     return [
-        record["name"],
-        quantity(modulus["value"], "Pa") + several,
-        number(first["poisson_ratio"]["value"], 3),
-        ABSENT if density is None else quantity(density["value"], "kg/m3"),
-        _temperature(modulus),
-        _sure(modulus["confidence"]),
-        record["library"]["file"],
+        _given(modulus) + (f" (first of {count})" if count > 1 else ""),
+        number(first["poisson_ratio"].value),
+        _given(density),
+        ABSENT if modulus.temperature is None else _span(modulus.temperature, "K"),
+        modulus.confidence.partition(";")[0],
     ]
 
 
-def _fluids(records: Sequence[Entry]) -> str:
-    headers = ("", "also", "phase", "boils at", "critical", "library")
-    return table(headers, [_fluid(record) for record in records], left=3)
+def _given(datum: Datum | None) -> str:
+    return ABSENT if datum is None else quantity(datum.value, datum.unit)
 
 
-def _fluid(record: Entry) -> list[str]:
-    points = [record["data"].get(f"{key}_temperature") for key in ("boiling", "critical")]
-    return [
-        record["name"],
-        ", ".join(record["aliases"] or ()) or ABSENT,
-        record["phase"],
-        *(ABSENT if not data else quantity(data[0]["value"], "K") for data in points),
-        record["library"]["file"],
-    ]
-
-
-def _tables(records: Sequence[Entry]) -> str:
-    rows = [
-        [
-            r["name"],
-            str(len(r["friction"])),
-            str(len(r["environments"])),
-            _sure(r["confidence"]),
-            r["library"]["file"],
-        ]
-        for r in records
-    ]
-    return table(("", "materials", "environments", "confidence", "library"), rows)
-
-
-_TABLES = {"fluid": _fluids, "friction table": _tables}
-
-
-def shown(document: Entry) -> str:
+def shown(records: Sequence[Shown]) -> str:
     """Return records whole."""
-    return "\n\n".join(_record(record) for record in document["records"]) + "\n"
+    return "\n\n".join(map(_whole, records)) + "\n"
 
 
-def _record(record: Entry) -> str:
-    blocks = [heading(f"{record['name']} ({record['kind']})"), facts(_about(record))]
-    if record["kind"] == "friction table":
-        blocks.append(section("Friction", _friction(record)))
+def _whole(one: Shown) -> str:
+    record, file = one.record, one.record.file
+    keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
+    known = record.facts if isinstance(record, Record) else {}
+    values = ((key, known.get(key) or getattr(record, key, None)) for key in keys)
+    about = [(key.capitalize(), str(value)) for key, value in values if value]
+    if isinstance(record, FrictionTable):
+        for key, unit in (
+            ("temperature", "K"),
+            ("slip_speed", "m/s"),
+            ("normal_force", "N"),
+            ("pressure", "Pa"),
+        ):
+            if key in record.conditions:
+                about.append((key.replace("_", " ").capitalize(), _span(record.conditions[key], unit)))
+        whole = section("Friction", friction_table(record.environments, record.friction))
     else:
-        blocks.append(section("Data", *_data(record)))
-    if "state" in record:
-        blocks.append(section("State", facts(_state(record["state"]))))
-    blocks += [paragraph(f"Note: {caution}", indent="") for caution in record.get("cautions", ())]
-    return "\n\n".join(blocks)
+        whole = section("Data", *_data(record, one))
+    if known.get("aliases"):
+        about.append(("Also", ", ".join(known["aliases"])))
+    origin = "shipped" if file.shipped else "of the user"
+    about.append(("Library", f"{file.label}, {origin}, sha256 {file.checksum[:12]}..."))
+    blocks = [heading(f"{record.name} ({record.kind})"), facts(about), whole]
+    if one.state is not None:
+        blocks.append(section("State", facts(_state(one.state))))
+    return "\n\n".join([*blocks, *(paragraph(f"Note: {caution}", indent="") for caution in one.cautions)])
 
 
-def _about(record: Entry) -> list[tuple[str, str]]:
-    words = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
-    rows = [(key.capitalize(), str(record[key])) for key in words if record.get(key)]
-    for key, item in record.get("conditions", {}).items():
-        if item["value"] is not None:
-            rows.append((key.replace("_", " ").capitalize(), _span(item["value"], item["unit"])))
-    if record.get("aliases"):
-        rows.append(("Also", ", ".join(record["aliases"])))
-    library = record["library"]
-    origin = "shipped" if library["shipped"] else "of the user"
-    return [*rows, ("Library", f"{library['file']}, {origin}, sha256 {library['sha256'][:12]}...")]
-
-
-def _data(record: Entry) -> list[str]:
+def _data(record: Record, one: Shown) -> list[str]:
+    """Return every datum of a record on lines of its own, those that serve with a mark."""
     lines = []
-    for key, data in record["data"].items():
-        taken = record.get("taken", {}).get(key)
+    for key, data in record.data.items():
+        words = WORDS.get(key, key.replace("_", " "))
         for i, datum in enumerate(data):
-            mark = "*" if i == taken else " "
-            lines.append(paragraph(_datum(WORDS[key], datum), first=f"{mark} ", indent="    "))
-    if "taken_at" in record:
-        lines.append(f"* serves at {format_quantity(record['taken_at'], 'K')}")
+            text = f"{words} {format_quantity(datum.value, datum.unit, 5)}"
+            if datum.range is not None:
+                text += f" ({_span(datum.range, datum.unit)})"
+            at = "" if words.endswith(POINTS) else "at no stated temperature"
+            parts = [
+                at if datum.temperature is None else _span(datum.temperature, "K"),
+                datum.medium,
+                datum.form,
+            ]
+            if datum.pressure is not None:
+                parts.append(format_quantity(datum.pressure, "Pa", 6))
+            text = f"{', '.join([text, *filter(None, parts)])}; {datum.confidence}: {datum.source}"
+            mark = "*" if i == one.taken.get(key) else " "
+            lines.append(paragraph(text, first=f"{mark} ", indent="    "))
+    if one.taken_at is not None:
+        lines.append(f"* serves at {format_quantity(one.taken_at, 'K')}")
     return lines
 
 
-def _datum(words: str, datum: Entry) -> str:
-    unit = datum["unit"]
-    text = f"{words} {format_quantity(datum['value'], unit, 5)}"
-    if datum["range"] is not None:
-        text += f" ({_span(datum['range'], unit)})"
-    unstated = "" if words.endswith(_POINTS) else "at no stated temperature"
-    conditions = [_temperature(datum, unstated), datum["medium"], datum["form"]]
-    if datum["pressure"] is not None:
-        conditions.append(format_quantity(datum["pressure"], "Pa", 6))
-    text = ", ".join([text, *filter(None, conditions)])
-    return f"{text}; {datum['confidence']}: {datum['source']}"
-
-
-def _friction(record: Entry) -> str:
-    environments = record["environments"]
-    letters = [f"{chr(ord('A') + i % 26)}{i // 26 or ''}" for i in range(len(environments))]
+def _state(state: FluidState) -> list[tuple[str, str]]:
+    numbers = (
+        ("Temperature", state.temperature, "K"),
+        ("Pressure", state.pressure, "Pa"),
+        ("Density", state.density, "kg/m3"),
+        ("Viscosity", state.viscosity, "Pa s"),
+        ("Heat capacity", state.heat_capacity, "J/kg/K"),
+    )
     rows = [
-        [name, *(_mean(row.get(env)) for env in environments)] for name, row in record["friction"].items()
+        (words, ABSENT if value is None else format_quantity(value, unit, 6))
+        for words, value, unit in numbers
     ]
-    return "\n".join([table(("", *letters), rows), facts(list(zip(letters, environments, strict=True)))])
+    return [*rows, ("Phase", state.phase), ("Source", state.source)]
 
 
-def _mean(value: Entry | None) -> str:
-    if value is None:
-        return "not measured"
-    spread = value["standard_deviation"]
-    return number(value["mean"]) + ("" if spread is None else f" +/- {spread:.2g}")
-
-
-def _state(state: Entry) -> list[tuple[str, str]]:
-    rows = [
-        (WORDS.get(key, key).capitalize(), _five(state[key]))
-        for key in ("temperature", "pressure", "density", "viscosity", "heat_capacity")
-    ]
-    return [*rows, ("Phase", state["phase"]), ("Source", state["source"])]
-
-
-def _five(item: Entry) -> str:
-    return ABSENT if item["value"] is None else format_quantity(item["value"], item["unit"], 6)
-
-
-def checked(document: Entry) -> str:
+def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
     """Return what a library file holds."""
     headers = ("kind", "name", "line", "numbers", "guesses", "no temperature")
-    keys = ("numbers", "guesses", "without_temperature")
     rows = [
-        [r["kind"], r["name"], str(r["line"] or ABSENT), *(str(r[key]) for key in keys)]
-        for r in document["records"]
+        [r.kind, r.name, str(r.line or ABSENT), *map(str, (r.numbers, r.guesses, r.without_temperature))]
+        for r in records
     ]
-    count = len(rows)
-    verdict = f"{document['file']} is a valid library: {count} record{'s'[: count != 1]}."
+    verdict = f"{file.label} is a valid library: {len(rows)} record{'s'[: len(rows) != 1]}."
     return f"{table(headers, rows, left=2)}\n\n{verdict}\n"
 
 
-def added(document: Entry) -> str:
+def added(library: str, records: Sequence[Counts]) -> str:
     """Return what was added."""
-    names = ", ".join(f"{record['kind']} {record['name']}" for record in document["records"])
-    return f"Added to {document['library']}: {names}.\n"
+    return f"Added to {library}: {', '.join(f'{record.kind} {record.name}' for record in records)}.\n"
 
 
 def _span(bounds: Sequence[float], unit: str) -> str:
     low, high = (format_quantity(bound, unit) for bound in bounds)
     return low if low == high else f"{low} to {high}"
-
-
-def _temperature(datum: Entry, otherwise: str = ABSENT) -> str:
-    return otherwise if datum["temperature"] is None else _span(datum["temperature"], "K")
-
-
-def _sure(confidence: str) -> str:
-    return confidence.partition(";")[0]

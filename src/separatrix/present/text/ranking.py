@@ -6,15 +6,19 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from separatrix.present.text.cage import growth_text, judgement_facts, motion_words
+from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
+    grouped,
+    interval,
+    kick_list,
     number,
     paragraph,
     quantity,
+    rate,
     section,
     significant,
     table,
@@ -24,7 +28,6 @@ from separatrix.ranking import NotMeasured, Ranked
 if TYPE_CHECKING:
     from separatrix.answers import RankingAnswer
     from separatrix.cage import Judgement
-    from separatrix.chain.pocket import PocketConditions
     from separatrix.ranking import RankedEnvironment, Ranking, Row
     from separatrix.study import Study
 
@@ -75,14 +78,16 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
     elsewhere = (
         f"First elsewhere: {'; '.join(leads)}. {more}, for every environment." if leads else f"{more}."
     )
-    evidence = f"Evidence: {_ensemble(found)}"
+    legend = ("", paragraph(LEGEND), *footnotes(rows), *lowest(rows))
     return [
         paragraph(in_short(found), indent=""),
-        section(
-            _title(found.environment), verdicts(rows), "", paragraph(LEGEND), *footnotes(rows), *lowest(rows)
-        ),
+        section(_title(found.environment), verdicts(rows), *legend),
         *_over_inputs(rows, study),
-        section(evidence, _short_evidence(rows), *(["", *reasons(undecided)] if undecided else [])),
+        section(
+            f"Evidence: {_ensemble(found)}",
+            _short_evidence(rows),
+            *(["", *reasons(undecided)] if undecided else []),
+        ),
         paragraph(elsewhere, indent=""),
     ]
 
@@ -97,11 +102,16 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
     """Verdict, margin, rank, evidence and reason of each candidate in each environment, then overall."""
     found = answer.ranking
     own, *others = sorted(found.environments, key=lambda one: bool(one.name != found.environment))
-    first = own.materials[0]
-    judged = judgement(first)
-    detail = (
-        [section(f"{first.name} in detail", facts(judgement_facts(judged, first.reason)))] if judged else []
-    )
+    first, detail, overall = own.materials[0], [], []
+    if (judged := judgement(first)) is not None:
+        detail = [section(f"{first.name} in detail", facts(judgement_facts(judged, first.reason)))]
+    if others:
+        notes = footnotes(found.overall)
+        blocks = [*([""] if notes else []), *notes, *gaps(found)]
+        overall = [
+            _environment("Overall: mean friction over the measured environments", found.overall, *blocks)
+        ]
+
     return [
         paragraph(in_short(found), indent=""),
         environment(found, own),
@@ -111,8 +121,19 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         *detail,
         section("What the verdicts hold for", facts(_holds_for(answer, study))),
         *(environment(found, one) for one in others),
-        *([_overall(found)] if others else []),
+        *overall,
     ]
+
+
+def environment(found: Ranking, one: RankedEnvironment) -> str:
+    """Return verdicts, evidence and reasons of one environment."""
+    notes = *footnotes(one.materials), *lowest(one.materials)
+    return _environment(one.name, one.materials, "", *notes, "", f"  Evidence: {_ensemble(found)}")
+
+
+def _environment(name: str, rows: Sequence[Row], *blocks: str) -> str:
+    """Return verdicts, evidence and reasons of one environment, or of their mean."""
+    return section(_title(name), verdicts(rows), *blocks, "", evidence(rows), "", *reasons(rows))
 
 
 def headline(found: Ranking) -> tuple[Row, ...]:
@@ -127,14 +148,12 @@ def judgement(row: Row) -> Judgement | None:
 
 def verdict_word(row: Row) -> str:
     """Return the verdict of a candidate, or why it has none."""
-    found = judgement(row)
-    if found is None:
-        return "not measured" if isinstance(row, NotMeasured) else "not finished"
-    return found.verdict.name
+    if (found := judgement(row)) is not None:
+        return found.verdict.name
+    return "not measured" if isinstance(row, NotMeasured) else "not finished"
 
 
 def _title(name: str) -> str:
-    """Return the name of an environment as the title of its section."""
     return name[:1].upper() + name[1:]
 
 
@@ -143,26 +162,20 @@ def verdicts(rows: Sequence[Row]) -> str:
     shared = Counter(row.rank for row in rows if isinstance(row, Ranked))
     cells = []
     for row in rows:
-        found, friction, margins = judgement(row), ABSENT, (ABSENT, ABSENT)
-        place = ABSENT
+        found, friction, margins, place = judgement(row), ABSENT, (ABSENT, ABSENT), ABSENT
         if not isinstance(row, NotMeasured):
             friction = number(row.friction) + (MARK if row.extrapolation else "")
         if isinstance(row, Ranked):
             ends = row.restitution_threshold_low, row.restitution_threshold_high
-            margins = _with_interval(row.restitution_threshold, *ends), f"{row.margin:+.2f}"
+            margins = interval(row.restitution_threshold, *ends), f"{row.margin:+.2f}"
             place = f"{row.rank}{'=' if shared[row.rank] > 1 else ''}"
-        cells.append([place, row.name, friction, *margins, _probability(found), verdict_word(row)])
+        share = ABSENT if found is None else _probability(found)
+        cells.append([place, row.name, friction, *margins, share, verdict_word(row)])
     return table(HEADERS, cells, left=2)
 
 
-def _with_interval(value: float, low: float, high: float) -> str:
-    return f"{number(value, 2)} ({number(low, 2)} to {number(high, 2)})"
-
-
-def _probability(found: Judgement | None) -> str:
-    if found is None:
-        return ABSENT
-    return _with_interval(found.probability_stable, found.probability_low, found.probability_high)
+def _probability(found: Judgement) -> str:
+    return interval(found.probability_stable, found.probability_low, found.probability_high)
 
 
 def lowest(rows: Sequence[Row]) -> list[str]:
@@ -179,10 +192,7 @@ def lowest(rows: Sequence[Row]) -> list[str]:
 def footnotes(rows: Sequence[Row]) -> list[str]:
     """Return what is extrapolated, each sentence once with its candidates unless it is all; or nothing."""
     measured = [row for row in rows if not isinstance(row, NotMeasured)]
-    who: dict[str, list[str]] = {}
-    for row in measured:
-        for sentence in row.extrapolation:
-            who.setdefault(sentence, []).append(row.name)
+    who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
     each: dict[str, list[str]] = {}
     for sentence, names in who.items():
         stem, pocket, value = sentence.partition(POCKET)
@@ -200,11 +210,9 @@ def footnotes(rows: Sequence[Row]) -> list[str]:
 
 def reasons(rows: Sequence[Row]) -> list[str]:
     """Return the reasons; candidates of the same friction share theirs."""
-    names: dict[str, list[str]] = {}
-    for row in rows:
-        names.setdefault(row.reason, []).append(row.name)
+    each = grouped((row.reason, row.name) for row in rows)
     return [
-        paragraph(f"{', '.join(who)}: {reason}", first="  ", indent="      ") for reason, who in names.items()
+        paragraph(f"{', '.join(who)}: {reason}", indent="      ", first="  ") for reason, who in each.items()
     ]
 
 
@@ -218,23 +226,18 @@ def in_short(found: Ranking) -> str:
     lead = f"{first[0].name} ranks first in {place}: {words}."
     it, pocket = "It tolerates", "this bearing with its pocket has"
     if len(first) > 1:
-        lead = (
-            f"{len(first)} materials tie for first in {place} ({', '.join(r.name for r in first)}): {words}."
-        )
+        names = ", ".join(row.name for row in first)
+        lead = f"{len(first)} materials tie for first in {place} ({names}): {words}."
         it, pocket = "They tolerate", "this bearing and their pockets have"
     limits = _span([row.restitution_threshold for row in first])
     etas = _span([row.restitution_factor for row in first])
     margins = _span([row.margin for row in first], "{:+.2f}")
-    others: dict[str, list[str]] = {}
-    for row in rows:
-        if row not in first:
-            others.setdefault(verdict_word(row), []).append(row.name)
+    others = grouped((verdict_word(row), row.name) for row in rows if row not in first)
     rest = f" The others: {_by_verdict(others)}." if others else ""
     return f"{lead} {it} a restitution factor up to {limits}; {pocket} {etas} (margin {margins}).{rest}"
 
 
 def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
-    """Return one number, or the least and the largest of several."""
     return " to ".join(dict.fromkeys(form.format(value + 0.0) for value in (min(values), max(values))))
 
 
@@ -249,9 +252,7 @@ def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
     ]
     if not known:
         return []
-    each: dict[str, list[str]] = {}
-    for name, found in known:
-        each.setdefault(found.verdict.name, []).append(f"{name} {_probability(found)}")
+    each = grouped((found.verdict.name, f"{name} {_probability(found)}") for name, found in known)
     names = ", ".join([*study.distributions][:NAMED]) + (", ..." if len(study.distributions) > NAMED else "")
     text = (
         f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
@@ -261,9 +262,7 @@ def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
 
 
 def _ensemble(found: Ranking) -> str:
-    """Return the runs behind every verdict, their length and their kicks."""
-    kicks = ", ".join(f"{kick:g}" for kick in found.kicks)
-    return f"{found.runs} runs of {quantity(found.duration, 's')} from each kick, {kicks} m/s"
+    return f"{found.runs} runs of {quantity(found.duration, 's')} from each kick, {kick_list(found.kicks)}"
 
 
 def _short_evidence(rows: Sequence[Row]) -> str:
@@ -273,11 +272,11 @@ def _short_evidence(rows: Sequence[Row]) -> str:
             row.name,
             motion_words(found.cage_motion),
             " ".join(str(kick.settles) for kick in found.by_kick),
-            _rounded(found.largest_offset, "m"),
+            quantity(found.largest_offset, "m", 3),
             significant(found.drift_rate, 2),
-            _rounded(found.largest_contact_force, "N"),
-            _rounded(found.largest_land_force, "N"),
-            _rounded(found.rubbing_power, "W", 2),
+            quantity(found.largest_contact_force, "N", 3),
+            quantity(found.largest_land_force, "N", 3),
+            quantity(found.rubbing_power, "W", 2),
         ]
         for row in rows
         if (found := judgement(row)) is not None
@@ -285,17 +284,10 @@ def _short_evidence(rows: Sequence[Row]) -> str:
     return table(SHORT_EVIDENCE, cells, left=3) if cells else "  none: no verdict was finished"
 
 
-def _rounded(value: float, unit: str, digits: int = 3) -> str:
-    return quantity(float(f"{value:.{digits}g}"), unit)
-
-
 def evidence(rows: Sequence[Row]) -> str:
     """Return the evidence of verdicts; the bearing's eta only where candidates differ in it."""
-    etas = {
-        number(row.restitution_factor, 2)
-        for row in rows
-        if not isinstance(row, NotMeasured) and row.judgement
-    }
+    known = [row for row in rows if not isinstance(row, NotMeasured) and row.judgement is not None]
+    etas = {number(row.restitution_factor, 2) for row in known}
     headers = [header for header in EVIDENCE if header != ETA or len(etas) > 1]
     cells = []
     for row in rows:
@@ -308,36 +300,13 @@ def evidence(rows: Sequence[Row]) -> str:
             [
                 *(row.name, motion_words(found.cage_motion)),
                 *([number(row.restitution_factor, 2)] if len(etas) > 1 else []),
-                *(growth_text(found), number(1e3 * found.largest_offset), significant(found.drift_rate, 2)),
+                rate(found.growth_rate, found.growth_rate_low, found.growth_rate_high),
+                *(number(1e3 * found.largest_offset), significant(found.drift_rate, 2)),
                 *(number(found.largest_contact_force, 0), number(found.largest_land_force, 0)),
                 *(whirl + DIRECTIONS[found.whirl_direction], number(found.whirl_ratio, 2)),
             ]
         )
     return table(headers, cells, left=2)
-
-
-def environment(found: Ranking, one: RankedEnvironment) -> str:
-    """Return verdicts, evidence and reasons of one environment."""
-    rows = one.materials
-    shown = (f"  Evidence: {_ensemble(found)}", "", evidence(rows), "", *reasons(rows))
-    return section(_title(one.name), verdicts(rows), "", *footnotes(rows), *lowest(rows), "", *shown)
-
-
-def _overall(found: Ranking) -> str:
-    """Return the table of mean frictions, which belongs to no environment."""
-    title, rows = "Overall: mean friction over the measured environments", found.overall
-    notes = footnotes(rows)
-    return section(
-        title,
-        verdicts(rows),
-        *([""] if notes else []),
-        *notes,
-        *gaps(found),
-        "",
-        evidence(rows),
-        "",
-        *reasons(rows),
-    )
 
 
 def gaps(found: Ranking) -> list[str]:
@@ -351,12 +320,16 @@ def gaps(found: Ranking) -> list[str]:
 
 
 def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
-    found = answer.ranking
+    found, pocket = answer.ranking, answer.ranking.pocket
     rows = [row for one in found.environments for row in one.materials]
     scatter = "none: every friction has its measured scatter"
     if any(row.friction_scatter_assumed for row in rows if not isinstance(row, NotMeasured)):
         share = f"{100.0 * found.friction_scatter:.3g} %"
         scatter = f"assumed to scatter by {share} of their mean: a guess, [ranking] friction_scatter"
+    slip = f"slides at {pocket.slip_speed:.3g} m/s"
+    if pocket.slip_speed_high > 1.001 * pocket.slip_speed_low:
+        slip += f" ({pocket.slip_speed_low:.3g} to {pocket.slip_speed_high:.3g} around the bearing)"
+    pressure, force = quantity(pocket.pressure, "Pa", 3), quantity(pocket.impact_force, "N", 3)
     eta, limit, film = found.restitution_factor, found.solid_lubrication_limit, []
     if eta < limit:
         words = (
@@ -366,18 +339,8 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
     return [
         *basis(study, answer),
         *ensemble_facts(found.kicks, found.runs, found.duration),
-        ("Ball on pocket", _pocket(found.pocket)),
+        ("Ball on pocket", f"{slip}; mean pressure {pressure} in an impact of {force} (impact speed)"),
         ("Unrepeated tests", scatter),
         ("The paper's bound", found.paper_statement),
         *film,
     ]
-
-
-def _pocket(pocket: PocketConditions) -> str:
-    """Return the sliding speed, pressure and force at which the frictions are taken."""
-    low, high = pocket.slip_speed_low, pocket.slip_speed_high
-    slip = f"{pocket.slip_speed:.3g} m/s"
-    if high > 1.001 * low:
-        slip += f" ({low:.3g} to {high:.3g} around the bearing)"
-    pressure, force = _rounded(pocket.pressure, "Pa"), _rounded(pocket.impact_force, "N")
-    return f"slides at {slip}; mean pressure {pressure} in an impact of {force} (impact speed)"

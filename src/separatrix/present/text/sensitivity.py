@@ -11,6 +11,9 @@ from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
+    grouped,
+    interval,
+    kick_list,
     number,
     paragraph,
     quantity,
@@ -61,16 +64,15 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
     """Verdicts for the bearing's own environment, then for the others, and everything behind them."""
     found = answer.uncertain
     own, *others = sorted(found.environments, key=lambda one: bool(one.name != found.environment))
-    verdicts: dict[str, list[str]] = {}
-    for row in own.materials:
-        word = "not measured" if isinstance(row, NotDrawn) else _verdict(row)
-        verdicts.setdefault(word, []).append(row.name)
+    verdicts = grouped(
+        ("not measured" if isinstance(row, NotDrawn) else _verdict(row), row.name) for row in own.materials
+    )
     short = "; ".join(f"{verdict} {', '.join(names)}" for verdict, names in verdicts.items())
     judged = [row.judgement for row in found.overall if not isinstance(row, NotDrawn)]
     drift = [judgement.drift_rate for judgement in judged if judgement]
     holds_for = [
         *basis(study, answer),
-        ("Kicks", f"{', '.join(f'{kick:g}' for kick in found.kicks)} m/s"),
+        ("Kicks", kick_list(found.kicks)),
         ("Runs", f"{found.runs} in all; seed {study.stability.seed}"),
         ("Largest drift", f"{significant(max(drift), 2)} 1/s (median of a case)" if drift else ABSENT),
         ("Ended early", f"at a risk of {found.stopped_risk:g} of another verdict at each look"),
@@ -93,11 +95,11 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
 
 
 def _environment(name: str, rows: Sequence[UncertainRow]) -> str:
-    etas: dict[str, list[str]] = {}
-    for row in rows:
-        if not isinstance(row, NotDrawn):
-            ends = row.restitution_factor, row.restitution_factor_low, row.restitution_factor_high
-            etas.setdefault("{} ({} to {})".format(*(number(eta, 2) for eta in ends)), []).append(row.name)
+    etas = grouped(
+        (interval(row.restitution_factor, row.restitution_factor_low, row.restitution_factor_high), row.name)
+        for row in rows
+        if not isinstance(row, NotDrawn)
+    )
     alike = len(etas) == 1
     each = "; ".join(eta if alike else f"{eta} {', '.join(names)}" for eta, names in etas.items())
     words = paragraph(f"Restitution factor of the drawn bearings, median (nine in ten): {each}.")
@@ -120,8 +122,7 @@ def _row(row: UncertainRow) -> list[str]:
         return [*known, _verdict(row)]
     return [
         *known,
-        f"{number(judged.probability_stable, 2)} "
-        f"({number(judged.probability_low, 2)}-{number(judged.probability_high, 2)})",
+        interval(judged.probability_stable, judged.probability_low, judged.probability_high, to="-"),
         _verdict(row),
         judged.cage_motion.value if judged.cage_motion else "unresolved",
         number(1e3 * judged.largest_offset),
@@ -170,10 +171,12 @@ def _sources(found: UncertainStudy) -> Iterator[str]:
         columns = _columns(known)
         cells = [[f"{one.name}, {one.environment}", *_shares(one, columns)] for one in known]
         yield table(["case", *(name.replace(".", ".\n") for name in columns), "skill"], cells, left=1)
-    reasons: dict[str, list[str]] = {}
-    for one in (one for one in found.drivers if not one.shares):
-        few, weak = "too few bearings end otherwise", "the inputs explain next to nothing"
-        reasons.setdefault(few if one.skill is None else weak, []).append(f"{one.name} in {one.environment}")
+    few, weak = "too few bearings end otherwise", "the inputs explain next to nothing"
+    reasons = grouped(
+        (few if one.skill is None else weak, f"{one.name} in {one.environment}")
+        for one in found.drivers
+        if not one.shares
+    )
     for reason, cases in reasons.items():
         listed = "; ".join(cases) if len(cases) <= LISTED else f"{len(cases)} cases"
         yield paragraph(f"No sources shown, {reason}: {listed}.")
@@ -188,7 +191,6 @@ def _by_input(case: Drivers) -> dict[str, Share]:
 
 
 def _columns(cases: Sequence[Drivers]) -> list[str]:
-    """Return the inputs by their largest share, chance last."""
     largest: dict[str, float] = {}
     for case in cases:
         for name, one in _by_input(case).items():
@@ -208,7 +210,6 @@ def _per_cent(one: Share) -> str:
 
 
 def _next_test(found: UncertainStudy) -> Iterator[str]:
-    """Yield which cases are undecided, and what measuring each input would settle."""
     if not found.undecided:
         yield "No case is undecided: no measurement would change a verdict."
         return
@@ -222,7 +223,6 @@ def _next_test(found: UncertainStudy) -> Iterator[str]:
 
 
 def _friction(found: UncertainStudy) -> Iterator[str]:
-    """Yield the largest friction of a new material, for each pocket."""
     several = len(found.allowed_friction) > 1
     for one in found.allowed_friction:
         pocket = f" in the pockets of {', '.join(one.names)}" if several else ""
@@ -246,8 +246,8 @@ def _films(films: Sequence[AllowedFilm]) -> Iterator[str]:
     headers = ["material", f"eta for\n{wanted}", *(f"f_BT\n{f:g}" for f in frictions)]
     cells = []
     for film in films:
-        eta = f"{number(film.restitution_factor, 2)} ({number(film.restitution_factor_low, 2)}-"
-        eta += f"{number(film.restitution_factor_high, 2)})"
+        ends = film.restitution_factor_low, film.restitution_factor_high
+        eta = interval(film.restitution_factor, *ends, to="-")
         if film.restitution_factor is None:
             eta = "any" if film.reason.startswith("more") else "none"
         cells.append([film.name, eta, *(_thicknesses(film, i) for i in range(len(frictions)))])
@@ -268,5 +268,5 @@ def _thicknesses(film: AllowedFilm, i: int) -> str:
     edges = [k for k in range(1, len(allowed)) if allowed[k] != allowed[k - 1]]
     if len(edges) > 1:
         return "see figure"
-    edge = quantity(float(f"{film.film_thickness[edges[0] - (not allowed[-1])]:.2g}"), "m")
+    edge = quantity(film.film_thickness[edges[0] - (not allowed[-1])], "m", 2)
     return f">= {edge}" if allowed[-1] else f"<= {edge}"

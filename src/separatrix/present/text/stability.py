@@ -1,27 +1,35 @@
-"""Text of the stability curve and of a stability map."""
+"""Text of the stability curve, of a stability map and of a sweep."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from separatrix.cage_choice import cage_candidate
+from separatrix.explore.sweep import Sweep, SweptCase
 from separatrix.limits.map_records import NOT_RUN
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
-from separatrix.present.text.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.present.text.tables import (
+    ABSENT,
+    facts,
+    interval,
+    kick_list,
+    number,
+    paragraph,
+    quantity,
+    section,
+    significant,
+    stated,
+    table,
+)
+from separatrix.present.walk import field_units
 
 if TYPE_CHECKING:
     from separatrix.answers import MapAnswer, StabilityAnswer
-    from separatrix.limits import CriticalFriction, StabilityCurve
-    from separatrix.limits.map_records import (
-        Inference,
-        MapAxis,
-        MapChange,
-        MapPoint,
-        StabilityMap,
-        Stopping,
-    )
+    from separatrix.limits import StabilityCurve
+    from separatrix.limits.map_records import Inference, MapAxis, MapChange, StabilityMap, Stopping
     from separatrix.study import Study
 
 HEADERS = (
@@ -46,14 +54,7 @@ MOST_COLUMNS, SOME_COLUMNS = 20, 9
 ROUNDING = 1e-9
 """A distance to a band below this share of the value is the rounding of its unit."""
 
-KINDS = {
-    "STABLE": "stable",
-    "UNSTABLE": "unstable",
-    "UNDECIDED": "undecided",
-    "refused": "refused",
-    "inferred": "inferred",
-    "not_run": "not run",
-}
+KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "inferred", "not_run")
 
 
 def stability(answer: StabilityAnswer, study: Study) -> list[str]:
@@ -70,9 +71,8 @@ def ensemble_facts(
     kicks: Sequence[float], runs: int, duration: float, *, middle: float | None = None
 ) -> list[tuple[str, str]]:
     """Return the ensemble in a few words."""
-    each = ", ".join(f"{kick:g}" for kick in kicks)
     return [
-        ("Kicks", f"{each} m/s" + (f"; the curve is that of {middle:g} m/s" if middle else "")),
+        ("Kicks", kick_list(kicks) + (f"; the curve is that of {middle:g} m/s" if middle else "")),
         ("Runs", f"{runs} at each point, of {quantity(duration, 's')}"),
     ]
 
@@ -85,12 +85,23 @@ def curve(found: StabilityCurve) -> list[str]:
     for point in found.curve:
         eta, critical = point.restitution_factor, ABSENT
         if point.critical_friction is not None:
-            ends = f"{number(point.scatter_low)} to {number(point.scatter_high)}"
-            critical = f"{number(point.critical_friction)} ({ends})"
+            critical = interval(point.critical_friction, point.scatter_low, point.scatter_high, 3)
         others = (point.critical_friction_low, point.critical_friction_high, linear.get(eta), hard.get(eta))
         rows.append([number(eta), critical, *map(number, others)])
     block = section("Stability curve", table(HEADERS, rows), LEGEND + drift_note(found))
-    return [block] if found.here is None else [block, _here(found, found.here)]
+    here = found.here
+    if here is None:
+        return [block]
+    low, high = here.critical_friction_low, here.critical_friction_high
+    kicks = zip(found.kicks, here.kick_critical_friction, strict=True)
+    lines = [
+        ("Every kick settles below", "none" if low is None else f"a friction of {number(low)}"),
+        ("Every kick whirls above", "none" if high is None else f"a friction of {number(high)}"),
+        ("Half the runs whirl at", ", ".join(f"{number(at)} from {kick:g} m/s" for kick, at in kicks)),
+        *([("Reason", here.reason)] if here.reason else []),
+    ]
+    title = f"Sub-critical band of this bearing, restitution factor {number(here.restitution_factor)}"
+    return [block, section(title, facts(lines))]
 
 
 def drift_note(found: StabilityCurve) -> str:
@@ -107,20 +118,6 @@ def drift_note(found: StabilityCurve) -> str:
     )
 
 
-def _here(found: StabilityCurve, here: CriticalFriction) -> str:
-    """What this bearing's own damping allows: frictions between which the kick decides."""
-    low, high = here.critical_friction_low, here.critical_friction_high
-    kicks = zip(found.kicks, here.kick_critical_friction, strict=True)
-    lines = [
-        ("Every kick settles below", "none" if low is None else f"a friction of {number(low)}"),
-        ("Every kick whirls above", "none" if high is None else f"a friction of {number(high)}"),
-        ("Half the runs whirl at", ", ".join(f"{number(at)} from {kick:g} m/s" for kick, at in kicks)),
-        *([("Reason", here.reason)] if here.reason else []),
-    ]
-    title = f"Sub-critical band of this bearing, restitution factor {number(here.restitution_factor)}"
-    return section(title, facts(lines))
-
-
 def stability_map(answer: MapAnswer, study: Study) -> list[str]:
     """Shares of the plane, bands at a few columns, the rule, and what it holds for."""
     found = answer.map
@@ -132,12 +129,18 @@ def stability_map(answer: MapAnswer, study: Study) -> list[str]:
         for name, axis in (("x", found.x), ("y", found.y))
     ]
     shares = [
-        [name, str(found.counts[kind]), f"{100 * found.counts[kind] / len(found.points):.1f} %"]
-        for kind, name in KINDS.items()
+        [
+            kind.lower().replace("_", " "),
+            str(found.counts[kind]),
+            f"{100 * found.counts[kind] / len(found.points):.1f} %",
+        ]
+        for kind in KINDS
         if found.counts[kind] or kind in ("STABLE", "UNSTABLE")
     ]
-    chosen = _chosen(found.x.values)
-    total, shown = len(found.x.values), len(chosen)
+    chosen, total = list(found.x.values), len(found.x.values)
+    if total > MOST_COLUMNS:
+        chosen = [chosen[round(i * (total - 1) / (SOME_COLUMNS - 1))] for i in range(SOME_COLUMNS)]
+    shown = len(chosen)
     part = f"{shown} of {total} columns of the map are shown; map.json and map.nc have all of them."
     legend = ["", *([paragraph(part)] if shown < total else []), MAP_LEGEND]
     headers = (found.x.parameter, "from", "to", "whirls", "margin")
@@ -160,13 +163,6 @@ def stability_map(answer: MapAnswer, study: Study) -> list[str]:
     ]
 
 
-def _chosen(values: Sequence[float]) -> list[float]:
-    """Values of x whose bands are printed: all, or evenly chosen."""
-    if len(values) <= MOST_COLUMNS:
-        return list(values)
-    return [values[round(i * (len(values) - 1) / (SOME_COLUMNS - 1))] for i in range(SOME_COLUMNS)]
-
-
 def _axis(axis: MapAxis, whose: str) -> str:
     low, high = (quantity(axis.values[i], axis.unit) for i in (0, -1))
     here = "" if axis.here is None else f", {whose} has {quantity(axis.here, axis.unit)}"
@@ -178,7 +174,9 @@ def _bands(found: StabilityMap, x: float) -> list[list[str]]:
     unit, here, start = found.y.unit, found.y.here, quantity(x, found.x.unit)
     changes = [change for change in found.changes if change.x == x]
     if not changes:
-        return [[start, "-", "-", _of_one_kind([p for p in found.points if p.x == x and p.runs]), "-"]]
+        sides = {point.side for point in found.points if point.x == x and point.runs}
+        kind = "no boundary found" if 0 in sides else "everywhere" if sides == {1} else "nowhere"
+        return [[start, "-", "-", kind if sides else "not run", "-"]]
     return [
         [
             *(start, quantity(change.y_low, unit), quantity(change.y_high, unit)),
@@ -196,16 +194,6 @@ def _margin(change: MapChange, here: float) -> float:
     return -distance if whirls else distance
 
 
-def _of_one_kind(points: Sequence[MapPoint]) -> str:
-    """Return what the points of a column are that does not change, beyond the scatter."""
-    if not points:
-        return "not run"
-    sides = {point.side for point in points}
-    if 0 in sides:
-        return "no boundary found"
-    return "everywhere" if sides == {1} else "nowhere"
-
-
 def _runs(rule: Stopping) -> str:
     if rule.agreeing_runs == rule.most_runs:
         return f"{rule.most_runs} at every point"
@@ -220,14 +208,66 @@ def _inference(found: Inference | None) -> list[tuple[str, str]]:
     """Return how many points were not run, and how often those around them were wrong where they were."""
     if found is None or not found.points + found.checked:
         return []
-    inferred = f"{found.points} points were not run, as those around them agree"
+    inferred = f"{found.points} points were not run, as those around them agree; "
     if found.error_low is None or found.error_high is None:
-        return [("Inferred", f"{inferred}; none was checked")]
-    return [
-        (
-            "Inferred",
-            f"{inferred}; {found.checked} more of that kind were run as a check, of which "
-            f"{found.decided_otherwise} are decided otherwise "
-            f"(95 %: {100 * found.error_low:.2g} to {100 * found.error_high:.2g} %)",
-        )
+        return [("Inferred", f"{inferred}none was checked")]
+    ends = f"(95 %: {100 * found.error_low:.2g} to {100 * found.error_high:.2g} %)"
+    checked = f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise}"
+    return [("Inferred", f"{inferred}{checked} are decided otherwise {ends}")]
+
+
+# A sweep.
+
+SHOWN = 15
+"""Cases in the printed table."""
+
+RANGES = {
+    "restitution_factor": "Restitution factor",
+    "race_damping": "Race damping",
+    "max_pressure_inner": "Pressure, inner race",
+    "max_pressure_outer": "Pressure, outer race",
+    "spin_roll_ratio_inner": "Spin/roll ratio, inner",
+    "ball_cage_friction": "Pocket friction",
+    "probability_stable": "P(stable)",
+    "largest_offset": "Largest offset",
+    "largest_contact_force": "Force at a pocket",
+}
+
+
+def sweep(found: Sweep, study: Study) -> list[str]:  # noqa: ARG001
+    """Counts and ranges, then cases spread evenly over all."""
+    cases = found.cases
+    refused = [case for case in cases if case.reason and case.verdict is None]
+    lines = [
+        ("Varied", ", ".join(one.name for one in found.parameters)),
+        ("Cases", f"{len(cases)}, of which {len(refused)} refused"),
     ]
+    verdicts = Counter(case.verdict for case in cases if case.verdict)
+    if verdicts:
+        counted = (f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
+        lines.append(("Verdicts", ", ".join(counted)))
+    units = field_units(SweptCase)
+    for key, words in RANGES.items():
+        values = [value for case in cases if (value := getattr(case, key)) is not None]
+        if values:
+            ends = (quantity(end, units[key]) for end in (min(values), max(values)))
+            lines.append((words, " to ".join(ends)))
+    which = []
+    if (total := len(cases)) > SHOWN:
+        cases = tuple(cases[round(i * (total - 1) / (SHOWN - 1))] for i in range(SHOWN))
+        which = ["", paragraph(f"{SHOWN} of {total} cases; sweep.csv, sweep.xlsx and sweep.nc have all.")]
+    names = [one.name.rpartition(".")[2] for one in found.parameters]
+    headers = ["case", *names, "eta", "C_mu", "pressure", *(["P(stable)", "verdict"] * found.verdicts)]
+    rows = []
+    for case in cases:
+        given = zip(found.parameters, case.values, strict=True)
+        row = [str(case.case), *(quantity(value, one.unit or "-") for one, value in given)]
+        row += [significant(case.restitution_factor), stated(case, "race_damping")]
+        row += [stated(case, "max_pressure_inner")]
+        if found.verdicts:
+            row += [significant(case.probability_stable, 3), case.verdict or "-"]
+        rows.append(row)
+    blocks = [section("Sweep", facts(lines)), section("Cases", table(headers, rows), *which)]
+    if refused:
+        blocks.append(paragraph(f"Case {refused[0].case}: {refused[0].reason}", first="  "))
+    return blocks

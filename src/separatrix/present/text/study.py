@@ -7,13 +7,21 @@ from math import asin, degrees, isclose, pi
 from typing import TYPE_CHECKING, Any
 
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.present.text.tables import ABSENT, facts, number, paragraph, quantity, section, table
+from separatrix.present.text.tables import (
+    ABSENT,
+    facts,
+    friction_table,
+    paragraph,
+    quantity,
+    section,
+    table,
+)
 from separatrix.study_file import resolved
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
     from separatrix.answers import CheckAnswer
-    from separatrix.study import CageDesign, Friction, Material, RankingQuestion, Study
+    from separatrix.study import CageDesign, Study
 
 Entry = Mapping[str, Any]
 """A value of a resolved study with its unit and origin, or a section of them."""
@@ -46,6 +54,11 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
     return [*blocks, _valid(study)]
 
 
+def _valid(study: Study) -> str:
+    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if getattr(study, name) is None]
+    return "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
+
+
 def _machine(study: Study) -> list[tuple[str, str]]:
     """Bearing, operation and film on a line each, with the speed parameter."""
     bearing, operation, film = study.bearing, study.operation, study.film
@@ -75,16 +88,12 @@ def _machine(study: Study) -> list[tuple[str, str]]:
 
 
 def _pressure_at_rest(answer: CheckAnswer) -> str:
-    """Contact pressure at standstill, of the most loaded ball."""
     if answer.static is None:
         return f"not found: {answer.static_reason}"
     each = []
     for race, at in (("inner", answer.static.inner), ("outer", answer.static.outer)):
-        mean, most = (
-            quantity(float(f"{pressure:.3g}"), "Pa")
-            for pressure in (at.ellipse.max_pressure / 1.5, at.ellipse.max_pressure)
-        )
-        each.append(f"{race} {mean} mean, {most} maximum")
+        most = at.ellipse.max_pressure
+        each.append(f"{race} {quantity(most / 1.5, 'Pa', 3)} mean, {quantity(most, 'Pa', 3)} maximum")
     return f"{'; '.join(each)} (Hertz, most loaded ball)"
 
 
@@ -116,11 +125,6 @@ def _assumed(inputs: Entry) -> list[tuple[str, str]]:
     return found
 
 
-def _valid(study: Study) -> str:
-    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if getattr(study, name) is None]
-    return "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
-
-
 def every_input(answer: CheckAnswer, study: Study) -> list[str]:  # noqa: ARG001
     """Every resolved input, its origin, and the sources of the materials."""
     inputs, blocks = resolved(study), []
@@ -131,8 +135,10 @@ def every_input(answer: CheckAnswer, study: Study) -> list[str]:  # noqa: ARG001
         if name == "cage" and study.cage is not None:
             blocks.append(section("Clearances of the cage", facts(clearances(study.cage))))
     if study.ranking is not None:
-        frictions = _frictions(study.ranking, inputs["ranking"]["origin"])
-        blocks.append(section("[ranking] ball/cage friction", frictions))
+        frictions = {candidate.name: candidate.friction for candidate in study.ranking.candidates}
+        origin = ("from", str(inputs["ranking"]["origin"]))
+        columns = friction_table(study.ranking.environments, frictions, origin)
+        blocks.append(section("[ranking] ball/cage friction", columns))
     if study.distributions:
         blocks.append(section("Uncertain inputs, their means above", _uncertain(inputs)))
     blocks.append(section("Sources of the materials", *_sources(study)))
@@ -168,41 +174,21 @@ def shown(value: object, unit: str) -> str:
     return format_quantity(value, unit, 7) if unit not in ("", "-") else f"{value:g}"
 
 
-def _frictions(ranking: RankingQuestion, origin: str) -> str:
-    """Return the friction table, and below it what each column is."""
-    letters = [chr(ord("A") + i) for i in range(len(ranking.environments))]
-    rows = [
-        [candidate.name, *(friction_text(candidate.friction.get(name)) for name in ranking.environments)]
-        for candidate in ranking.candidates
-    ]
-    meaning = list(zip(letters, ranking.environments, strict=True))
-    return "\n".join([table(("", *letters), rows), facts([*meaning, ("from", origin)])])
-
-
-def friction_text(friction: Friction | None) -> str:
-    """Return a mean friction with its standard deviation."""
-    if friction is None:
-        return "not measured"
-    spread = friction.standard_deviation
-    return number(friction.mean) + ("" if spread is None else f" +/- {spread:.2g}")
-
-
 def _sources(study: Study) -> list[str]:
-    """Return each material once, with its numbers, its sources and confidence."""
     own = (study.bearing.ball_material, study.bearing.ring_material, study.film.material)
     materials = {one.name: one for one in (*own, study.cage.material if study.cage else None) if one}
     for candidate in study.ranking.candidates if study.ranking else ():
         if candidate.material is not None:
             materials[candidate.name] = candidate.material
-    return [paragraph(_source(one), first="  ", indent="    ") for one in materials.values()]
-
-
-def _source(material: Material) -> str:
-    numbers = f"E {quantity(material.elastic_modulus, 'Pa')}, nu {material.poisson_ratio:g}"
-    if material.source == material.confidence:  # of a material written in place
-        return f"{material.name}: {numbers}, from the study"
-    text = f"{material.name}: {numbers}. {material.source} (confidence: {material.confidence})"
-    library = (material.record or {}).get("library")
-    if library is None or library["shipped"]:
-        return text
-    return f"{text}, from {library['file']} (sha256 {library['sha256'][:12]}...)"
+    lines = []
+    for one in materials.values():
+        text = f"{one.name}: E {quantity(one.elastic_modulus, 'Pa')}, nu {one.poisson_ratio:g}"
+        library = (one.record or {}).get("library")
+        if one.source == one.confidence:  # of a material written in place
+            text += ", from the study"
+        else:
+            text += f". {one.source} (confidence: {one.confidence})"
+            if library is not None and not library["shipped"]:
+                text += f", from {library['file']} (sha256 {library['sha256'][:12]}...)"
+        lines.append(paragraph(text, first="  ", indent="    "))
+    return lines
