@@ -27,7 +27,7 @@ SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
 """Numbers that say how an answer is made, not what it is of."""
 
 
-_ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
+ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
 """What the contact angle depends on where the clearance is held."""
 
 Path = tuple[str | int, ...]
@@ -194,7 +194,7 @@ def _changed(held: Any, name: str, changes: dict[Any, Any]) -> Any:
 
 def _angle(bearing: BallBearing, changes: dict[str, Any]) -> Radian:
     clearance = changes.pop("radial_clearance")
-    diameter, inner, outer = (changes.get(key, getattr(bearing, key)) for key in _ANGLE_FROM)
+    diameter, inner, outer = (changes.get(key, getattr(bearing, key)) for key in ANGLE_FROM)
     return contact_angle_of(clearance, diameter, inner, outer)
 
 
@@ -223,7 +223,7 @@ def _held_clearance(study: Study, keys: Sequence[str]) -> Metre | None:
     """Clearance to keep, where the study gave it and what makes an angle of it changes; else None."""
     if RADIAL_CLEARANCE in keys or "bearing.contact_angle" in keys or RADIAL_CLEARANCE not in study.origins:
         return None
-    moved = any(f"bearing.{key}" in keys for key in _ANGLE_FROM)
+    moved = any(f"bearing.{key}" in keys for key in ANGLE_FROM)
     return radial_clearance(study.bearing) if moved else None
 
 

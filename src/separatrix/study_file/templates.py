@@ -9,15 +9,14 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix import library
 from separatrix.errors import InputError
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape
-from separatrix.study_file.cells import COLUMNS, SEPARATOR, number_text
-from separatrix.study_file.document import SECTIONS, Document, load
+from separatrix.study_file.cells import COLUMNS, SEPARATOR, with_unit
+from separatrix.study_file.document import SECTIONS, TEMPLATE, Document, load
 from separatrix.study_file.sections import required_fields
 from separatrix.study_file.workbook import CANDIDATES, MEASURED, STUDY_SHEET
 from separatrix.units import NUMBER, UNITS
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 
-TEMPLATE = Path(__file__).with_name("template.toml")
 LISTS_SHEET = "lists"
 INSTRUCTIONS = (
     "A study for separatrix: one bearing, its operating point, the film on its races, its cage, candidates.",
@@ -142,7 +140,7 @@ def cells_of(key: str, value: Any) -> Iterator[tuple[str, Written]]:
         numbers = [float(number) for number, _ in found if isinstance(number, int | float)]
         units = {unit for _, unit in found}
         same = len(units) == 1 and len(numbers) == len(value)
-        items = map(number_text, numbers) if same else map(str, value)
+        items = (with_unit(number, "") for number in numbers) if same else map(str, value)
         yield key, Written(f"{SEPARATOR} ".join(items), unit=units.pop() if same else "")
     elif not isinstance(value, str) or key.rpartition(".")[2] in TEXTS:
         yield key, Written(value)
@@ -167,7 +165,7 @@ def _quantity(text: str) -> tuple[float | None, str]:
     if match is None or not any(unit in known for known in UNITS.values()):
         return None, ""
     number = float(match[1])
-    return (number, unit) if Fraction(number_text(number)) == Fraction(match[1]) else (None, "")
+    return (number, unit) if Fraction(with_unit(number, "")) == Fraction(match[1]) else (None, "")
 
 
 def template_workbook() -> bytes:
@@ -190,13 +188,12 @@ def study_workbook(document: Document) -> bytes:
     for number, line in enumerate(INSTRUCTIONS, 2):
         put(sheet, number, 1, line, WRAPPED)
     widths(sheet, 110)
-    _section(add_sheet(book, STUDY_SHEET), "", {k: e.value for k, e in document.top.items()}, choices)
+    _section(add_sheet(book, STUDY_SHEET), "", document.top, choices)
     for name in SECTIONS:
-        values = {key: entry.value for key, entry in document.sections.get(name, {}).items()}
-        values.pop(CANDIDATES, None)
+        values = {k: v for k, v in document.sections.get(name, {}).items() if k != CANDIDATES}
         _section(add_sheet(book, name), name, values, choices)
-    given = document.sections.get("ranking", {}).get(CANDIDATES)
-    _candidates(add_sheet(book, CANDIDATES), given.value if given else [], choices)
+    given = document.sections.get("ranking", {}).get(CANDIDATES, [])
+    _candidates(add_sheet(book, CANDIDATES), given, choices)
     choices.write(book)
     return workbook_bytes(book)
 
