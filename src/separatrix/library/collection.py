@@ -52,33 +52,15 @@ class Library:
         return tuple(self.records(kind))
 
     def record(self, kind: str, name: str) -> Record:
-        """One material or fluid by its exact name.
-
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
+        """One material or fluid by its exact name."""
         return self._found(Record, kind, name)
 
     def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
-        """One solid by its exact name, with the data that serve at a temperature.
-
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
+        """One solid by its exact name, with the data that serve at a temperature."""
         return as_material(self.record(kind, name), temperature)
 
     def friction_table(self, name: str) -> FrictionTable:
-        """One table of measured friction by its exact name.
-
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
+        """One table of measured friction by its exact name."""
         return self._found(FrictionTable, "friction table", name)
 
     def _found(self, wanted: type[Wanted], kind: str, name: str) -> Wanted:
@@ -130,13 +112,7 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
 
 
 def joined(contents: Sequence[Content]) -> Library:
-    """Library of files of the user over the shipped records.
-
-    Raises
-    ------
-    InputError
-        A name stands twice, or is shipped and the record does not say that it replaces it.
-    """
+    """Library of files of the user over the shipped records."""
     own: dict[str, dict[str, Record | FrictionTable]] = {}
     for content in contents:
         for record in content.records:
@@ -194,24 +170,12 @@ def shipped_records(kind: str) -> Records:
 
 
 def with_files(paths: Iterable[Path]) -> Library:
-    """Shipped library with library files of the user.
-
-    Raises
-    ------
-    InputError
-        A file is wrong, or a name stands twice.
-    """
+    """Shipped library with library files of the user."""
     return joined([read_library(path) for path in dict.fromkeys(path.resolve() for path in paths)])
 
 
 def library_files(path: Path) -> list[Path]:
-    """The file itself, or the TOML files of a folder, by name; hidden ones are left out.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be read, or holds too many.
-    """
+    """The file itself, or the TOML files of a folder, by name; hidden ones are left out."""
     if not path.is_dir():
         return [path]
     try:

@@ -49,13 +49,7 @@ class Cell:
 
     @property
     def text(self) -> str:
-        """Its text.
-
-        Raises
-        ------
-        InputError
-            It holds something else.
-        """
+        """Its text."""
         if not isinstance(self.value, str):
             raise InputError(self.place, "must be text", shown(self.value))
         return self.value.strip()
@@ -86,13 +80,7 @@ class Sheet:
         return max((row for row, _ in self.cells), default=0)
 
     def given(self, row: int, column: int | None) -> Cell | None:
-        """Return a cell that holds a value; None if it is empty.
-
-        Raises
-        ------
-        InputError
-            It holds an error, a date, too long a text, or a formula whose value cannot be trusted.
-        """
+        """Return a cell that holds a value; None if it is empty."""
         cell = None if column is None else self.cells.get((row, column))
         if isinstance(cell, InputError):
             raise cell
@@ -113,13 +101,7 @@ class Sheet:
 
 
 def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> list[Sheet]:
-    """Return the worksheets of a workbook: whole where `is_whole` wants it, of others the first two rows.
-
-    Raises
-    ------
-    InputError
-        It is not an .xlsx workbook that can be read safely, or has macros.
-    """
+    """Return the worksheets of a workbook: whole where `is_whole` wants it, of others the first two rows."""
     from openpyxl.reader.excel import ExcelReader
 
     has_links = _refuse_other_kinds(path, label)
@@ -175,13 +157,7 @@ def _refuse_other_kinds(path: Path, label: str) -> bool:
 
 
 def _formulas(part: IO[bytes], place: str, most: int) -> dict[tuple[int, int], str]:
-    """Return the formulas of a sheet by row and column, up to a row.
-
-    Raises
-    ------
-    InputError
-        Rows, or cells of a row, are not in rising order: openpyxl would leave out the later ones.
-    """
+    """Return the formulas of a sheet by row and column, up to a row."""
     from openpyxl.utils.cell import coordinate_to_tuple
     from openpyxl.xml.functions import iterparse
 

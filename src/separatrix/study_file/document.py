@@ -217,13 +217,7 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: what is shipped, stands beside its files, or is named in them.
-
-    Raises
-    ------
-    InputError
-        A library is missing or wrong, or two of them hold the same name.
-    """
+    """Library of a study: what is shipped, stands beside its files, or is named in them."""
     paths: list[Path] = []
     for study, given in document.libraries:
         if study not in shipped_studies().values():

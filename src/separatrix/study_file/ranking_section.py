@@ -217,13 +217,7 @@ _CANDIDATE: dict[str, Reader] = {
 
 
 def name_cage(document: Document, parts: dict[str, Any]) -> None:
-    """Give the cage the candidate of its name.
-
-    Raises
-    ------
-    InputError
-        Neither the library nor a candidate has that name.
-    """
+    """Give the cage the candidate of its name."""
     cage: CageDesign | None = parts.get("cage")
     question: RankingQuestion | None = parts.get("ranking")
     given = document.sections.get("cage", {}).get("material")

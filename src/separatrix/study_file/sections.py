@@ -162,13 +162,7 @@ def _study(document: Document, made: dict[str, Any]) -> Study:
 
 
 def record_of(document: Document, record: Callable[..., Record], given: Mapping[str, Any]) -> Record:
-    """Build a record; its refusals name the keys of the file, and the values as the file has them.
-
-    Raises
-    ------
-    InputError
-        The record refuses its values.
-    """
+    """Build a record; its refusals name the keys of the file, and the values as the file has them."""
     try:
         return record(**given)
     except InputError as error:
@@ -254,15 +248,7 @@ def _converted(document: Document, section: str) -> dict[str, Any]:
 
 
 def _record(document: Document, section: str, given: dict[str, Any]) -> Any:
-    """Build the record of a section from its converted keys.
-
-    Raises
-    ------
-    InputError
-        A key is missing, is given without another one that it needs, or the record refuses its values.
-    Unfinished
-        A value that was written has been refused.
-    """
+    """Build the record of a section from its converted keys."""
     from separatrix.study_file.ranking_section import ranking
 
     written = document.sections[section]

@@ -61,11 +61,6 @@ _NAMES = (STUDY_SHEET, *SECTIONS, CANDIDATES)
 def document_of(path: Path) -> Document:
     """Return the document of a workbook.
 
-    Raises
-    ------
-    InputError
-        It is not a workbook that can be read safely, or is not laid out as a study.
-
     Warns
     -----
     ValidityWarning
