@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import replace
 from math import exp, log
 from os.path import isfile
@@ -58,7 +59,7 @@ def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
 def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
     """Environments and candidates of a friction file beside the study, or of a table of the library."""
     name, scatter = given["friction"], float(given.get("friction_scatter", DEFAULT_SCATTER))
-    frictions: dict[str, dict[str, Friction | None]]
+    frictions: Mapping[str, Mapping[str, Friction | None]]
     if name.endswith(".toml"):
         environments, frictions = _of_file(document.friction_folder / name, given, scatter)
     else:
@@ -66,20 +67,18 @@ def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...
         found = values.current_library().friction_table(name)
         environments = found.environments
         frictions = {
-            material: {
-                env: f and _stated(f, env, found, scatter) for env, f in found.friction[material].items()
-            }
-            for material in _chosen(given, tuple(found.friction), name)
+            material: {env: f and _stated(f, env, found, scatter) for env, f in row.items()}
+            for material, row in found.friction.items()
         }
     library, kind = values.current_library(), "cage material"
     temperature, known = values.current_temperature(), library.names(kind)
     candidates = [
         Candidate(
             name=material,
-            friction=friction,
+            friction=frictions[material],
             material=library.material(kind, material, temperature) if material in known else None,
         )
-        for material, friction in frictions.items()
+        for material in _chosen(given, tuple(frictions), name)
     ]
     return environments, tuple(candidates)
 
@@ -95,13 +94,14 @@ def _of_file(
         cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
         raise InputError("[ranking] friction", rule, shown(given["friction"]), cure)
     tests = read_friction(path)
-    chosen = _chosen(given, tuple(dict.fromkeys(test.material for test in tests)), given["friction"])
-    tested = dict.fromkeys((test.material, test.environment) for test in tests)
+    tested = tuple(dict.fromkeys((test.material, test.environment) for test in tests))
+    known = tuple(dict.fromkeys(material for material, _ in tested))
+    chosen = _chosen(given, known, given["friction"])
     environments = tuple(dict.fromkeys(env for material, env in tested if material in chosen))
     checksum = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-    frictions: dict[str, dict[str, Friction | None]] = {name: dict.fromkeys(environments) for name in chosen}
+    frictions: dict[str, dict[str, Friction | None]] = {name: dict.fromkeys(environments) for name in known}
     for name, env in tested:
-        if name in frictions:
+        if name in chosen:
             law = TestedFriction(material=name, environment=env, tests=tests, default_scatter=scatter)
             frictions[name][env] = _mean_of(law, f"{path.name}, sha256 {checksum}")
     return environments, frictions
