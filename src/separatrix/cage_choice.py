@@ -41,13 +41,7 @@ def environment_of(question: RankingQuestion) -> str | None:
 
 
 def required_environment(study: Study, question: RankingQuestion) -> str:
-    """Return the environment of the bearing.
-
-    Raises
-    ------
-    InputError
-        There are several, none is stated, and none matches fluid and steel.
-    """
+    """Return the environment of the bearing."""
     found = environment_of(question)
     if found is None:
         rule = (

@@ -29,7 +29,7 @@ from separatrix.units import (
 )
 
 SIGMAS = 3.0
-"""Normal scatter is cut at so many standard deviations."""
+"""Standard deviations at which normal scatter is cut."""
 
 LANDLESS = "has no meaning for a cage guided by its balls"
 _FULL_TURN = 2.0 * math.pi
@@ -215,31 +215,29 @@ def _land(cage: CageDesign) -> _check.Problems:
             rule = f"is missing: a cage with {cage.guidance.value} guidance needs its diametral clearance"
             yield InputError("CageDesign.land_clearance", rule)
         return
-    if cage.land_clearance is not None:
-        cure = 'Give guidance = "outer" or "inner", or leave the land out.'
-        yield _check.problem(cage, "land_clearance", LANDLESS, cure)
-    if cage.land_out_of_round != 0.0:
-        yield _check.problem(cage, "land_out_of_round", LANDLESS)
-    if cage.land_count == 2:
-        yield _check.problem(cage, "land_count", LANDLESS)
+    cures = {"land_clearance": 'Give guidance = "outer" or "inner", or leave the land out.'}
+    for name, without in (("land_clearance", None), ("land_out_of_round", 0.0), ("land_count", 1)):
+        if getattr(cage, name) != without:
+            yield _check.problem(cage, name, LANDLESS, cures.get(name, ""))
 
 
 def _axial_clearance(cage: Cage) -> _check.Problems:
     """An elongated pocket has a clearance of its own along the axis, smaller than the circumferential one."""
-    elongated = cage.pocket_shape is PocketShape.ELONGATED
+    elongated, name = cage.pocket_shape is PocketShape.ELONGATED, "pocket_axial_clearance"
     if not elongated and cage.pocket_axial_clearance is not None:
         rule = f"has no meaning for a {cage.pocket_shape.value} pocket"
-        cure = 'Give pocket_shape = "elongated", or leave it out.'
-        yield _check.problem(cage, "pocket_axial_clearance", rule, cure)
+        yield _check.problem(cage, name, rule, 'Give pocket_shape = "elongated", or leave it out.')
     if elongated and cage.pocket_axial_clearance is None:
-        where = f"{type(cage).__name__}.pocket_axial_clearance"
-        cure = "Give the clearance along the bearing axis, stop to stop."
-        yield InputError(where, "is missing: an elongated pocket needs it", cure=cure)
+        rule, cure = (
+            "is missing: an elongated pocket needs it",
+            "Give the clearance along the bearing axis, stop to stop.",
+        )
+        yield InputError(f"{type(cage).__name__}.{name}", rule, cure=cure)
     if elongated and (cage.pocket_axial_clearance or 0.0) > cage.pocket_clearance:
         most = format_quantity(cage.pocket_clearance, "m")
         rule = f"must be at most pocket_clearance, {most}: the slot lies along the circumference"
         cure = 'A slot along the axis meets its balls on flat walls: pocket_shape = "square".'
-        yield _check.problem(cage, "pocket_axial_clearance", rule, cure)
+        yield _check.problem(cage, name, rule, cure)
 
 
 def _axial_offset(cage: Cage) -> _check.Problems:
@@ -249,26 +247,24 @@ def _axial_offset(cage: Cage) -> _check.Problems:
     if cage.pocket_shape is PocketShape.SQUARE:
         cure = 'Give pocket_shape = "cylindrical" or "elongated", or leave it out.'
         yield _check.problem(cage, "pocket_axial_offset", "changes nothing in a square pocket", cure)
-    elif abs(cage.pocket_axial_offset) >= end_half_play(cage):
-        most = format_quantity(end_half_play(cage), "m")
-        rule = f"must be smaller than half the clearance along the axis, {most}"
+    elif abs(cage.pocket_axial_offset) >= (play := end_half_play(cage)):
+        rule = f"must be smaller than half the clearance along the axis, {format_quantity(play, 'm')}"
         cure = "Farther out the pockets would carry the cage by their ends."
         yield _check.problem(cage, "pocket_axial_offset", rule, cure)
 
 
 def _scatter_beyond_clearance(cage: Cage) -> _check.Problems:
     """The thickest ball in the most displaced pocket still has clearance."""
-    taken = SIGMAS * (cage.ball_diameter_scatter / 2.0 + cage.pocket_position_scatter)
-    unknown = any(True for rule in (_axial_clearance, _axial_offset) for _ in rule(cage))
-    if taken == 0.0 or unknown or taken < half_play(cage):
+    position, radius = cage.pocket_position_scatter, cage.ball_diameter_scatter / 2.0
+    taken = SIGMAS * (radius + position)
+    if taken == 0.0 or [*_axial_clearance(cage), *_axial_offset(cage)] or taken < half_play(cage):
         return
-    larger = cage.pocket_position_scatter >= cage.ball_diameter_scatter / 2.0
-    name = "pocket_position_scatter" if larger else "ball_diameter_scatter"
-    most = format_quantity(half_play(cage), "m")
     rule = (
         f"leaves no clearance: {SIGMAS:g} standard deviations of position and of half the diameter together, "
-        f"{format_quantity(taken, 'm')}, must be smaller than half the clearance, {most}"
+        f"{format_quantity(taken, 'm')}, must be smaller than half the clearance, "
+        f"{format_quantity(half_play(cage), 'm')}"
     )
+    name = "pocket_position_scatter" if position >= radius else "ball_diameter_scatter"
     yield _check.problem(cage, name, rule)
 
 

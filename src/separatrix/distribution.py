@@ -11,8 +11,8 @@ uniform where only bounds are known: JCGM 101:2008 (GUM, supplement 1), 6.4.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError
 from separatrix.units import format_quantity, shown
@@ -24,7 +24,7 @@ CUT = 5.0
 """Standard deviations from the middle at which a normal distribution ends."""
 
 COVERAGE = 2.0
-"""What stands behind ``+-`` is an expanded uncertainty: so many standard deviations (GUM, 6.2 and 7.2)."""
+"""Standard deviations in an expanded uncertainty, which is what follows ``+-`` (GUM, 6.2 and 7.2)."""
 
 MOST_SAMPLES = 10_000
 
@@ -34,37 +34,6 @@ exponentiated with its root, without leaving what a computer can hold."""
 _TAIL = 0.5 * math.erfc(CUT / math.sqrt(2.0))
 
 
-class Distribution(Protocol):
-    """What is known of one number, in SI."""
-
-    @property
-    def kind(self) -> str:
-        """Its name, in words."""
-
-    @property
-    def text(self) -> str:
-        """As the study wrote it; empty if it was made in Python."""
-
-    @property
-    def mean(self) -> float:
-        """The mean, which every verb takes that asks for one value."""
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard uncertainty."""
-
-    @property
-    def low(self) -> float:
-        """The least value it takes."""
-
-    @property
-    def high(self) -> float:
-        """The largest value it takes."""
-
-    def quantile(self, probability: Array) -> Array:
-        """Values below which these shares of all draws lie, same shape."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Normal:
     """Normal distribution, without what lies beyond `CUT` standard deviations."""
@@ -72,21 +41,14 @@ class Normal:
     mean: float
     standard_deviation: float
     text: str = ""
+    low: float = field(init=False, repr=False)
+    high: float = field(init=False, repr=False)
     kind = "normal"
 
     def __post_init__(self) -> None:
-        _finite(self, "mean", "standard_deviation")
-        _positive(self, "standard_deviation")
-
-    @property
-    def low(self) -> float:
-        """The least value it takes."""
-        return self.mean - CUT * self.standard_deviation
-
-    @property
-    def high(self) -> float:
-        """The largest value it takes."""
-        return self.mean + CUT * self.standard_deviation
+        _check(self, "mean", "standard_deviation", positive=("standard_deviation",))
+        reach = CUT * self.standard_deviation
+        _set(self, low=self.mean - reach, high=self.mean + reach)
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""
@@ -100,31 +62,21 @@ class LogNormal:
     mean: float
     standard_deviation: float
     text: str = ""
+    log_deviation: float = field(init=False, repr=False)
+    """Standard deviation of the logarithm."""
+
+    median: float = field(init=False, repr=False)
+    low: float = field(init=False, repr=False)
+    high: float = field(init=False, repr=False)
     kind = "log-normal"
 
     def __post_init__(self) -> None:
-        _finite(self, "mean", "standard_deviation")
-        _positive(self, "mean", "standard_deviation")
-
-    @property
-    def log_deviation(self) -> float:
-        """Standard deviation of the logarithm."""
-        return math.sqrt(math.log1p((self.standard_deviation / self.mean) ** 2))
-
-    @property
-    def median(self) -> float:
-        """The value that is exceeded as often as not."""
-        return self.mean * math.exp(-0.5 * self.log_deviation**2)
-
-    @property
-    def low(self) -> float:
-        """The least value it takes."""
-        return self.median * math.exp(-CUT * self.log_deviation)
-
-    @property
-    def high(self) -> float:
-        """The largest value it takes."""
-        return self.median * math.exp(CUT * self.log_deviation)
+        both = ("mean", "standard_deviation")
+        _check(self, *both, positive=both)
+        s = math.sqrt(math.log1p((self.standard_deviation / self.mean) ** 2))
+        median = self.mean * math.exp(-0.5 * s**2)
+        low, high = (median * math.exp(side * CUT * s) for side in (-1.0, 1.0))
+        _set(self, log_deviation=s, median=median, low=low, high=high)
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""
@@ -140,21 +92,14 @@ class Uniform:
     low: float
     high: float
     text: str = ""
+    mean: float = field(init=False, repr=False)
+    standard_deviation: float = field(init=False, repr=False)
     kind = "uniform"
 
     def __post_init__(self) -> None:
-        _finite(self, "low", "high")
-        _rising(self)
-
-    @property
-    def mean(self) -> float:
-        """Middle of the bounds."""
-        return self.low + 0.5 * (self.high - self.low)
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard uncertainty: width over the root of 12."""
-        return (self.high - self.low) / math.sqrt(12.0)
+        _check(self, "low", "high", rising=True)
+        width = self.high - self.low
+        _set(self, mean=self.low + 0.5 * width, standard_deviation=width / math.sqrt(12.0))
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""
@@ -168,28 +113,19 @@ class LogUniform:
     low: float
     high: float
     text: str = ""
+    mean: float = field(init=False, repr=False)
+    standard_deviation: float = field(init=False, repr=False)
     kind = "log-uniform"
 
     def __post_init__(self) -> None:
-        _finite(self, "low", "high")
-        _positive(self, "low")
-        _rising(self)
-
-    @property
-    def mean(self) -> float:
-        """The mean, above the geometric one."""
-        width = math.log(self.high / self.low)
-        return self.low * math.expm1(width) / width
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard uncertainty; of a narrow one by its series, for the two terms nearly cancel."""
+        _check(self, "low", "high", positive=("low",), rising=True)
         w = math.log(self.high / self.low)
         if w > 0.1:
             variance = math.expm1(2.0 * w) / (2.0 * w) - (math.expm1(w) / w) ** 2
-        else:
+        else:  # by its series, for the two terms nearly cancel
             variance = math.exp(w) * w * w * (1.0 / 12.0 + w * w * (1.0 / 180.0 + w * w / 6720.0))
-        return self.low * math.sqrt(variance)
+        deviation = self.low * math.sqrt(variance)
+        _set(self, mean=self.low * math.expm1(w) / w, standard_deviation=deviation)
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""
@@ -200,49 +136,39 @@ class LogUniform:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Samples:
-    """Values that were drawn or measured elsewhere, each as likely as the others; kept in rising order."""
+    """Values that were drawn or measured elsewhere, each as likely as the others; kept in rising order.
+
+    The mean of whole numbers is the one of them that is nearest to it. The standard deviation is that of the
+    values taken as the whole population.
+    """
 
     values: tuple[float, ...]
     text: str = ""
+    mean: float = field(init=False, repr=False)
+    standard_deviation: float = field(init=False, repr=False)
+    low: float = field(init=False, repr=False)
+    high: float = field(init=False, repr=False)
     kind = "samples"
 
     def __post_init__(self) -> None:
-        if not 2 <= len(self.values) <= MOST_SAMPLES:
-            rule = f"must hold 2 to {MOST_SAMPLES} values"
-            raise InputError("Samples.values", rule, str(len(self.values)))
+        if not 2 <= (count := len(self.values)) <= MOST_SAMPLES:
+            raise InputError("Samples.values", f"must hold 2 to {MOST_SAMPLES} values", str(count))
         for value in self.values:
             _check_magnitude("Samples.values", value)
-        if min(self.values) == max(self.values):
+        values = tuple(sorted(self.values))
+        if values[0] == values[-1]:
             cure = "Write the value alone if it is certain."
             raise InputError("Samples.values", "must differ: there is no spread in them", cure=cure)
-        object.__setattr__(self, "values", tuple(sorted(self.values)))
-
-    @property
-    def mean(self) -> float:
-        """The mean; of whole numbers, the one of them that is nearest to it."""
-        mean = math.fsum(self.values) / len(self.values)
-        return min(self.values, key=lambda value: abs(value - mean)) if self.is_whole else mean
+        mean = math.fsum(values) / count
+        deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / count)
+        object.__setattr__(self, "values", values)
+        central = min(values, key=lambda value: abs(value - mean)) if self.is_whole else mean
+        _set(self, mean=central, standard_deviation=deviation, low=values[0], high=values[-1])
 
     @property
     def is_whole(self) -> bool:
         """Whether every value was given as a whole number."""
         return all(isinstance(value, int) for value in self.values)
-
-    @property
-    def standard_deviation(self) -> float:
-        """The standard uncertainty, of the values taken as the whole population."""
-        mean = math.fsum(self.values) / len(self.values)
-        return math.sqrt(math.fsum((value - mean) ** 2 for value in self.values) / len(self.values))
-
-    @property
-    def low(self) -> float:
-        """The least value it takes."""
-        return self.values[0]
-
-    @property
-    def high(self) -> float:
-        """The largest value it takes."""
-        return self.values[-1]
 
     def quantile(self, probability: Array) -> Array:
         """Values below which these shares of all draws lie, same shape."""
@@ -251,6 +177,13 @@ class Samples:
         places = np.minimum((np.asarray(probability) * len(self.values)).astype(int), len(self.values) - 1)
         values: Array = np.array(self.values, dtype=np.float64)[places]
         return values
+
+
+Distribution = Normal | LogNormal | Uniform | LogUniform | Samples
+"""What is known of one number, in SI.
+
+Each has its `kind` in words, the mean that verbs of one value take, the standard uncertainty, the ends, and
+as `text` what the study wrote, empty if it was made in Python."""
 
 
 def positive_alternative(distribution: Distribution) -> LogNormal | None:
@@ -283,25 +216,24 @@ def _standard_normal(probability: Array) -> Array:
     return values
 
 
-def _finite(record: object, *names: str) -> None:
-    for name in names:
-        _check_magnitude(f"{type(record).__name__}.{name}", getattr(record, name))
+def _set(record: object, **values: float) -> None:
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
+
+
+def _check(record: object, *names: str, positive: tuple[str, ...] = (), rising: bool = False) -> None:
+    kind, given = type(record).__name__, {name: getattr(record, name) for name in names}
+    for name, value in given.items():
+        _check_magnitude(f"{kind}.{name}", value)
+    for name in positive:
+        if not given[name] > 0.0:
+            raise InputError(f"{kind}.{name}", "must be > 0", shown(given[name]))
+    if rising and not given["low"] < given["high"]:
+        got = f"{given['low']:g} and {given['high']:g}"
+        raise InputError(f"{kind}.high", "must be above its lower bound", got)
 
 
 def _check_magnitude(where: str, value: float) -> None:
     if not (value == 0.0 or LEAST <= abs(value) <= MOST):
         rule = f"must be a finite number: 0, or between {LEAST:g} and {MOST:g} in magnitude"
         raise InputError(where, rule, shown(value))
-
-
-def _positive(record: object, *names: str) -> None:
-    for name in names:
-        if not getattr(record, name) > 0.0:
-            where = f"{type(record).__name__}.{name}"
-            raise InputError(where, "must be > 0", shown(getattr(record, name)))
-
-
-def _rising(record: Uniform | LogUniform) -> None:
-    if not record.low < record.high:
-        got = f"{record.low:g} and {record.high:g}"
-        raise InputError(f"{type(record).__name__}.high", "must be above its lower bound", got)

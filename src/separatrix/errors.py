@@ -1,8 +1,9 @@
-"""What separatrix raises on purpose, and the one line it says."""
+"""What separatrix raises on purpose: each error is one line."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 
 class SeparatrixError(Exception):
@@ -49,6 +50,15 @@ def together(problems: Sequence[InputError]) -> InputError:
     error = InputError("\n".join(map(str, single)), "")
     error.problems = tuple(single)
     return error
+
+
+@contextmanager
+def noted(problems: list[InputError]) -> Iterator[None]:
+    """Add a refusal to the list of problems instead of raising it."""
+    try:
+        yield
+    except InputError as error:
+        problems.extend(error.problems or (error,))
 
 
 class ConvergenceError(SeparatrixError, RuntimeError):

@@ -7,14 +7,14 @@ import types
 import typing
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any
 
 from separatrix.distribution import Distribution, LogNormal, Normal, described, positive_alternative
 from separatrix.errors import InputError
 from separatrix.study import SECTIONS as SECTIONS
-from separatrix.study import BallBearing, Candidate, Material, Study, key_of
+from separatrix.study import BallBearing, Material, Study, key_of
 from separatrix.toml_values import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
 
@@ -26,8 +26,7 @@ MOST_DISTRIBUTIONS = 50
 SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
 """Numbers that say how an answer is made, not what it is of."""
 
-
-_ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
+ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
 """What the contact angle depends on where the clearance is held."""
 
 Path = tuple[str | int, ...]
@@ -55,10 +54,16 @@ class StudyNumber:
 
 @cache
 def numbers_of(record: type) -> dict[str, str]:
-    """Unit of each field of a record that is one number."""
-    hints = typing.get_type_hints(record, include_extras=True)
-    units = {f.name: _unit(hints[f.name]) for f in fields(record)}
-    return {name: unit for name, unit in units.items() if unit is not None}
+    """Unit of each field of a record that is one number, perhaps absent."""
+    units: dict[str, str] = {}
+    for name, whole in typing.get_type_hints(record, include_extras=True).items():
+        is_union = typing.get_origin(whole) in (typing.Union, types.UnionType)
+        parts = typing.get_args(whole) if is_union else (whole,)
+        (hint, *others) = [part for part in parts if part is not types.NoneType]
+        unit = WHOLE if hint is int else getattr(hint, "__metadata__", (None,))[0]
+        if isinstance(unit, str) and not others:
+            units[name] = unit
+    return units
 
 
 def study_numbers(study: Study) -> dict[str, StudyNumber]:
@@ -69,38 +74,26 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
     whose names come out alike (a dot in the name of a candidate) are left out.
     """
     found = [StudyNumber(RADIAL_CLEARANCE, "m", ("bearing", "radial_clearance"))]
+
+    def add(name: str, record: type, path: Path) -> None:
+        found.extend(StudyNumber(f"{name}.{key}", u, (*path, key)) for key, u in numbers_of(record).items())
+
     for section, record in SECTIONS.items():
-        found += [StudyNumber(f"{section}.{key}", unit, (section, key)) for key, unit in _units(record)]
-        found += _materials(section, getattr(study, section))
+        add(section, record, (section,))
+        held = getattr(study, section)
+        for f in fields(record) if held is not None else ():
+            if isinstance(getattr(held, f.name), Material):
+                add(section if section == "film" else f"{section}.{f.name}", Material, (section, f.name))
     for place, candidate in enumerate(study.ranking.candidates if study.ranking else ()):
-        found += _of_candidate(candidate, ("ranking", "candidates", place))
+        path: Path = ("ranking", "candidates", place)
+        known = [env for env, friction in candidate.friction.items() if friction is not None]
+        for env in known:
+            key = f"ranking.{candidate.name}.{env}"
+            found.append(StudyNumber(key, "-", (*path, "friction", env, "mean")))
+        if candidate.material is not None:
+            add(f"ranking.{candidate.name}.material", Material, (*path, "material"))
     often = Counter(number.key for number in found)
     return {number.key: number for number in found if often[number.key] == 1}
-
-
-def _units(record: type) -> list[tuple[str, str]]:
-    return list(numbers_of(record).items())
-
-
-def _materials(section: str, record: object) -> list[StudyNumber]:
-    """Numbers of the materials that a section holds."""
-    found = []
-    for name in [f.name for f in fields(record)] if is_dataclass(record) else []:
-        if isinstance(getattr(record, name), Material):
-            prefix = section if section == "film" else f"{section}.{name}"
-            path = (section, name)
-            found += [StudyNumber(f"{prefix}.{key}", u, (*path, key)) for key, u in _units(Material)]
-    return found
-
-
-def _of_candidate(candidate: Candidate, path: Path) -> list[StudyNumber]:
-    name = f"ranking.{candidate.name}"
-    known = [env for env, friction in candidate.friction.items() if friction is not None]
-    found = [StudyNumber(f"{name}.{env}", "-", (*path, "friction", env, "mean")) for env in known]
-    if candidate.material is not None:
-        at = (*path, "material")
-        found += [StudyNumber(f"{name}.material.{key}", u, (*at, key)) for key, u in _units(Material)]
-    return found
 
 
 def value_of(study: Study, number: StudyNumber) -> float | None:
@@ -108,13 +101,11 @@ def value_of(study: Study, number: StudyNumber) -> float | None:
     if number.key == RADIAL_CLEARANCE:
         return radial_clearance(study.bearing)
     held: Any = study
+    step: Any
     for step in number.path:
-        held = None if held is None else _inside(held, step)
+        if held is not None:
+            held = held[step] if isinstance(held, Mapping | tuple) else getattr(held, step)
     return held if isinstance(held, int | float) else None
-
-
-def _inside(held: Any, step: Any) -> Any:
-    return held[step] if isinstance(held, Mapping | tuple) else getattr(held, step)
 
 
 def with_values(study: Study, values: Mapping[str, float]) -> Study:
@@ -137,14 +128,20 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
     """
     known = study_numbers(study)
     chosen = [_known(known, key) for key in keys]
-    paths = [number.path for number in chosen]
     left = {key: one for key, one in study.distributions.items() if key not in keys}
-    held = _held_clearance(study, keys)
+    is_held = RADIAL_CLEARANCE in study.origins and not {RADIAL_CLEARANCE, "bearing.contact_angle"} & {*keys}
+    moves = any(f"bearing.{key}" in keys for key in ANGLE_FROM)
+    held = {"radial_clearance": radial_clearance(study.bearing)} if is_held and moves else None
 
     def with_these(values: Sequence[float]) -> Study:
-        changes: dict[Any, Any] = {} if held is None else {"bearing": {"radial_clearance": held}}
-        for number, path, value in zip(chosen, paths, values, strict=True):
-            _put(changes, path, _whole(value) if number.is_whole else float(value))
+        changes: dict[Any, Any] = {} if held is None else {"bearing": dict(held)}
+        for number, value in zip(chosen, values, strict=True):
+            if number.is_whole and value != int(value):
+                raise InputError("A whole number", "must be set to one", f"{value:g}")
+            inside = changes
+            for step in number.path[:-1]:
+                inside = inside.setdefault(step, {})
+            inside[number.path[-1]] = int(value) if number.is_whole else float(value)
         try:
             parts = {name: _changed(getattr(study, name), name, part) for name, part in changes.items()}
             return replace(study, **parts, distributions=left)
@@ -157,22 +154,9 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
 
 def _known(known: Mapping[str, StudyNumber], key: str) -> StudyNumber:
     if key not in known:
-        raise InputError(
-            shown(key), "is not a numeric input of this study, or is ambiguous", cure=nearest(key, known)
-        )
+        rule = "is not a numeric input of this study, or is ambiguous"
+        raise InputError(shown(key), rule, cure=nearest(key, known))
     return known[key]
-
-
-def _whole(value: float) -> int:
-    if value != int(value):
-        raise InputError("A whole number", "must be set to one", f"{value:g}")
-    return int(value)
-
-
-def _put(changes: dict[Any, Any], path: Path, value: float) -> None:
-    for step in path[:-1]:
-        changes = changes.setdefault(step, {})
-    changes[path[-1]] = value
 
 
 def _changed(held: Any, name: str, changes: dict[Any, Any]) -> Any:
@@ -188,24 +172,14 @@ def _changed(held: Any, name: str, changes: dict[Any, Any]) -> Any:
         for key, value in changes.items()
     }
     if isinstance(held, BallBearing) and "radial_clearance" in inside:
-        inside["contact_angle"] = _angle(held, inside)
+        clearance = inside.pop("radial_clearance")
+        sizes = [inside.get(key, getattr(held, key)) for key in ANGLE_FROM]
+        inside["contact_angle"] = contact_angle_of(clearance, *sizes)
     return replace(held, **inside)
 
 
-def _angle(bearing: BallBearing, changes: dict[str, Any]) -> Radian:
-    clearance = changes.pop("radial_clearance")
-    diameter, inner, outer = (changes.get(key, getattr(bearing, key)) for key in _ANGLE_FROM)
-    return contact_angle_of(clearance, diameter, inner, outer)
-
-
 def contact_angle_of(radial_clearance: Metre, diameter: Metre, inner: float, outer: float) -> Radian:
-    """Contact angle without load: cos(angle) = 1 - P_d / (2 (f_i + f_o - 1) D).
-
-    Raises
-    ------
-    InputError
-        The clearance is negative or leaves no angle.
-    """
+    """Contact angle without load: cos(angle) = 1 - P_d / (2 (f_i + f_o - 1) D)."""
     room = 2.0 * (inner + outer - 1.0) * diameter
     if not 0.0 <= radial_clearance < room:
         rule = f"must be >= 0 and < {format_quantity(room, 'm')}, where the free contact angle reaches 90 deg"
@@ -217,14 +191,6 @@ def radial_clearance(bearing: BallBearing) -> Metre:
     """Diametral play of the bearing without load, P_d = 2 (f_i + f_o - 1) D (1 - cos(angle))."""
     room = 2.0 * (bearing.inner_conformity + bearing.outer_conformity - 1.0) * bearing.ball_diameter
     return 2.0 * room * math.sin(0.5 * bearing.contact_angle) ** 2
-
-
-def _held_clearance(study: Study, keys: Sequence[str]) -> Metre | None:
-    """Clearance to keep, where the study gave it and what makes an angle of it changes; else None."""
-    if RADIAL_CLEARANCE in keys or "bearing.contact_angle" in keys or RADIAL_CLEARANCE not in study.origins:
-        return None
-    moved = any(f"bearing.{key}" in keys for key in _ANGLE_FROM)
-    return radial_clearance(study.bearing) if moved else None
 
 
 def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
@@ -246,18 +212,12 @@ def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study
 
 
 def settled_in(study: Study, key: str, distribution: Distribution) -> Distribution:
-    """The distribution, or the log-normal one in its place, whose both ends the study takes.
-
-    Raises
-    ------
-    InputError
-        It takes neither: which end, and why.
-    """
+    """The distribution, or the log-normal one in its place, whose both ends the study takes."""
     number = _known(study_numbers(study), key)
-    other = positive_alternative(distribution)
     refused = _refusal(study, number, distribution)
     if refused is None:
         return distribution
+    other = positive_alternative(distribution)
     if other is not None and _refusal(study, number, other) is None:
         return other
     raise refused
@@ -270,25 +230,15 @@ def _refusal(study: Study, number: StudyNumber, distribution: Distribution) -> I
     """
     if number.is_friction and isinstance(distribution, LogNormal):
         return None
-    key, unit, put = number.key, number.unit, setter(study, [number.key])
+    put = setter(study, [number.key])
     for side, end in (("lower", distribution.low), ("upper", distribution.high)):
         try:
             put([end])
         except InputError as error:
-            where = f"at the {side} end, {format_quantity(end, unit or '-')}: {error.path} {error.rule}"
-            rule = f"leaves the range that the study takes {where}"
+            at = f"at the {side} end, {format_quantity(end, number.unit or '-')}"
+            rule = f"leaves the range that the study takes {at}: {error.path} {error.rule}"
             wide = isinstance(distribution, Normal | LogNormal)
             cure = "Make it narrower, or write { between = [..., ...] }." if wide else "Narrow it."
-            return InputError(key, rule, distribution.text or described(distribution, unit), cure)
+            got = distribution.text or described(distribution, number.unit)
+            return InputError(number.key, rule, got, cure)
     return None
-
-
-def _unit(hint: Any) -> str | None:
-    """Unit of an annotation of one number, perhaps absent; None for anything else."""
-    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
-        parts = [part for part in typing.get_args(hint) if part is not types.NoneType]
-        return _unit(parts[0]) if len(parts) == 1 else None
-    if hint is int:
-        return WHOLE
-    unit = getattr(hint, "__metadata__", (None,))[0]
-    return unit if isinstance(unit, str) else None

@@ -29,14 +29,15 @@ class Kind:
     noun: str = "a study"
     most_bytes: int = MOST_BYTES
     empty: str = "`separatrix new PATH` writes a study to fill in."
-    """What helps who has an empty one."""
+    """The cure of an empty one."""
 
 
 STUDY = Kind()
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
-_KEY_LINE = re.compile(rf"\s*({_KEY}(?:[ \t]*\.[ \t]*{_KEY})*)[ \t]*=")
-_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_KEY}(?:[ \t]*\.[ \t]*{_KEY})*)[ \t]*\]")
+_DOTTED = rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*"
+_KEY_LINE = re.compile(rf"\s*({_DOTTED})[ \t]*=")
+_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_DOTTED})[ \t]*\]")
 _STRING_OR_COMMENT = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"""|\Z)'
     r"|'''.*?(?:'''|\Z)"
@@ -64,14 +65,16 @@ def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str,
     Raises
     ------
     InputError
-        No regular file, small enough for its kind, of UTF-8 with valid TOML in it.
+        Not a regular file, small enough for its kind, of UTF-8 with valid TOML in it.
     """
     return parsed(read_text(path, kind), label_of(path), kind)
 
 
 def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str, int]]:
     """Content of TOML text, and the line of each key as a dotted path."""
-    _refuse_deep_nesting(text, label)
+    _, too_deep = _statements(text)
+    if too_deep:
+        raise InputError(f"{label}, line {too_deep}", f"nests brackets more than {DEEPEST} deep")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -83,22 +86,23 @@ def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, Any], d
 
 def lines_of_keys(text: str) -> dict[str, int]:
     """Line number of each key by its dotted path: ``bearing.bore``, ``ranking.candidates.0.name``."""
-    lines: dict[str, int] = {}
+    found: dict[str, int] = {}
     seen: dict[str, int] = {}
-    prefix = ""
-    for number, line in _statements(text):
+    prefix, lines = "", text.split("\n")
+    for number in _statements(text)[0]:
+        line = lines[number - 1]
         if header := _HEADER.match(line):
-            name = _plain(header.group(2))
-            if header.group(1) == "[[":
+            name = _plain(header[2])
+            if header[1] == "[[":
                 seen[name] = seen.get(name, -1) + 1
                 name = f"{name}.{seen[name]}"
             prefix = name + "."
-            lines.setdefault(name, number)
+            found.setdefault(name, number)
         elif key := _KEY_LINE.match(line):
-            parts = _plain(key.group(1)).split(".")
+            parts = _plain(key[1]).split(".")
             for depth in range(1, min(len(parts), 4) + 1):
-                lines.setdefault(prefix + ".".join(parts[:depth]), number)
-    return lines
+                found.setdefault(prefix + ".".join(parts[:depth]), number)
+    return found
 
 
 @dataclass(slots=True)
@@ -148,21 +152,19 @@ def _paths(dotted: str, data: dict[str, Any]) -> Iterator[str]:
         yield path
 
 
-def _statements(text: str) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line that begins a statement: not inside a text or a bracket."""
-    lines, number, depth = text.split("\n"), 1, 0
-    yield number, lines[0]
-    for mark in re.findall(r"[\[{\]}\n\0]", _STRING_OR_COMMENT.sub(_continued, text)):
+def _statements(text: str) -> tuple[list[int], int]:
+    """Numbers of the lines that begin a statement; and of the line that nests too deep, 0 if none does."""
+    begins, number, depth = [1], 1, 0
+    # a text or a comment without its content, its ends of lines marked as inside
+    bare = _STRING_OR_COMMENT.sub(lambda match: "\0" * match[0].count("\n"), text)
+    for mark in re.findall(r"[\[{\]}\n\0]", bare):
         depth = max(0, depth + (mark in "[{") - (mark in "]}"))
-        if mark in "\n\0":
-            number += 1
+        if depth > DEEPEST:
+            return begins, number
+        number += mark in "\n\0"
         if mark == "\n" and depth == 0:
-            yield number, lines[number - 1]
-
-
-def _continued(match: re.Match[str]) -> str:
-    """A text or a comment without its content, its ends of lines marked as inside."""
-    return "\0" * match.group().count("\n")
+            begins.append(number)
+    return begins, 0
 
 
 def _plain(key: str) -> str:
@@ -174,47 +176,24 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
     label = label_of(path)
     size_of(path, path_text(path))
     try:
-        raw = _bytes(path, kind.most_bytes)
+        with path.open("rb") as file:
+            raw = file.read(kind.most_bytes + 1)
     except OSError as error:
         raise unreadable(path_text(path), error) from None
     if len(raw) > kind.most_bytes:
         raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
-    return _decoded(raw, label)
-
-
-def _bytes(path: Path, most: int) -> bytes:
-    with path.open("rb") as file:
-        return file.read(most + 1)
-
-
-def _decoded(raw: bytes, label: str) -> str:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise InputError(
-            f"{label}, line {line}", "is not UTF-8 text", cure="Save the file as UTF-8."
-        ) from None
-    for number, line_text in enumerate(text.split("\n"), 1):
-        if "\0" in line_text:
+        where, cure = f"{label}, line {line}", "Save the file as UTF-8."
+        raise InputError(where, "is not UTF-8 text", cure=cure) from None
+    for number, content in enumerate(text.split("\n"), 1):
+        if "\0" in content:
             raise InputError(f"{label}, line {number}", "holds a NUL character: this is not a text file")
-        if len(line_text) > LONGEST_LINE:
+        if len(content) > LONGEST_LINE:
             raise InputError(f"{label}, line {number}", f"is longer than {LONGEST_LINE} characters")
     return text
-
-
-def _refuse_deep_nesting(text: str, label: str) -> None:
-    depth, line = 0, 1
-    for mark in re.findall(r"[\[{\]}\n]", _STRING_OR_COMMENT.sub(_newlines, text)):
-        if mark == "\n":
-            line += 1
-        depth = max(0, depth + (mark in "[{") - (mark in "]}"))
-        if depth > DEEPEST:
-            raise InputError(f"{label}, line {line}", f"nests brackets more than {DEEPEST} deep")
-
-
-def _newlines(match: re.Match[str]) -> str:
-    return "\n" * match.group().count("\n")
 
 
 def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
@@ -223,26 +202,20 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     if not found:
         rule = "is not valid TOML: it ends inside a quotation or a bracket"
         return InputError(label, rule if "end of document" in message else "is not valid TOML")
-    number = int(found.group(1))
-    line = text.split("\n")[number - 1].strip()
-    where = f"{label}, line {number}"
-    key = _KEY_LINE.match(line)
+    number = int(found[1])
+    line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
     if "overwrite" in message or "twice" in message:
-        return InputError(
-            where, f"gives {printable(_plain(key.group(1))) if key else shown(line)} a second time"
-        )
+        key = _KEY_LINE.match(line)
+        return InputError(where, f"gives {printable(_plain(key[1])) if key else shown(line)} a second time")
     reason = message[: found.start()]
-    return InputError(
-        where, f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120], printable(line), _cure(line)
-    )
+    rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
+    return InputError(where, rule, printable(line), _cure(line))
 
 
 def _cure(line: str) -> str:
     """What the writer of an invalid line most likely meant."""
     if comma := re.search(r"=\s*([+-]?[0-9]+),([0-9]+)", line):
-        return f"Write a decimal point: {comma.group(1)}.{comma.group(2)}."
+        return f"Write a decimal point: {comma[1]}.{comma[2]}."
     if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
-        return f'Put quantities in quotes: "{printable(bare.group(1).strip())}".'
-    if re.search(r"=\s*[A-Za-z]", line):
-        return "Put text in quotes."
-    return ""
+        return f'Put quantities in quotes: "{printable(bare[1].strip())}".'
+    return "Put text in quotes." if re.search(r"=\s*[A-Za-z]", line) else ""

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from enum import Enum
 from typing import Any, TypeVar
 
-from separatrix.errors import InputError, together
+from separatrix.errors import InputError, noted, together
 from separatrix.units import NUMBER, parse, printable, shown
 
 Record = TypeVar("Record")
 Reader = Callable[[Any, str], Any]
 """From a value and the name of its place to the converted value; raises InputError."""
 
-
 _BESIDE = ("ring", "race", "land", "guided")
-"""Words that may stand after a choice."""
+"""Words that may follow a choice."""
 
 
 def folded(name: str) -> str:
@@ -28,22 +27,20 @@ def folded(name: str) -> str:
 def nearest(name: str, known: Iterable[str]) -> str:
     """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
     choices = list(known)
-    near = get_close_matches(name[:80].casefold(), {c.casefold(): c for c in choices}, 1, 0.6)
-    listed = f"Known: {', '.join(choices)}."
-    if len(listed) > 200:
-        listed = listed[: listed.rindex(",", 0, 200)] + ", ..."
     by_case = {c.casefold(): c for c in choices}
-    return f"Did you mean {by_case[near[0]]}?" if near else listed
+    if near := get_close_matches(name[:80].casefold(), by_case, 1, 0.6):
+        return f"Did you mean {by_case[near[0]]}?"
+    return cut_list(f"Known: {', '.join(choices)}.")
 
 
-def as_is(value: Any, where: str) -> Any:  # noqa: ARG001 - the signature of every reader
-    """Read nothing yet."""
-    return value
+def cut_list(listed: str) -> str:
+    """A sentence with a list, cut after a comma where it is long."""
+    return listed if len(listed) <= 200 else listed[: listed.rindex(",", 0, 200)] + ", ..."
 
 
 def quantity(unit: str) -> Reader:
-    """Read a number with a unit, as text."""
-    return lambda value, where: parse(value, unit, where)
+    """Read a number with a unit, as text; of a ratio, without a unit, a plain number."""
+    return ratio if unit == "-" else lambda value, where: parse(value, unit, where)
 
 
 def ratio(value: Any, where: str) -> float:
@@ -76,11 +73,10 @@ def text(value: Any, where: str) -> str:
 
 def choice(options: type[Enum]) -> Reader:
     """Read one of the values of an Enum, in any spelling: "Inner ring" is "inner"."""
+    names = [option.value for option in options]
+    known = {folded(f"{name} {word}"): name for name in names for word in ("", *_BESIDE)}
 
     def read(value: Any, where: str) -> Enum:
-        names = [option.value for option in options]
-        spelt = {spelling: name for name in names for spelling in (name, *(f"{name} {w}" for w in _BESIDE))}
-        known = {folded(spelling): name for spelling, name in spelt.items()}
         found = known.get(folded(value)) if isinstance(value, str) else None
         if found is None:
             rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
@@ -101,20 +97,32 @@ def list_of(reader: Reader) -> Reader:
     return read
 
 
-def table(value: Any, where: str, readers: dict[str, Reader], required: tuple[str, ...]) -> dict[str, Any]:
-    """Read a table in place: every key known, every required key there."""
+def table(
+    value: Any,
+    where: str,
+    readers: Mapping[str, Reader],
+    required: tuple[str, ...] = (),
+    what: str = "this table",
+) -> dict[str, Any]:
+    """Read a table in place, every key known and every required key there; all faults are collected."""
     if not isinstance(value, dict):
         raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
-    for key in value:
-        if key not in readers:
-            at = f"{where}.{printable(key)}"
-            raise InputError(at, "is not a key of this table", cure=nearest(key, readers))
+    given: dict[str, Any] = {}
+    problems: list[InputError] = []
+    for key, item in value.items():
+        at = f"{where}.{printable(key)}"
+        with noted(problems):
+            if key not in readers:
+                raise InputError(at, f"is not a key of {what}", cure=nearest(key, readers))
+            given[key] = readers[key](item, at)
     if missing := [key for key in required if key not in value]:
-        raise InputError(where, f"lacks: {', '.join(missing)}")
-    return {key: readers[key](item, f"{where}.{key}") for key, item in value.items()}
+        problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
+    if problems:
+        raise together(problems)
+    return given
 
 
-def build(record: type[Record], values: dict[str, Any], where: str) -> Record:
+def build(record: Callable[..., Record], values: Mapping[str, Any], where: str) -> Record:
     """Build a record from a table; its refusals are given the place of the table."""
     try:
         return record(**values)

@@ -12,7 +12,6 @@ from separatrix.library.collection import (
     beside,
     joined,
     library_files,
-    shipped,
     with_files,
 )
 from separatrix.library.reading import Content, library_of_text, read_library
@@ -37,11 +36,10 @@ __all__ = [
     "library_of_text",
     "names",
     "read_library",
-    "shipped",
     "with_files",
 ]
 
 
 def names(kind: str) -> tuple[str, ...]:
     """Names of the shipped records of one kind, a member of `KINDS`."""
-    return shipped().names(kind)
+    return Library().names(kind)

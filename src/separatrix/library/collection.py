@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 from separatrix.errors import DataError, InputError
-from separatrix.library.reading import Content, Shipped, read_library
-from separatrix.library.records import KINDS, PROPERTIES, Choice, FrictionTable, LibraryFile, Record, choose
-from separatrix.study import Candidate, Material
+from separatrix.library.reading import Content, read_library
+from separatrix.library.records import KINDS, PROPERTIES, FrictionTable, LibraryFile, Record, choose
+from separatrix.study import Material
 from separatrix.toml_text import path_text
 from separatrix.toml_values import folded
 from separatrix.units import Kelvin, printable, shown
@@ -30,6 +30,7 @@ ALONE, FOLDER = "materials.toml", "materials"
 
 MOST_FILES = 200
 Records = Mapping[str, Record | FrictionTable]
+Wanted = TypeVar("Wanted", Record, FrictionTable)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,76 +47,38 @@ class Library:
         """Records of one kind by name, the shipped ones first."""
         return {**shipped_records(kind), **self.own.get(kind, {})}
 
-    def find(self, kind: str, name: str) -> Record | FrictionTable | None:
-        """One record by its exact name, None if there is none; others of its kind are not read."""
-        return self.own.get(kind, {}).get(name) or shipped_records(kind).get(name)
-
     def names(self, kind: str) -> tuple[str, ...]:
         """Names of one kind, in the order of the files."""
-        return tuple(dict.fromkeys([*shipped_records(kind), *self.own.get(kind, {})]))
+        return tuple(self.records(kind))
 
     def record(self, kind: str, name: str) -> Record:
-        """One material or fluid by its exact name.
-
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
-        found = self.find(kind, name)
-        if not isinstance(found, Record):
-            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
-        return found
+        """One material or fluid by its exact name."""
+        return self._found(Record, kind, name)
 
     def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
-        """One solid by its exact name, with the data that serve at a temperature.
-
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
+        """One solid by its exact name, with the data that serve at a temperature."""
         return as_material(self.record(kind, name), temperature)
 
     def friction_table(self, name: str) -> FrictionTable:
-        """One table of measured friction by its exact name.
+        """One table of measured friction by its exact name."""
+        return self._found(FrictionTable, "friction table", name)
 
-        Raises
-        ------
-        DataError
-            There is none of that name.
-        """
-        kind = "friction table"
-        found = self.find(kind, name)
-        if not isinstance(found, FrictionTable):
+    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Wanted:
+        found = self.records(kind).get(name)
+        if not isinstance(found, wanted):
             raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
         return found
-
-    def candidate(self, table: FrictionTable, name: str, temperature: Kelvin | None = None) -> Candidate:
-        """One material of a friction table, with its elastic record if the library has one.
-
-        Raises
-        ------
-        DataError
-            The table has no such material.
-        """
-        if name not in table.friction:
-            raise DataError(f'no material "{name}"; {table.name} has {", ".join(table.friction)}')
-        kind = "cage material"
-        known = name in self.names(kind)
-        material = self.material(kind, name, temperature) if known else None
-        return Candidate(name=name, friction=table.friction[name], material=material)
 
     def named(self, kind: str, name: str) -> str | None:
         """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
 
         Case of letters, spaces, hyphens and the like do not count.
         """
-        names, wanted = self.names(kind), folded(name)
-        if name in names:
+        records, wanted = self.records(kind), folded(name)
+        if name in records:
             return name
-        found = [known for known in names if folded(known) == wanted]  # no record is read
-        found = found or [r.name for r in self.records(kind).values() if wanted in map(folded, _aliases(r))]
+        found = [known for known in records if folded(known) == wanted]
+        found = found or [one.name for one in records.values() if wanted in map(folded, _aliases(one))]
         return found[0] if wanted and len(found) == 1 else None
 
     def fluid(self, name: str) -> Record | None:
@@ -128,47 +91,28 @@ class Library:
         return tuple(record for kind in KINDS for record in self.records(kind).values())
 
 
-_ACTING = {
-    "bearing material": ("elastic_modulus", "poisson_ratio", "density"),
-    "cage material": ("elastic_modulus", "poisson_ratio"),
-    "film": ("elastic_modulus", "poisson_ratio"),
-}
-"""Numbers of a solid that any answer depends on."""
-
-
 def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
     chosen = {key: choose(data, temperature, PROPERTIES[key].words) for key, data in record.data.items()}
-    words = {key: PROPERTIES[key].words for key in chosen}
-    sources = [f"{words[key]}: {choice.datum.source}" for key, choice in chosen.items()]
+    sources = [f"{PROPERTIES[key].words}: {choice.datum.source}" for key, choice in chosen.items()]
+    confidences = [f"{PROPERTIES[key].words}: {choice.datum.confidence}" for key, choice in chosen.items()]
     composition = [f"Composition: {record.composition}"] if record.composition else []
     remark = [record.remark.rstrip(".")] if record.remark else []
+    # numbers on which any answer depends
+    acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
+    taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
     return Material(
         name=record.name,
         source=". ".join([*composition, *remark, *sources]),
-        confidence=", ".join(f"{words[key]}: {choice.datum.confidence}" for key, choice in chosen.items()),
-        record=_whole(record, chosen, temperature),
-        cautions=tuple(
-            choice.caution for key, choice in chosen.items() if choice.caution and key in _ACTING[record.kind]
-        ),
+        confidence=", ".join(confidences),
+        record={**record.plain(), "taken": taken, "taken_at": temperature},
+        cautions=tuple(one.caution for key, one in chosen.items() if one.caution and key in acting),
         **{key: choice.datum.value for key, choice in chosen.items()},
     )
 
 
-def _whole(record: Record, chosen: Mapping[str, Choice], temperature: Kelvin | None) -> dict[str, Any]:
-    """The record as plain data, with which datum of each property was taken and for which temperature."""
-    taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
-    return {**record.plain(), "taken": taken, "taken_at": temperature}
-
-
 def joined(contents: Sequence[Content]) -> Library:
-    """Library of files of the user over the shipped records.
-
-    Raises
-    ------
-    InputError
-        A name stands twice, or is shipped and the record does not say that it replaces it.
-    """
+    """Library of files of the user over the shipped records."""
     own: dict[str, dict[str, Record | FrictionTable]] = {}
     for content in contents:
         for record in content.records:
@@ -182,18 +126,15 @@ def joined(contents: Sequence[Content]) -> Library:
 
 def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
     """Refuse a record that would take the place of another in silence."""
-    where = _header(new)
     if old is None and new.replaces:
-        cure = "Leave replaces out, or correct the name."
-        raise InputError(where, f"says that it replaces a {new.kind} that is not shipped", cure=cure)
-    if old is None:
-        return
-    if not old.file.shipped:
+        rule = f"says that it replaces a {new.kind} that is not shipped"
+        raise InputError(_header(new), rule, cure="Leave replaces out, or correct the name.")
+    if old is not None and not old.file.shipped:
         cure = "Rename or remove one of them."
-        raise InputError(where, f"stands in {place(old)} too", shown(new.name), cure)
-    if not new.replaces:
+        raise InputError(_header(new), f"stands in {place(old)} too", shown(new.name), cure)
+    if old is not None and not new.replaces:
         cure = "Give it another name, or say replaces = true."
-        raise InputError(where, f"has the name of a shipped {new.kind}", shown(new.name), cure)
+        raise InputError(_header(new), f"has the name of a shipped {new.kind}", shown(new.name), cure)
 
 
 def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
@@ -224,34 +165,17 @@ def place(record: Record | FrictionTable) -> str:
 @cache
 def shipped_records(kind: str) -> Records:
     """Records of one kind that come with the package, by name."""
-    return Shipped(Path(__file__).with_name("data") / SHIPPED_FILES[kind])
-
-
-def shipped() -> Library:
-    """The library that comes with the package, alone."""
-    return Library()
+    content = read_library(Path(__file__).with_name("data") / SHIPPED_FILES[kind], shipped=True)
+    return {record.name: record for record in content.records}
 
 
 def with_files(paths: Iterable[Path]) -> Library:
-    """Shipped library with library files of the user.
-
-    Raises
-    ------
-    InputError
-        A file is wrong, or a name stands twice.
-    """
-    wanted = list(dict.fromkeys(path.resolve() for path in paths))
-    return joined([read_library(path) for path in wanted])
+    """Shipped library with library files of the user."""
+    return joined([read_library(path) for path in dict.fromkeys(path.resolve() for path in paths)])
 
 
 def library_files(path: Path) -> list[Path]:
-    """The file itself, or the TOML files of a folder, by name; hidden ones are left out.
-
-    Raises
-    ------
-    InputError
-        There is no such file or folder, or the folder holds none or too many.
-    """
+    """The file itself, or the TOML files of a folder, by name; hidden ones are left out."""
     if not path.is_dir():
         return [path]
     try:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
-from separatrix.errors import InputError, together
+from separatrix.errors import InputError, noted, together
 from separatrix.library.records import (
-    CONDITION_UNITS,
+    CONDITIONS,
     CONFIDENCES,
     ELASTIC,
     FLUID,
@@ -25,8 +25,8 @@ from separatrix.library.records import (
 from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import Friction
 from separatrix.toml_text import Kind, label_of, parsed, places_of, read_text
-from separatrix.toml_values import Reader, build, nearest, ratio, table, text, whole
-from separatrix.units import format_quantity, parse, printable, shown
+from separatrix.toml_values import Reader, build, nearest, quantity, ratio, table, text, whole
+from separatrix.units import format_quantity, printable, shown
 
 LIBRARY = Kind(
     noun="a library of materials",
@@ -39,14 +39,6 @@ SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
 MOST_RECORDS, MOST_DATA, MOST_PROBLEMS, LONGEST_TEXT = 2000, 100, 100, 1000
 TOP = ("title",)
 BLANK = "What is not known is left out, never given as 0."
-CONDITION_LIMITS = {
-    "temperature": (1e-3, 5000.0),
-    "slip_speed": (1e-9, 1e4),
-    "normal_force": (1e-9, 1e9),
-    "pressure": (1e-3, 1e12),
-}
-Made = TypeVar("Made")
-Inputs = ParamSpec("Inputs")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +49,7 @@ class Content:
     records: tuple[Record | FrictionTable, ...]
 
 
-def read_library(path: Path) -> Content:
+def read_library(path: Path, *, shipped: bool = False) -> Content:
     """Records of a library file.
 
     Raises
@@ -65,160 +57,89 @@ def read_library(path: Path) -> Content:
     InputError
         Everything that is wrong, a line each: file, line, record, rule, value, cure.
     """
-    return library_of_text(read_text(path, LIBRARY), label_of(path))
+    return library_of_text(read_text(path, LIBRARY), label_of(path), shipped=shipped)
 
 
-def library_of_text(given: str, label: str) -> Content:
+def library_of_text(given: str, label: str, *, shipped: bool = False) -> Content:
     """Records of the text of a library file."""
     data, lines = parsed(given, label, LIBRARY)
-    return _Reading(given, label, data, lines, shipped=False).content(data)
-
-
-class Shipped(Mapping[str, Record | FrictionTable]):
-    """Records of a shipped file, of one kind, by name; each is read when asked for, as a study needs few.
-
-    Raises
-    ------
-    InputError
-        A record is wrong, when it is asked for.
-    """
-
-    def __init__(self, path: Path) -> None:
-        given = read_text(path, LIBRARY)
-        data, lines = parsed(given, label_of(path), LIBRARY)
-        self._reading = _Reading(given, label_of(path), data, lines, shipped=True)
-        ((self._section, self._items),) = data.items()
-        self._read: dict[str, Record | FrictionTable] = {}
-
-    def __getitem__(self, name: str) -> Record | FrictionTable:
-        if name not in self._read:
-            self._read[name] = self._reading.record(self._section, name, self._items[name])
-        return self._read[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._items)
-
-    def __len__(self) -> int:
-        return len(self._items)
-
-
-class _Reading:
-    """One file being read: what is wrong is collected, and placed at the end."""
-
-    def __init__(
-        self, given: str, label: str, data: dict[str, Any], lines: Mapping[str, int], *, shipped: bool
-    ) -> None:
-        checksum = hashlib.sha256(given.encode()).hexdigest()
-        self.file = LibraryFile(label=label, checksum=checksum, shipped=shipped)
-        self.lines, self.places = lines, places_of(label, data, lines)
-        self.problems: list[InputError] = []
-
-    def content(self, data: Mapping[str, Any]) -> Content:
-        """Read every section; refuse with everything wrong."""
-        records: list[Record | FrictionTable] = []
-        for section, value in data.items():
-            if section in TOP:
-                self._attempt(_long_text, value, section)
-                continue
-            where = f"[{printable(section)}]" if isinstance(value, dict | list) else printable(section)
-            if section not in SECTIONS:
-                cure = nearest(section, SECTIONS)
-                self.problems.append(InputError(where, "is not a kind of record", cure=cure))
-            elif not isinstance(value, dict):
-                rule = "must hold records, each with its name"
-                self.problems.append(InputError(where, rule, shown(value)))
-            elif len(value) > MOST_RECORDS:
-                self.problems.append(InputError(where, f"holds more than {MOST_RECORDS} records"))
-            else:
-                for name, item in value.items():
-                    if len(self.problems) <= MOST_PROBLEMS:
-                        record = self._attempt(self.record, section, name, item)
-                        records += [record] if record is not None else []
-        if not records and not self.problems:
-            rule = 'holds no record: it needs a section such as [cage_material."My compound"]'
-            self.problems.append(InputError("", rule))
-        if self.problems:
-            raise together([one.at(self.places.locate(one.path)) for one in self.problems])
-        return Content(file=self.file, records=tuple(records))
-
-    def record(self, section: str, name: str, item: Any) -> Record | FrictionTable:
-        """Read one record; its faults are under the path of its keys, ``[film] PTFE.density``."""
-        at = f"[{section}] {printable(name)}"
-        if text(name, f"{at}, its name,") != name.strip():
-            raise InputError(f"{at}, its name,", "must not begin or end with a space", shown(name))
-        if not isinstance(item, dict):
-            raise InputError(at, "must be a record: keys with values", shown(item))
-        common = {"name": name, "file": self.file, "line": self.lines.get(f"{section}.{name}")}
-        if section == "friction_table":
-            return _friction_table(item, at, common)
-        return _material(SECTIONS[section], item, at, common)
-
-    def _attempt(
-        self, make: Callable[Inputs, Made], *args: Inputs.args, **kwargs: Inputs.kwargs
-    ) -> Made | None:
-        """What `make` returns, or None with its refusals noted."""
-        try:
-            return make(*args, **kwargs)
-        except InputError as error:
-            self.problems.extend(error.problems or (error,))
-        return None
-
-
-def _material(kind: str, item: Mapping[str, Any], at: str, common: dict[str, Any]) -> Record:
-    """Read a material or a fluid: its words, its facts and its numbers."""
-    numbers = FLUID if kind == "fluid" else SOLID
-    words: dict[str, Reader] = {"remark": _long_text, "replaces": _yes_or_no}
-    words |= _FACTS if kind == "fluid" else {"composition": _long_text, "aliases": _aliases}
-    given: dict[str, Any] = {}
-    data: dict[str, tuple[Datum, ...]] = {}
+    checksum = hashlib.sha256(given.encode()).hexdigest()
+    file = LibraryFile(label=label, checksum=checksum, shipped=shipped)
+    records: list[Record | FrictionTable] = []
     problems: list[InputError] = []
-    for key, value in item.items():
-        where = f"{at}.{printable(key)}"
-        try:
-            if key in words:
-                given[key] = words[key](value, where)
-            elif key in numbers:
-                data[key] = _data(numbers[key], value, where)
-            else:
-                cure = nearest(key, [*numbers, *words])
-                raise InputError(where, f"is not a key of a {kind}", cure=cure)
-        except InputError as error:
-            problems.extend(error.problems or (error,))
-    required = ("substance", "phase") if kind == "fluid" else ELASTIC
-    if missing := [key for key in required if key not in item]:
-        problems.append(InputError(at, f"lacks: {', '.join(missing)}"))
+    for section, value in data.items():
+        where = f"[{printable(section)}]" if isinstance(value, dict | list) else printable(section)
+        with noted(problems):
+            if section in TOP:
+                _long_text(value, section)
+                continue
+            if section not in SECTIONS:
+                raise InputError(where, "is not a kind of record", cure=nearest(section, SECTIONS))
+            if not isinstance(value, dict):
+                raise InputError(where, "must hold records, each with its name", shown(value))
+            if len(value) > MOST_RECORDS:
+                raise InputError(where, f"holds more than {MOST_RECORDS} records")
+            for name, item in value.items():
+                if len(problems) <= MOST_PROBLEMS:
+                    with noted(problems):
+                        line = lines.get(f"{section}.{name}")
+                        records.append(_record(section, name, item, {"file": file, "line": line}))
+    if not records and not problems:
+        rule = 'holds no record: it needs a section such as [cage_material."My compound"]'
+        problems.append(InputError("", rule))
     if problems:
-        raise together(problems)
-    facts = {key: given.pop(key, None) for key in (_FACTS if kind == "fluid" else ("aliases",))}
-    return Record(kind=kind, data=data, facts=facts, **given, **common)
+        places = places_of(label, data, lines)
+        raise together([one.at(places.locate(one.path)) for one in problems])
+    return Content(file=file, records=tuple(records))
 
 
-def _data(known: Property, value: Any, where: str) -> tuple[Datum, ...]:
-    """Read one datum, or several of one property under different conditions."""
-    if not isinstance(value, list):
-        return (_datum(known, value, where),)
-    if not 0 < len(value) <= MOST_DATA:
-        raise InputError(where, f"must hold 1 to {MOST_DATA} data", f"{len(value)} of them", BLANK)
-    data = tuple(_datum(known, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
-    conditions = [(d.temperature, d.pressure, d.medium, d.form) for d in data]
-    if len(set(conditions)) < len(conditions):
-        rule = "holds two data for the same temperature, pressure, medium and form"
-        raise InputError(where, rule, cure="Keep one, or give the condition in which they differ.")
-    return data
+def _record(section: str, name: str, item: Any, origin: Mapping[str, Any]) -> Record | FrictionTable:
+    """Read one record; its faults are under the path of its keys, ``[film] PTFE.density``."""
+    at = f"[{section}] {printable(name)}"
+    if text(name, f"{at}, its name,") != name.strip():
+        raise InputError(f"{at}, its name,", "must not begin or end with a space", shown(name))
+    if not isinstance(item, dict):
+        raise InputError(at, "must be a record: keys with values", shown(item))
+    if section == "friction_table":
+        return _friction_table(item, at, {"name": name, **origin})
+    kind, is_fluid = SECTIONS[section], section == "fluid"
+    data = {key: _data(known) for key, known in (FLUID if is_fluid else SOLID).items()}
+    facts = _FACTS if is_fluid else {"aliases": _FACTS["aliases"]}
+    words = {} if is_fluid else {"composition": _long_text}
+    readers = {**data, "remark": _long_text, "replaces": _yes_or_no, **words, **facts}
+    given = table(item, at, readers, ("substance", "phase") if is_fluid else ELASTIC, f"a {kind}")
+    return Record(
+        kind=kind,
+        name=name,
+        data={key: value for key, value in given.items() if key in data},
+        facts={key: given.get(key) for key in facts},
+        **{key: value for key, value in given.items() if key not in data and key not in facts},
+        **origin,
+    )
+
+
+def _data(known: Property) -> Reader:
+    """Reader of one datum, or of several of one property under different conditions."""
+
+    def read(value: Any, where: str) -> tuple[Datum, ...]:
+        if not isinstance(value, list):
+            return (_datum(known, value, where),)
+        if not 0 < len(value) <= MOST_DATA:
+            raise InputError(where, f"must hold 1 to {MOST_DATA} data", f"{len(value)} of them", BLANK)
+        data = tuple(_datum(known, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
+        if len({(d.temperature, d.pressure, d.medium, d.form) for d in data}) < len(data):
+            rule = "holds two data for the same temperature, pressure, medium and form"
+            raise InputError(where, rule, cure="Keep one, or give the condition in which they differ.")
+        return data
+
+    return read
 
 
 def _datum(known: Property, value: Any, where: str) -> Datum:
     if not isinstance(value, dict):
         example = '{ value = "5 GPa", source = "our test 12", confidence = "measured" }'
         raise InputError(where, "must be a number with its source", shown(value), f"Write it like {example}.")
-
-    def number(value: Any, where: str) -> float:
-        found = ratio(value, where) if known.unit == "-" else parse(value, known.unit, where)
-        if not known.low <= found <= known.high:
-            low, high = (format_quantity(bound, known.unit) for bound in (known.low, known.high))
-            cure = BLANK if found == 0.0 else "Check the unit."
-            raise InputError(where, f"must lie between {low} and {high}", shown(value), cure)
-        return found
+    number = _in_range(known.unit, known.low, known.high, "Check the unit.")
 
     def expected(value: Any, where: str) -> tuple[float, float]:
         if not isinstance(value, list) or len(value) != 2:
@@ -230,7 +151,7 @@ def _datum(known: Property, value: Any, where: str) -> Datum:
         "source": _source,
         "confidence": _confidence,
         "range": expected,
-        "temperature": _span("K", *CONDITION_LIMITS["temperature"]),
+        "temperature": _span(*CONDITIONS["temperature"]),
         "pressure": _in_range("Pa", 1e-9, 1e11),
         "medium": _long_text,
         "form": _long_text,
@@ -242,7 +163,7 @@ def _datum(known: Property, value: Any, where: str) -> Datum:
     return Datum(unit=known.unit, **given)
 
 
-def _friction_table(item: Mapping[str, Any], at: str, common: dict[str, Any]) -> FrictionTable:
+def _friction_table(item: Mapping[str, Any], at: str, origin: dict[str, Any]) -> FrictionTable:
     """Read a table of measured friction: its words, its conditions, and a row for each material."""
     readers: dict[str, Reader] = {
         "title": _long_text,
@@ -252,10 +173,10 @@ def _friction_table(item: Mapping[str, Any], at: str, common: dict[str, Any]) ->
         "replaces": _yes_or_no,
         "environments": _names,
         "friction": _rows,
-        **{key: _span(unit, *CONDITION_LIMITS[key]) for key, unit in CONDITION_UNITS.items()},
+        **{key: _span(*known) for key, known in CONDITIONS.items()},
     }
     given = table(item, at, readers, ("title", "source", "confidence", "friction"))
-    conditions = {key: given.pop(key) for key in CONDITION_UNITS if key in given}
+    conditions = {key: given.pop(key) for key in CONDITIONS if key in given}
     rows = {
         name: {
             env: _friction(value, f'{at}.friction."{printable(name)}"."{env[:60]}"', given)
@@ -271,7 +192,7 @@ def _friction_table(item: Mapping[str, Any], at: str, common: dict[str, Any]) ->
         raise InputError(f"{at}.environments", rule, shown(unknown[0]), cure)
     friction = {name: {env: row.get(env) for env in environments} for name, row in rows.items()}
     return FrictionTable(
-        conditions=conditions, environments=environments, friction=friction, **given, **common
+        conditions=conditions, environments=environments, friction=friction, **given, **origin
     )
 
 
@@ -293,8 +214,8 @@ def _rows(value: Any, where: str) -> dict[str, dict[str, Any]]:
 
 def _friction(value: Any, where: str, words: Mapping[str, str]) -> Friction:
     readers: dict[str, Reader] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
-    given = {"mean": ratio(value, where)} if not isinstance(value, dict) else None
-    given = given or table(value, where, readers, ("mean",))
+    given = table(value, where, readers, ("mean",)) if isinstance(value, dict) else {}
+    given = given or {"mean": ratio(value, where)}
     if given["mean"] == 0.0:
         raise InputError(where, "must be above 0", "0", BLANK)
     known = {**given, "source": words["source"], "confidence": words["confidence"]}
@@ -319,42 +240,48 @@ def _long_text(value: Any, where: str) -> str:
     return value
 
 
-def _source(value: Any, where: str) -> str:
-    if len(_long_text(value, where).strip()) < 3:
-        cure = "Give who measured or printed it, and where."
-        raise InputError(where, "must name a source", shown(value), cure)
-    return str(value)
+def _that(is_right: Callable[[Any], bool], rule: str, cure: str = "", reader: Reader | None = None) -> Reader:
+    """Reader of what is right by a test, after another reader has taken it."""
+
+    def read(value: Any, where: str) -> Any:
+        given = value if reader is None else reader(value, where)
+        if not is_right(given):
+            raise InputError(where, rule, shown(value), cure)
+        return given
+
+    return read
 
 
-def _confidence(value: Any, where: str) -> str:
-    """Read one of the words, perhaps with a remark after a semicolon."""
-    given = _long_text(value, where)
-    if given.partition(";")[0].strip() not in CONFIDENCES:
-        rule = f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon"
-        raise InputError(where, rule, shown(given), 'A guess is allowed and marked: "guess".')
-    return given
+_source = _that(
+    lambda given: len(given.strip()) >= 3,
+    "must name a source",
+    "Give who measured or printed it, and where.",
+    reader=_long_text,
+)
+_confidence = _that(
+    lambda given: given.partition(";")[0].strip() in CONFIDENCES,
+    f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon",
+    'A guess is allowed and marked: "guess".',
+    reader=_long_text,
+)
+_yes_or_no = _that(lambda given: isinstance(given, bool), "must be true or false, without quotes")
 
 
-def _yes_or_no(value: Any, where: str) -> bool:
-    if not isinstance(value, bool):
-        raise InputError(where, "must be true or false, without quotes", shown(value))
-    return value
-
-
-def _in_range(unit: str, low: float, high: float) -> Callable[[Any, str], float]:
-    """Reader of one quantity between two bounds."""
+def _in_range(unit: str, low: float, high: float, cure: str = "") -> Reader:
+    """Reader of one number between two bounds."""
+    reader = quantity(unit)
 
     def read(value: Any, where: str) -> float:
-        number = parse(value, unit, where)
+        number = float(reader(value, where))
         if not low <= number <= high:
             rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
-            raise InputError(where, rule, shown(value))
+            raise InputError(where, rule, shown(value), BLANK if cure and number == 0.0 else cure)
         return number
 
     return read
 
 
-def _span(unit: str, low: float, high: float) -> Callable[[Any, str], tuple[float, float]]:
+def _span(unit: str, low: float, high: float) -> Reader:
     """Reader of one quantity, or of a list of the lowest and the highest one."""
     one = _in_range(unit, low, high)
 
@@ -371,23 +298,20 @@ def _span(unit: str, low: float, high: float) -> Callable[[Any, str], tuple[floa
     return read
 
 
-def _phase(value: Any, where: str) -> str:
-    if value not in ("liquid", "gas"):
-        raise InputError(where, 'must be "liquid" or "gas"', shown(value))
-    return str(value)
-
-
-def _coolprop(value: Any, where: str) -> str:
-    given = text(value, where)
-    if not (given.isascii() and given.replace("-", "").isalnum()):
-        raise InputError(where, "must be the plain name of a pure fluid, letters and digits", shown(given))
-    return given
-
-
 def _aliases(value: Any, where: str) -> list[str]:
     if not isinstance(value, list) or not 0 < len(value) <= 20:
         raise InputError(where, "must be a list of 1 to 20 names", shown(value))
     return [text(name, where) for name in value]
 
 
-_FACTS: dict[str, Reader] = {"substance": text, "phase": _phase, "coolprop": _coolprop, "aliases": _aliases}
+_FACTS: dict[str, Reader] = {
+    "substance": text,
+    "phase": _that(lambda given: given in ("liquid", "gas"), 'must be "liquid" or "gas"'),
+    "coolprop": _that(
+        lambda given: given.isascii() and given.replace("-", "").isalnum(),
+        "must be the plain name of a pure fluid, letters and digits",
+        reader=text,
+    ),
+    "aliases": _aliases,
+}
+"""What a fluid is."""

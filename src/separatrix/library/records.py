@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple
 
 from separatrix.study import Friction
 from separatrix.units import Kelvin, format_quantity
@@ -19,9 +19,8 @@ NEAR: Kelvin = 10.0
 """A datum with one temperature serves this far to either side of it."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Property:
-    """What a number of a record is: its SI unit, its words, and where real values lie."""
+class Property(NamedTuple):
+    """What a number of a record is: its SI unit, its words, and the range of real values."""
 
     unit: str
     words: str
@@ -30,27 +29,35 @@ class Property:
 
 
 PROPERTIES = {
-    "elastic_modulus": Property(unit="Pa", words="modulus", low=1e5, high=5e12),
-    "poisson_ratio": Property(unit="-", words="Poisson's ratio", low=0.001, high=0.499),
-    "density": Property(unit="kg/m3", words="density", low=1e-6, high=1e5),
-    "compressive_strength": Property(unit="Pa", words="compressive strength", low=1e4, high=1e11),
-    "viscosity": Property(unit="Pa s", words="viscosity", low=1e-8, high=1e3),
-    "heat_capacity": Property(unit="J/kg/K", words="heat capacity", low=1.0, high=1e6),
-    "triple_temperature": Property(unit="K", words="triple point", low=0.1, high=5000.0),
-    "boiling_temperature": Property(unit="K", words="boiling point at 1 atm", low=0.1, high=5000.0),
-    "critical_temperature": Property(unit="K", words="critical temperature", low=0.1, high=5000.0),
-    "critical_pressure": Property(unit="Pa", words="critical pressure", low=1.0, high=1e9),
+    "elastic_modulus": Property("Pa", "modulus", 1e5, 5e12),
+    "poisson_ratio": Property("-", "Poisson's ratio", 0.001, 0.499),
+    "density": Property("kg/m3", "density", 1e-6, 1e5),
+    "compressive_strength": Property("Pa", "compressive strength", 1e4, 1e11),
+    "viscosity": Property("Pa s", "viscosity", 1e-8, 1e3),
+    "heat_capacity": Property("J/kg/K", "heat capacity", 1.0, 1e6),
+    "triple_temperature": Property("K", "triple point", 0.1, 5000.0),
+    "boiling_temperature": Property("K", "boiling point at 1 atm", 0.1, 5000.0),
+    "critical_temperature": Property("K", "critical temperature", 0.1, 5000.0),
+    "critical_pressure": Property("Pa", "critical pressure", 1.0, 1e9),
 }
 """Every number that a record may hold."""
 
 ELASTIC = ("elastic_modulus", "poisson_ratio")
 SOLID = {key: PROPERTIES[key] for key in (*ELASTIC, "compressive_strength")} | {
-    "density": replace(PROPERTIES["density"], low=1.0)
+    "density": PROPERTIES["density"]._replace(low=1.0)
 }
-"""Numbers of a solid; its density is no gas's."""
+"""Numbers of a solid; its density is not that of a gas."""
 
 FLUID = {key: known for key, known in PROPERTIES.items() if key not in (*ELASTIC, "compressive_strength")}
 """Numbers of a fluid."""
+
+CONDITIONS = {
+    "temperature": ("K", 1e-3, 5000.0),
+    "slip_speed": ("m/s", 1e-9, 1e4),
+    "normal_force": ("N", 1e-9, 1e9),
+    "pressure": ("Pa", 1e-3, 1e12),
+}
+"""Conditions of a friction table: SI unit and range of each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,8 +66,6 @@ class Datum:
 
     value: float
     unit: str
-    source: str
-    confidence: str
     range: tuple[float, float] | None = None
     """Where the true value is expected."""
 
@@ -70,6 +75,8 @@ class Datum:
     pressure: float | None = None
     medium: str | None = None
     form: str | None = None
+    source: str
+    confidence: str
 
     def holds_at(self, temperature: Kelvin) -> bool:
         """Whether its source lets it serve at this temperature."""
@@ -81,17 +88,8 @@ class Datum:
 
     def plain(self) -> dict[str, Any]:
         """Return it as plain data with every condition, None where it is not known."""
-        return {
-            "value": self.value,
-            "unit": self.unit,
-            "range": None if self.range is None else list(self.range),
-            "temperature": None if self.temperature is None else list(self.temperature),
-            "pressure": self.pressure,
-            "medium": self.medium,
-            "form": self.form,
-            "source": self.source,
-            "confidence": self.confidence,
-        }
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {key: list(value) if isinstance(value, tuple) else value for key, value in values.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,21 +124,16 @@ class Record:
 
     def plain(self) -> dict[str, Any]:
         """Return the whole record as plain data."""
-        return {
-            "kind": self.kind,
-            "name": self.name,
-            "remark": self.remark,
-            "composition": self.composition,
-            **self.facts,
-            "library": self.file.plain(),
-            "data": {key: [datum.plain() for datum in data] for key, data in self.data.items()},
-        }
+        words = {key: getattr(self, key) for key in ("kind", "name", "remark", "composition")}
+        data = {key: [datum.plain() for datum in data] for key, data in self.data.items()}
+        return {**words, **self.facts, "library": self.file.plain(), "data": data}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionTable:
     """Measured ball/cage friction of several materials in several environments; None where not measured."""
 
+    kind: str = "friction table"
     name: str
     title: str
     source: str
@@ -154,42 +147,31 @@ class FrictionTable:
     conditions: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Lowest and highest temperature, slip_speed, normal_force and pressure, in SI, where they are known."""
 
-    kind: str = "friction table"
-
     def plain(self) -> dict[str, Any]:
         """Return the whole table as plain data."""
-        friction = {
-            material: {env: None if f is None else _friction(f) for env, f in row.items()}
-            for material, row in self.friction.items()
-        }
+        keys = ("mean", "standard_deviation", "count")
+        words = ("kind", "name", "title", "remark", "source", "confidence")
         return {
-            "kind": self.kind,
-            "name": self.name,
-            "title": self.title,
-            "remark": self.remark,
-            "source": self.source,
-            "confidence": self.confidence,
+            **{key: getattr(self, key) for key in words},
             "conditions": {
                 key: {"value": list(self.conditions[key]) if key in self.conditions else None, "unit": unit}
-                for key, unit in CONDITION_UNITS.items()
+                for key, (unit, _, _) in CONDITIONS.items()
             },
             "environments": list(self.environments),
             "library": self.file.plain(),
-            "friction": friction,
+            "friction": {
+                material: {env: f and {key: getattr(f, key) for key in keys} for env, f in row.items()}
+                for material, row in self.friction.items()
+            },
         }
 
 
-CONDITION_UNITS = {"temperature": "K", "slip_speed": "m/s", "normal_force": "N", "pressure": "Pa"}
-"""Conditions of a friction table, and their SI units."""
+_NOWHERE = (1e9, 2e9)
+"""Temperatures of a datum whose source states none: it serves last."""
 
 
-def _friction(friction: Friction) -> dict[str, Any]:
-    return {key: getattr(friction, key) for key in ("mean", "standard_deviation", "count")}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """The datum that serves at a temperature, and what must be said of it; None if nothing."""
+class Choice(NamedTuple):
+    """The datum that serves at a temperature, and the caution about it; None if there is none."""
 
     datum: Datum
     caution: str | None
@@ -202,30 +184,14 @@ def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Cho
     the caution says so; without a temperature the first one serves.
     """
     if temperature is None:
-        return Choice(datum=data[0], caution=None)
-    if fitting := [datum for datum in data if datum.holds_at(temperature)]:
-        return Choice(datum=min(fitting, key=_width), caution=None)
-    nearest = min(data, key=lambda datum: _distance(datum, temperature))
+        return Choice(data[0], None)
+    spans = [(datum, *(datum.temperature or _NOWHERE)) for datum in data]
+    if fitting := [one for one in spans if one[0].holds_at(temperature)]:
+        return Choice(min(fitting, key=lambda one: one[2] - one[1])[0], None)
+    nearest, low, high = min(spans, key=lambda one: max(one[1] - temperature, temperature - one[2], 0.0))
     at = format_quantity(temperature, "K")
     if nearest.temperature is None:
-        return Choice(datum=nearest, caution=f"{words}: its source states no temperature, taken at {at}")
-    stated = temperature_text(nearest.temperature)
-    return Choice(datum=nearest, caution=f"{words}: not stated at {at}, the value at {stated} is used")
-
-
-def temperature_text(temperature: tuple[float, float]) -> str:
-    """Return one temperature or a range in words."""
-    low, high = (format_quantity(bound, "K") for bound in temperature)
-    return low if low == high else f"{low} to {high}"
-
-
-def _width(datum: Datum) -> float:
-    low, high = datum.temperature or (0.0, 1e9)
-    return high - low
-
-
-def _distance(datum: Datum, temperature: float) -> float:
-    if datum.temperature is None:
-        return 1e9
-    low, high = datum.temperature
-    return max(low - temperature, temperature - high, 0.0)
+        return Choice(nearest, f"{words}: its source states no temperature, taken at {at}")
+    first, last = format_quantity(low, "K"), format_quantity(high, "K")
+    stated = first if first == last else f"{first} to {last}"
+    return Choice(nearest, f"{words}: not stated at {at}, the value at {stated} is used")

@@ -6,7 +6,7 @@ import json
 import re
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -33,15 +33,32 @@ def add_records(source: Path, library: Path) -> Content:
         Either file is wrong, a name exists already, or the library cannot be written.
     """
     target = _target(library, source)
-    added = read_library(source)
+    label, added = label_of(target), read_library(source)
     before = read_text(target, LIBRARY) if target.exists() else ""
-    held = [library_of_text(before, label_of(target))] if _holds_records(before, label_of(target)) else []
-    joined([*_others(target), *held, added])
+    held = []
+    if re.sub(r"#[^\n]*", "", before).strip() and not parsed(before, label, LIBRARY)[0].keys() <= set(TOP):
+        held = [library_of_text(before, label)]  # more than comments and a title: it must be right as it is
+    in_folder = target.parent.name == FOLDER
+    others = [
+        read_library(path)  # of those that a study reads together with the target
+        for path in beside(target.parents[in_folder], besides=target)
+        if in_folder or target.name == ALONE
+    ]
+    joined([*others, *held, added])
     data, _ = parsed(read_text(source, LIBRARY), label_of(source), LIBRARY)
-    separator = "\n\n" if before.strip() else ""
-    after = before.rstrip("\n") + separator + as_toml(data)
-    _refuse_unlike(library_of_text(after, label_of(target)), [*held, added], target)
-    _replace(target, after)
+    after = before.rstrip("\n") + ("\n\n" if before.strip() else "") + as_toml(data)
+    wanted = {(record.kind, record.name) for part in (*held, added) for record in part.records}
+    if {(record.kind, record.name) for record in library_of_text(after, label).records} != wanted:
+        raise InputError(label, "cannot be added to: its form is unusual", cure="Add by hand.")
+    try:  # write aside and rename over the target
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".separatrix-") as aside:
+            new = Path(aside) / target.name
+            new.write_text(after, encoding="utf-8", newline="\n")
+            if target.exists():
+                shutil.copymode(target, new)
+            new.replace(target)
+    except OSError as error:
+        raise InputError(path_text(target), f"cannot be written ({error.strerror or error})") from error
     return added
 
 
@@ -62,76 +79,29 @@ def _target(library: Path, source: Path) -> Path:
     return target
 
 
-def _others(target: Path) -> list[Content]:
-    """Libraries that a study reads together with the target because they stand beside it."""
-    in_folder = target.parent.name == FOLDER
-    if not in_folder and target.name != ALONE:
-        return []
-    return [read_library(path) for path in beside(target.parents[in_folder], besides=target)]
-
-
-def _holds_records(text: str, label: str) -> bool:
-    """Whether a library holds more than comments and a title: then it must be right as it is."""
-    if not re.sub(r"#[^\n]*", "", text).strip():
-        return False
-    return not parsed(text, label, LIBRARY)[0].keys() <= set(TOP)
-
-
-def _refuse_unlike(after: Content, parts: Iterable[Content], target: Path) -> None:
-    """See that the new text holds what its parts held, and nothing else."""
-    wanted = {(record.kind, record.name) for part in parts for record in part.records}
-    if {(record.kind, record.name) for record in after.records} != wanted:
-        raise InputError(label_of(target), "cannot be added to: its form is unusual", cure="Add by hand.")
-
-
-def _replace(target: Path, text: str) -> None:
-    """Write aside and rename over the target."""
-    try:
-        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".separatrix-") as aside:
-            new = Path(aside) / target.name
-            new.write_text(text, encoding="utf-8", newline="\n")
-            if target.exists():
-                shutil.copymode(target, new)
-            new.replace(target)
-    except OSError as error:
-        raise InputError(path_text(target), f"cannot be written ({error.strerror or error})") from error
-
-
 def as_toml(data: Mapping[str, Any]) -> str:
     """Records of a library file as TOML, each under its own header."""
-    blocks = [
-        _record(f"{section}.{_key(name)}", record)
-        for section in SECTIONS
-        for name, record in data.get(section, {}).items()
-    ]
+    blocks = []
+    for section in SECTIONS:
+        for name, record in data.get(section, {}).items():
+            header = f"{section}.{_key(name)}"
+            tables = {header: {key: value for key, value in record.items() if key != "friction"}}
+            tables |= {f"{header}.friction.{_key(n)}": row for n, row in record.get("friction", {}).items()}
+            for title, items in tables.items():
+                lines = [f"[{title}]", *(f"{_key(key)} = {_value(value)}" for key, value in items.items())]
+                blocks.append("\n".join([*lines, ""]))
     return "\n".join(blocks)
 
 
-def _record(header: str, record: Mapping[str, Any]) -> str:
-    plain = {key: value for key, value in record.items() if key != "friction"}
-    lines = [f"[{header}]", *(f"{_key(key)} = {_value(value)}" for key, value in plain.items())]
-    for name, row in record.get("friction", {}).items():
-        lines += ["", f"[{header}.friction.{_key(name)}]"]
-        lines += [f"{_key(environment)} = {_value(value)}" for environment, value in row.items()]
-    return "\n".join([*lines, ""])
-
-
 def _key(key: str) -> str:
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _text(key)
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _value(key)
 
 
 def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return _text(value)
+    if isinstance(value, bool | str):  # what JSON escapes, TOML escapes alike
+        return json.dumps(value, ensure_ascii=False)
     if isinstance(value, dict):
         return f"{{ {', '.join(f'{_key(key)} = {_value(item)}' for key, item in value.items())} }}"
     if isinstance(value, list) and any(isinstance(item, dict) for item in value):
         return "\n".join(["[", *(f"  {_value(item)}," for item in value), "]"])
     return f"[{', '.join(map(_value, value))}]" if isinstance(value, list) else repr(value)
-
-
-def _text(text: str) -> str:
-    """A basic string of TOML; what JSON escapes, TOML escapes alike."""
-    return json.dumps(text, ensure_ascii=False)

@@ -8,9 +8,9 @@ from pathlib import Path
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
-from separatrix.study_file.document import find, load, shipped_studies
+from separatrix.study_file.document import TEMPLATE, find, load, shipped_studies
 from separatrix.study_file.provenance import resolved
-from separatrix.study_file.sections import build_study
+from separatrix.study_file.sections import LEFT_OUT, build_study
 from separatrix.units import printable
 
 __all__ = ["read_study", "require", "resolved", "shipped_studies", "template"]
@@ -27,7 +27,7 @@ def read_study(study: str | Path) -> Study:
     Warns
     -----
     ValidityWarning
-        It asks for more than the model is good for; what, and what to do.
+        It asks for more than the model is good for, or its cage is left out; what, and what to do.
     """
     path = find(study)
     # a folder of answers has this name: never dots alone
@@ -40,17 +40,20 @@ def read_study(study: str | Path) -> Study:
 
 def template() -> str:
     """A commented study to fill in, valid as it is: what `separatrix new` writes."""
-    return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
+    return TEMPLATE.read_text(encoding="utf-8")
 
 
 def require(study: Study, verb: str, *sections: str) -> None:
-    """Refuse a study that lacks a section which a verb needs.
+    """Refuse a study that lacks a section which a verb needs; `check` refuses one that was left out, too.
 
     Raises
     ------
     InputError
         Names the missing sections, the verb, and where to see what they look like.
     """
+    left_out: InputError | None = study.records.get(LEFT_OUT)
+    if left_out is not None and (verb == "check" or "cage" in sections):
+        raise left_out
     missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
     if missing:
         rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from separatrix.library.fluids import contradictions
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.study import Guidance, Material, Study
+from separatrix.study import CageDesign, Guidance, Study
 from separatrix.units import Kilogram, format_quantity
 
 LONGEST, JUDGED_FROM = 4, 3.2
@@ -16,103 +16,8 @@ LONGEST, JUDGED_FROM = 4, 3.2
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
 
-
-def cautions(study: Study) -> Iterator[str]:
-    """Sentences to warn with."""
-    yield from _ramp(study)
-    yield from _materials(study)
-    yield from _fluid(study)
-    yield from _land(study)
-    yield from _leaning_pocket(study)
-    yield from beyond_bearings(study)
-
-
-def _ramp(study: Study) -> Iterator[str]:
-    ramp, duration = study.operation.ramp_time, study.stability.duration
-    if study.cage is not None and ramp > JUDGED_FROM * duration:
-        given, run = format_quantity(ramp, "s"), format_quantity(duration, "s")
-        yield (
-            f"[operation] ramp_time {given}: runs of {run}, or up to {LONGEST} times that, are judged before "
-            "full speed is reached. Give [stability] a longer duration."
-        )
-
-
 NAMED = 3
-"""Materials of which the same is said that are named; `check --full` shows all."""
-
-
-def _some(names: Sequence[str]) -> str:
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + more
-
-
-def _materials(study: Study) -> Iterator[str]:
-    """One sentence on the data of materials whose sources state another temperature, or none."""
-    alike: dict[tuple[str, ...], dict[str, None]] = {}
-    for material in _acting(study):
-        if material.cautions:
-            alike.setdefault(material.cautions, {})[material.name] = None
-    if alike:
-        each = (f"{_some(list(names))} ({_short(cautions)})" for cautions, names in alike.items())
-        yield f"Data of the library: {'; '.join(each)}. Consider your own."
-
-
-def _short(cautions: Sequence[str]) -> str:
-    """Cautions that differ only in the property, which stands before the colon, as one."""
-    properties: dict[str, list[str]] = {}
-    for caution in cautions:
-        name, _, words = caution.partition(": ")
-        properties.setdefault(words, []).append(name)
-    return "; ".join(f"{', '.join(names)}: {words}" for words, names in properties.items())
-
-
-def _acting(study: Study) -> Iterator[Material]:
-    """Materials on whose numbers an answer depends."""
-    yield study.bearing.ball_material
-    yield study.bearing.ring_material
-    if study.film.material is not None:
-        yield study.film.material
-    if study.cage is None or study.cage.ball_cage_stiffness is not None:
-        return
-    if study.cage.material is not None:
-        yield study.cage.material
-    for candidate in study.ranking.candidates if study.ranking is not None else ():
-        if candidate.material is not None:
-            yield candidate.material
-
-
-def _fluid(study: Study) -> Iterator[str]:
-    """A fluid that cannot be what its name says at the temperature of the study."""
-    record, temperature = study.records.get("operation.fluid"), study.operation.temperature
-    if record is not None and temperature is not None:
-        yield from (f"[operation] fluid {sentence}" for sentence in contradictions(record, temperature))
-
-
-def _land(study: Study) -> Iterator[str]:
-    """Numbers of the land that the study does not state: the defaults are guesses, not data of this cage."""
-    cage = study.cage
-    if cage is None or cage.guidance is Guidance.BALL:
-        return
-    assumed = {
-        "land_stiffness": format_quantity(cage.land_stiffness, "N/m"),
-        "land_restitution": f"{cage.land_restitution:g}",
-        "land_friction": f"{cage.land_friction:g}",
-    }
-    absent = [f"{key} {text}" for key, text in assumed.items() if f"cage.{key}" not in study.origins]
-    if absent:
-        verb = "is" if len(absent) == 1 else "are"
-        yield f"[cage] {', '.join(absent)} {verb} assumed: guesses, on which the motion on the land depends."
-
-
-def _leaning_pocket(study: Study) -> Iterator[str]:
-    if study.cage is None or abs(tilt(study.cage)[1]) <= STEEP:
-        return
-    play = format_quantity(half_play(study.cage), "m", 3)
-    yield (
-        "[cage] pocket_axial_offset: the contacts lean by more than 30 deg towards the bearing axis; the "
-        f"model holds the cage in its plane and keeps only the play along the circumference, +/- {play}."
-    )
-
+"""Materials with the same caution that are named; `check --full` shows all."""
 
 MOST_DN = 3e6
 """Bore in mm times speed in rpm; the fastest turbopump bearings reach about this."""
@@ -129,36 +34,86 @@ SECTION = ((0.2, 1.1), (0.7, 2.2))
 _SPEED = 1e3 * 30.0 / math.pi
 
 
-def beyond_bearings(study: Study) -> Iterator[str]:
+def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
-    yield from _fast(study)
-    friction = study.film.race_friction
-    if friction > MOST_RACE_FRICTION:
+    cage, operation = study.cage, study.operation
+    if cage is not None and operation.ramp_time > JUDGED_FROM * study.stability.duration:
+        given, run = (format_quantity(s, "s") for s in (operation.ramp_time, study.stability.duration))
         yield (
-            f"[film] race_friction {friction:g} exceeds {MOST_RACE_FRICTION:g}: solid lubricants stay below "
-            "0.3, dry metal below about 1."
+            f"[operation] ramp_time {given}: runs of {run}, or up to {LONGEST} times that, are judged before "
+            "full speed is reached. Give [stability] a longer duration."
         )
-    yield from _cage_mass(study)
+    yield from _materials(study)
+    fluid = study.records.get("operation.fluid")
+    if fluid is not None and operation.temperature is not None:
+        yield from (
+            f"[operation] fluid {sentence}" for sentence in contradictions(fluid, operation.temperature)
+        )
+    if cage is not None:
+        yield from _cage(study, cage)
+    yield from beyond_bearings(study)
 
 
-def _fast(study: Study) -> Iterator[str]:
-    bearing, operation = study.bearing, study.operation
-    diameter = bearing.bore or bearing.pitch_diameter
-    dn = diameter * abs(operation.inner_speed - operation.outer_speed) * _SPEED
-    if dn > MOST_DN:
+def _materials(study: Study) -> Iterator[str]:
+    """One sentence on the data of materials whose sources state another temperature, or none."""
+    acting = [study.bearing.ball_material, study.bearing.ring_material, study.film.material]
+    if study.cage is not None and study.cage.ball_cage_stiffness is None:
+        candidates = study.ranking.candidates if study.ranking is not None else ()
+        acting += [study.cage.material, *(candidate.material for candidate in candidates)]
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for material in acting:
+        if material is not None and material.cautions:
+            names = alike.setdefault(material.cautions, [])
+            names += [] if material.name in names else [material.name]
+    said = []
+    for sentences, names in alike.items():
+        properties: dict[str, list[str]] = {}  # by what is said of them
+        for sentence in sentences:
+            name, _, words = sentence.partition(": ")
+            properties.setdefault(words, []).append(name)
+        short = "; ".join(f"{', '.join(each)}: {words}" for words, each in properties.items())
+        more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+        said.append(f"{', '.join(names[:NAMED])}{more} ({short})")
+    if said:
+        yield f"Data of the library: {'; '.join(said)}. Consider your own."
+
+
+def _cage(study: Study, cage: CageDesign) -> Iterator[str]:
+    """Numbers of the land that the study does not state, which are guesses; and a pocket that leans."""
+    assumed = {
+        "land_stiffness": format_quantity(cage.land_stiffness, "N/m"),
+        "land_restitution": f"{cage.land_restitution:g}",
+        "land_friction": f"{cage.land_friction:g}",
+    }
+    absent = [f"{key} {text}" for key, text in assumed.items() if f"cage.{key}" not in study.origins]
+    if absent and cage.guidance is not Guidance.BALL:
+        verb = "is" if len(absent) == 1 else "are"
+        yield f"[cage] {', '.join(absent)} {verb} assumed: guesses, on which the motion on the land depends."
+    if abs(tilt(cage)[1]) > STEEP:
+        play = format_quantity(half_play(cage), "m", 3)
+        yield (
+            "[cage] pocket_axial_offset: the contacts lean by more than 30 deg towards the bearing axis; the "
+            f"model holds the cage in its plane and keeps only the play along the circumference, +/- {play}."
+        )
+
+
+def beyond_bearings(study: Study) -> Iterator[str]:
+    """Sentences on what no real bearing has: its speed, its race friction, the mass of its cage."""
+    bearing, operation, cage, friction = study.bearing, study.operation, study.cage, study.film.race_friction
+    speed = abs(operation.inner_speed - operation.outer_speed) * _SPEED
+    if (dn := (bearing.bore or bearing.pitch_diameter) * speed) > MOST_DN:
         which = "pitch diameter" if bearing.bore is None else "bore"
         yield (
             f"[operation] DN {dn / 1e6:.3g} million ({which} in mm times speed in rpm) exceeds "
             f"{MOST_DN / 1e6:g} million: no ball bearing is known to run so fast."
         )
-
-
-def _cage_mass(study: Study) -> Iterator[str]:
-    cage = study.cage
-    if cage is None:
-        return
+    if friction > MOST_RACE_FRICTION:
+        yield (
+            f"[film] race_friction {friction:g} exceeds {MOST_RACE_FRICTION:g}: solid lubricants stay below "
+            "0.3, dry metal below about 1."
+        )
     low, high = plausible_cage_masses(study)
-    if not low <= cage.mass <= high:
+    if cage is not None and not low <= cage.mass <= high:
         named = cage.material is not None and cage.material.density is not None
         what = f"a ring of {cage.material.name}" if named and cage.material else "a polymer ring"
         (thin, narrow), (thick, wide) = SECTION
@@ -170,16 +125,15 @@ def _cage_mass(study: Study) -> Iterator[str]:
 
 
 def plausible_cage_masses(study: Study) -> tuple[Kilogram, Kilogram]:
-    """Least and largest mass of a ring around the balls, of its material's density or of a polymer's."""
+    """Least and largest mass of a ring around the balls, of its material's density or of a polymer's.
+
+    Its volume is that of a ring at the pitch circle less a hole for each ball.
+    """
     material = study.cage.material if study.cage is not None else None
     density = material.density if material is not None else None
-    low, high = POLYMER if density is None else (density, density)
-    light, heavy = (_ring_volume(study, height, width) for height, width in SECTION)
-    return low * light, high * heavy
-
-
-def _ring_volume(study: Study, height: float, width: float) -> float:
-    """Volume of a ring at the pitch circle less a hole for each ball; sizes over the ball diameter [m3]."""
-    D, bearing = study.bearing.ball_diameter, study.bearing
-    full = math.pi * bearing.pitch_diameter * width * D
-    return max(full - bearing.ball_count * math.pi / 4.0 * D**2, 0.25 * full) * height * D
+    masses, D, bearing = [], study.bearing.ball_diameter, study.bearing
+    for rho, (height, width) in zip(POLYMER if density is None else (density, density), SECTION, strict=True):
+        full = math.pi * bearing.pitch_diameter * width * D
+        volume = max(full - bearing.ball_count * math.pi / 4.0 * D**2, 0.25 * full) * height * D
+        masses.append(rho * volume)
+    return masses[0], masses[1]

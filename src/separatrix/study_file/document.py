@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
+from os.path import exists, isfile
 from pathlib import Path
 from typing import Any
 
 from separatrix.distribution import Distribution
-from separatrix.errors import InputError, together
+from separatrix.errors import InputError, noted, together
 from separatrix.library import Library, beside, library_files, with_files
 from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
 from separatrix.toml_values import folded, nearest
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
+TEMPLATE = Path(__file__).with_name("template.toml")
 MOST_BASES = 8
 MOST_NAMED = 20
 """Libraries that the key `library` may name."""
@@ -26,12 +29,12 @@ WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 MOST_PROBLEMS = 100
 """After so many mistakes a file is read no further."""
 
-_ALTERNATIVES = {
-    "bearing": (("contact_angle",), ("radial_clearance",)),
-    "operation": (("moment",), ("tilt",)),
+ALTERNATIVES = {
+    "bearing": (("radial_clearance",), ("contact_angle",)),
+    "operation": (("tilt",), ("moment",)),
     "cage": (("pocket_angles",), ("pocket_spacing_scatter",)),
-    "film": (("material",), ("elastic_modulus", "poisson_ratio")),
-    "ranking": (("friction", "materials"), ("candidates",)),
+    "film": (("elastic_modulus", "poisson_ratio"), ("material",)),
+    "ranking": (("candidates",), ("friction", "materials")),
 }
 """Keys that exclude each other: a variant that gives one side drops the other side of its base."""
 
@@ -51,40 +54,37 @@ _MEANINGLESS = {
 """A choice in [cage] and the keys of the base that a variant with this choice drops."""
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """One value as the file gives it, or why it has none; and the folder of the file."""
-
-    value: Any
-    folder: Path = Path()
-
-
-@dataclass(frozen=True, slots=True)
-class LibraryPlace:
-    """A study file of the chain, whose neighbours and whose key `library` give the libraries."""
-
-    study: Path
-    given: Entry | None
+class Unfinished(Exception):  # noqa: N818 - not an error: it never leaves this package
+    """A section cannot be built because one of its values was refused already."""
 
 
 @dataclass(slots=True)
 class Document:
     """Sections of a study, from a text file or a workbook, before anything is converted.
 
-    What is wrong is noted under the path of its key, ``[cage] mass`` or ``[ranking] candidates[2].name``;
-    `locate` places it.
+    A value may be an InputError: why it has none. What is wrong is noted under the path of its key,
+    ``[cage] mass`` or ``[ranking] candidates[2].name``; `places` has its place.
     """
 
-    label: str
-    top: dict[str, Entry] = field(default_factory=dict)
-    sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
+    path: Path
+    top: dict[str, Any] = field(default_factory=dict)
+    sections: dict[str, dict[str, Any]] = field(default_factory=dict)
     places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
     """Of the uncertain numbers, by their names, as they are read."""
 
-    libraries: list[LibraryPlace] = field(default_factory=list)
-    folder: Path = Path()
+    libraries: list[tuple[Path, Any]] = field(default_factory=list)
+    """The study files of the chain, and what each has as `library`: these and their neighbours are read."""
+
+    friction_folder: Path = field(default_factory=Path)
+    """Folder of the file that gives [ranking] friction."""
+
+    @contextmanager
+    def noting(self) -> Iterator[None]:
+        """Note what is refused, instead of raising it."""
+        with suppress(Unfinished), noted(self.problems):
+            yield
 
     def locate(self, path: str) -> str:
         """Return a path with its place; one of another file as it is."""
@@ -109,52 +109,46 @@ def find(study: str | Path) -> Path:
     A regular file of that very name comes first; a folder does not hide a shipped example.
     """
     text = str(study)
-    path = Path(text)
-    shipped = shipped_studies()
     if not text or "\0" in text:
         raise InputError("STUDY", "must be a path or a name", shown(text), _shipped_names(text))
-    if _is_file(path):
-        return path
-    if text in shipped:
-        return shipped[text]
-    if not _exists(path):
-        raise InputError(path_text(path), "does not exist", cure=_shipped_names(text))
-    return path
+    if isfile(text):
+        return Path(text)
+    if text in shipped_studies():
+        return shipped_studies()[text]
+    if not exists(text):
+        raise InputError(path_text(Path(text)), "does not exist", cure=_shipped_names(text))
+    return Path(text)
 
 
 def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     """Document of a file, merged over the file it extends."""
     document = _own(path)
-    base = document.top.get("extends")
-    if base is None:
+    if "extends" not in document.top:
         return document
-    where = document.locate("extends")
-    if not isinstance(base.value, str):
-        raise InputError(where, "must be a path or the name of a shipped example", shown(base.value))
-    target = path.parent / base.value if base.value and "\0" not in base.value else None
-    if target is None or not _is_file(target):
-        target = shipped_studies().get(base.value)
+    where, base = document.locate("extends"), document.top["extends"]
+    if not isinstance(base, str):
+        raise InputError(where, "must be a path or the name of a shipped example", shown(base))
+    target = path.parent / base if base and isfile(path.parent / base) else shipped_studies().get(base)
     if target is None:
-        rule = "does not name a file beside this one"
-        raise InputError(where, rule, shown(base.value), _shipped_names(base.value))
+        raise InputError(where, "does not name a file beside this one", shown(base), _shipped_names(base))
     chain = (*above, path.resolve())
     if target.resolve() in chain:
-        raise InputError(where, "leads back to a file that extends this one", shown(base.value))
+        raise InputError(where, "leads back to a file that extends this one", shown(base))
     if len(chain) > MOST_BASES:
-        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", shown(base.value))
+        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", shown(base))
     return _merged(load(target, chain), document)
 
 
 def is_workbook(path: Path) -> bool:
     """Whether a file is a workbook, by its name or its first bytes."""
+    if not isfile(path):  # a pipe may never end
+        return False
+    if path.suffix.casefold() in WORKBOOK_ENDINGS:
+        return True
     try:
-        if not path.is_file():  # a pipe may never end
-            return False
-        if path.suffix.casefold() in WORKBOOK_ENDINGS:
-            return True
         with path.open("rb") as file:
             return file.read(4) in WORKBOOK_MAGICS
-    except (OSError, ValueError):
+    except OSError:
         return False
 
 
@@ -164,39 +158,36 @@ def _own(path: Path) -> Document:
 
         return document_of(path)
     data, lines = read_toml(path)
-    document = Document(label_of(path), folder=path.parent)
-    document.places = places_of(document.label, data, lines)
+    document = Document(path, places=places_of(label_of(path), data, lines), friction_folder=path.parent)
     for name, value in data.items():
         if len(document.problems) > MOST_PROBLEMS:
             break
         at = f"[{printable(name)}]"
-        if name in TOP:
-            document.top[name] = Entry(value, document.folder)
-        elif name in SECTIONS:
-            document.sections[name] = {}
-            if isinstance(value, dict):
-                document.sections[name] = {key: Entry(item, document.folder) for key, item in value.items()}
+        with document.noting():
+            if name in TOP:
+                document.top[name] = value
+            elif name in SECTIONS:
+                document.sections[name] = value if isinstance(value, dict) else {}
+                if not isinstance(value, dict):
+                    raise InputError(at, f"must be one section, headed [{name}]", shown(value))
+            elif isinstance(value, dict):
+                raise InputError(at, "is not a section of a study", cure=nearest(name, SECTIONS))
             else:
-                rule = f"must be one section, headed [{name}]"
-                document.problems.append(InputError(at, rule, shown(value)))
-        elif isinstance(value, dict):
-            cure = nearest(name, SECTIONS)
-            document.problems.append(InputError(at, "is not a section of a study", cure=cure))
-        else:
-            where = f"{document.places.of(name)}: {printable(name) or chr(34) * 2}"
-            document.problems.append(InputError(where, "is outside a section", cure=_OUTSIDE))
-    document.libraries.append(LibraryPlace(path, document.top.get("library")))
+                where = f"{document.places.of(name)}: {printable(name) or chr(34) * 2}"
+                raise InputError(where, "is outside a section", cure=_OUTSIDE)
+    document.libraries.append((path, document.top.get("library")))
     return document
 
 
 def _merged(base: Document, document: Document) -> Document:
+    own = document.sections.get("ranking", {})
     merged = Document(
-        document.label,
+        document.path,
         {"title": base.top["title"], **document.top} if "title" in base.top else document.top,
-        places=Places(document.label, base.places.known | document.places.known),
+        places=Places(document.places.label, base.places.known | document.places.known),
         problems=base.problems + document.problems,
         libraries=document.libraries + base.libraries,
-        folder=document.folder,
+        friction_folder=(document if "friction" in own else base).friction_folder,
     )
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)
@@ -205,32 +196,18 @@ def _merged(base: Document, document: Document) -> Document:
     return merged
 
 
-def _kept(name: str, below: dict[str, Entry], above: dict[str, Entry]) -> dict[str, Entry]:
+def _kept(name: str, below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Keys of the base that the variant does not replace by an alternative."""
     dropped: set[str] = set()
-    one, other = _ALTERNATIVES.get(name, ((), ()))
+    one, other = ALTERNATIVES.get(name, ((), ()))
     if any(key in above for key in one):
         dropped.update(other)
     if any(key in above for key in other):
         dropped.update(one)
     for (key, choice), keys in _MEANINGLESS.items() if name == "cage" else ():
-        if key in above and folded(str(above[key].value)) == choice:
+        if key in above and folded(str(above[key])) == choice:
             dropped.update(keys)
-    return {key: entry for key, entry in below.items() if key not in dropped}
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:  # a name too long for the file system
-        return False
-
-
-def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except OSError:
-        return False
+    return {key: value for key, value in below.items() if key not in dropped}
 
 
 def _shipped_names(text: str) -> str:
@@ -240,56 +217,28 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: what is shipped, stands beside its files, or is named in them.
-
-    Raises
-    ------
-    InputError
-        A library is missing or wrong, or two of them hold the same name.
-    """
-    paths = [path for place in document.libraries for path in _files(place)]
+    """Library of a study: what is shipped, stands beside its files, or is named in them."""
+    paths: list[Path] = []
+    for study, given in document.libraries:
+        if study not in shipped_studies().values():
+            paths += beside(study.parent, besides=study)
+        if given is not None:
+            names = given if isinstance(given, list) else [given]
+            if not 0 < len(names) <= MOST_NAMED:
+                rule = f"must be one path or a list of 1 to {MOST_NAMED}"
+                raise InputError("library", rule, shown(given))
+            for name in names:
+                paths += _named(study.parent, name)
     return with_files(paths)
 
 
-def used_records(library: Library, document: Document) -> dict[str, Any]:
-    """Whole records of what a study names besides materials: its fluid, its friction table."""
-    records: dict[str, Any] = {}
-    fluid = document.sections.get("operation", {}).get("fluid")
-    known = library.fluid(fluid.value) if fluid is not None and isinstance(fluid.value, str) else None
-    if known is not None:
-        records["operation.fluid"] = known.plain()
-    table = document.sections.get("ranking", {}).get("friction")
-    if table is not None and table.value in library.names("friction table"):
-        records["ranking.friction"] = library.friction_table(table.value).plain()
-    return records
-
-
-def _files(place: LibraryPlace) -> Iterator[Path]:
-    if place.study not in shipped_studies().values():
-        yield from beside(place.study.parent, besides=place.study)
-    if place.given is not None:
-        yield from _named(place.study.parent, place.given)
-
-
-def _named(folder: Path, given: Entry) -> Iterator[Path]:
-    names = given.value if isinstance(given.value, list) else [given.value]
-    if not 0 < len(names) <= MOST_NAMED:
-        raise InputError("library", f"must be one path or a list of 1 to {MOST_NAMED}", shown(given.value))
-    for name in names:
-        yield from _existing(folder, name)
-
-
-def _existing(folder: Path, name: Any) -> list[Path]:
+def _named(folder: Path, name: Any) -> list[Path]:
     if not isinstance(name, str) or not name or not name.isprintable():
         raise InputError("library", "must be the path of a file or a folder, in quotes", shown(name))
-    path = folder / name
-    try:
-        found = library_files(path) if path.exists() else None
-    except OSError:  # a name too long for the file system
-        found = None
-    if found is None:
+    if not exists(folder / name):
         cure = "It is taken from the folder of the study."
         raise InputError("library", "does not name a file or folder", shown(name), cure)
+    found = library_files(folder / name)
     if not found:
         raise InputError("library", "names a folder without a .toml file", shown(name))
     return found

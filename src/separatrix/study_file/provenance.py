@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import fields
 from enum import Enum
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
 from separatrix.friction.records import FrictionTest
-from separatrix.study import CageDesign, Candidate, Film, Friction, Material, Study
+from separatrix.study import SECTIONS, CageDesign, Film, Friction, Material, RankingQuestion, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
@@ -39,8 +39,6 @@ _WITHOUT = {
 }
 """What the absence of a value means."""
 
-_PARTS = ("bearing", "operation", "film", "cage", "stability")
-
 
 def resolved(study: Study) -> dict[str, Any]:
     """Resolved inputs as plain nested dicts: numbers, text, lists and None only.
@@ -51,25 +49,53 @@ def resolved(study: Study) -> dict[str, Any]:
     record of the library behind it, with the checksum of its file: a later change of the library changes
     nothing here.
     """
-    parts = {name: _part(study, name) for name in _PARTS}
-    kinematics = {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})}
-    return {
-        "name": study.name,
-        "title": study.title,
-        **parts,
-        "kinematics": kinematics,
-        "ranking": _ranking(study),
-        "uncertain_inputs": _uncertain(study),
-    }
-
-
-def _uncertain(study: Study) -> list[dict[str, Any]]:
-    """Every number that the study gives as a distribution; the parts above hold its mean."""
     known = study_numbers(study) if study.distributions else {}
-    return [
+    uncertain = [
         {"name": key, "unit": known[key].unit or None, **_distribution(one, known[key].unit)}
         for key, one in study.distributions.items()
     ]
+    return {
+        "name": study.name,
+        "title": study.title,
+        **{name: _section(study, name) for name in SECTIONS},
+        "kinematics": {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})},
+        "ranking": None if study.ranking is None else _ranking(study, study.ranking),
+        "uncertain_inputs": uncertain,
+    }
+
+
+def _section(study: Study, section: str) -> dict[str, Any] | None:
+    record = getattr(study, section)
+    if record is None:
+        return None
+    names = [f.name for f in fields(record) if f.name != "material_name"]
+    values: dict[str, Any] = {name: _value(study, record, section, name) for name in names}
+    if isinstance(record, Film):
+        values["is_bare"] = record.material is None
+    if isinstance(record, CageDesign):  # whose friction the cage has, where it has not its own
+        candidate = None if record.ball_cage_friction is not None else cage_candidate(study)
+        environment = environment_of(study.ranking) if study.ranking and candidate else None
+        whose = {"candidate": candidate.name if candidate else None, "environment": environment}
+        values["ball_cage_friction"] |= whose
+    return values
+
+
+def _value(study: Study, record: object, section: str, name: str) -> dict[str, Any]:
+    value, unit, key = getattr(record, name), unit_of(type(record), name), f"{section}.{name}"
+    if isinstance(value, Material):
+        item = _material(value)
+        for number in ("elastic_modulus", "poisson_ratio", "density"):
+            one = study.distributions.get(f"{section if section == 'film' else key}.{number}")
+            if one is not None:
+                item[number]["distribution"] = _distribution(one, item[number]["unit"])
+        return _origin(study, key, item)
+    plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
+    item = {"value": plain, **({"unit": unit} if unit else {})}
+    if key in study.records:
+        item["record"] = study.records[key]
+    if key in study.distributions:
+        item["distribution"] = _distribution(study.distributions[key], unit)
+    return _origin(study, key, item)
 
 
 def _distribution(one: Distribution, unit: str) -> dict[str, Any]:
@@ -78,75 +104,23 @@ def _distribution(one: Distribution, unit: str) -> dict[str, Any]:
     return {**item, "words": described(one, unit), "written": one.text or None}
 
 
-def _part(study: Study, section: str) -> dict[str, Any] | None:
-    record = getattr(study, section)
-    if record is None:
-        return None
-    values: dict[str, Any] = {
-        f.name: _value(study, record, section, f.name) for f in fields(record) if f.name != "material_name"
-    }
-    if isinstance(record, Film):
-        values["is_bare"] = record.material is None
-    if isinstance(record, CageDesign):
-        values["ball_cage_friction"] |= _whose_friction(study, record)
-    return values
-
-
-def _whose_friction(study: Study, cage: CageDesign) -> dict[str, Any]:
-    """Candidate and environment whose friction the cage has; None where it has its own, or none is known."""
-    candidate = None if cage.ball_cage_friction is not None else cage_candidate(study)
-    environment = environment_of(study.ranking) if study.ranking and candidate else None
-    return {"candidate": candidate.name if candidate else None, "environment": environment}
-
-
-def _value(study: Study, record: object, section: str, name: str) -> dict[str, Any]:
-    value = getattr(record, name)
-    unit = unit_of(type(record), name)
-    if isinstance(value, Material):
-        return _origin(study, f"{section}.{name}", _uncertain_material(study, section, name, value))
-    plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
-    item = {"value": plain, **({"unit": unit} if unit else {})}
-    if (key := f"{section}.{name}") in study.records:
-        item["record"] = study.records[key]
-    if key in study.distributions:
-        item["distribution"] = _distribution(study.distributions[key], unit)
-    return _origin(study, key, item)
-
-
-def _origin(study: Study, key: str, item: dict[str, Any]) -> dict[str, Any]:
+def _origin(study: Study, key: str, item: Mapping[str, Any]) -> dict[str, Any]:
     """The item with where it was given; without any origins the study was built in Python."""
     origin = study.origins.get(key)
     if origin is None:
         origin = "default" if study.origins else "given in Python"
-        origin = _absent(study, key, origin) if item.get("value", 0) in (None, []) else origin
+        if item.get("value", 0) in (None, []):
+            origin = _WITHOUT.get(key, origin)
+            if key == "operation.tilt" and not study.operation.is_tilt_held:
+                origin = "free: the inner ring tilts until the balls balance the moment"
     return {**item, "origin": origin}
 
 
-def _absent(study: Study, key: str, otherwise: str) -> str:
-    """What the absence of this value means here."""
-    if key == "operation.tilt" and not study.operation.is_tilt_held:
-        return "free: the inner ring tilts until the balls balance the moment"
-    return _WITHOUT.get(key, otherwise)
-
-
-def _uncertain_material(study: Study, section: str, name: str, material: Material) -> dict[str, Any]:
-    """A material, its uncertain properties with what is known of them."""
-    item = _material(material)
-    prefix = section if section == "film" else f"{section}.{name}"
-    for key in ("elastic_modulus", "poisson_ratio", "density"):
-        one = study.distributions.get(f"{prefix}.{key}")
-        if one is not None:
-            item[key] = {**item[key], "distribution": _distribution(one, item[key]["unit"])}
-    return item
-
-
 def _material(material: Material) -> dict[str, Any]:
+    numbers = ("elastic_modulus", "poisson_ratio", "density", "compressive_strength")
     return {
         "name": material.name,
-        "elastic_modulus": {"value": material.elastic_modulus, "unit": "Pa"},
-        "poisson_ratio": {"value": material.poisson_ratio, "unit": "-"},
-        "density": {"value": material.density, "unit": "kg/m3"},
-        "compressive_strength": {"value": material.compressive_strength, "unit": "Pa"},
+        **{key: {"value": getattr(material, key), "unit": unit_of(Material, key)} for key in numbers},
         "source": material.source,
         "confidence": material.confidence,
         "cautions": list(material.cautions),
@@ -154,39 +128,31 @@ def _material(material: Material) -> dict[str, Any]:
     }
 
 
-def _ranking(study: Study) -> dict[str, Any] | None:
-    if study.ranking is None:
-        return None
-    candidates = [_candidate(candidate) for candidate in study.ranking.candidates]
-    table = study.records.get("ranking.friction")
+def _ranking(study: Study, question: RankingQuestion) -> dict[str, Any]:
+    from separatrix.friction.fit import TestedFriction
+
+    candidates = [
+        {
+            "name": candidate.name,
+            "friction": {env: f and _friction(f) for env, f in candidate.friction.items()},
+            "material": candidate.material and _material(candidate.material),
+        }
+        for candidate in question.candidates
+    ]
+    laws = [f.law for one in question.candidates for f in one.friction.values() if f is not None]
+    tests = next((law.tests for law in laws if isinstance(law, TestedFriction)), ())
+    ranked = {candidate.name for candidate in question.candidates}
     item = {
-        "environments": list(study.ranking.environments),
-        "environment": _value(study, study.ranking, "ranking", "environment"),
+        "environments": list(question.environments),
+        "environment": _value(study, question, "ranking", "environment"),
         "candidates": candidates,
-        "friction_scatter": _value(study, study.ranking, "ranking", "friction_scatter"),
-        "table": table,
-        "other_tests": [_test(test) for test in _other_tests(study.ranking.candidates)],
+        "friction_scatter": _value(study, question, "ranking", "friction_scatter"),
+        "table": study.records.get("ranking.friction"),
+        # of the materials that are not ranked: the scatter is pooled over all tests of the file
+        "other_tests": [_test(test) for test in tests if test.material not in ranked],
     }
     key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
     return _origin(study, key, item)
-
-
-def _other_tests(candidates: Sequence[Candidate]) -> list[FrictionTest]:
-    """Tests of the friction file whose material is not ranked: its scatter is pooled over all of them."""
-    from separatrix.friction.fit import TestedFriction
-
-    laws = [f.law for one in candidates for f in one.friction.values() if f is not None]
-    tests = next((law.tests for law in laws if isinstance(law, TestedFriction)), ())
-    ranked = {candidate.name for candidate in candidates}
-    return [test for test in tests if test.material not in ranked]
-
-
-def _candidate(candidate: Candidate) -> dict[str, Any]:
-    return {
-        "name": candidate.name,
-        "friction": {env: None if f is None else _friction(f) for env, f in candidate.friction.items()},
-        "material": None if candidate.material is None else _material(candidate.material),
-    }
 
 
 def _friction(friction: Friction) -> dict[str, Any]:
@@ -202,5 +168,5 @@ def _friction(friction: Friction) -> dict[str, Any]:
 
 def _test(test: FrictionTest) -> dict[str, Any]:
     """A friction test in SI units; pairs are the lowest and the highest value."""
-    values = ((f.name, getattr(test, f.name)) for f in fields(test))
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
+    values = {f.name: getattr(test, f.name) for f in fields(test)}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}

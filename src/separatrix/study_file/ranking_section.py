@@ -2,98 +2,176 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from math import exp, log
+from os.path import isfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from separatrix.cage_choice import NAMELESS
 from separatrix.distribution import Normal
-from separatrix.errors import InputError, together
-from separatrix.library import Library
+from separatrix.errors import InputError, noted, together
+from separatrix.friction.file import read_friction
+from separatrix.friction.law import StatedFriction
+from separatrix.friction.records import CONDITIONS
+from separatrix.library import FrictionTable
 from separatrix.measured_friction import refuse_scatter_about_zero
-from separatrix.study import BallBearing, CageDesign, Candidate, Friction, Operation, RankingQuestion
+from separatrix.study import CageDesign, Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
-from separatrix.study_file.document import Document
-from separatrix.study_file.sections import Unfinished, attempt, record_of, refuse_both
-from separatrix.study_file.tested_friction import (
-    chosen_materials,
-    of_conditions,
-    question_of_tests,
-    scatter_of,
-    tests_file,
-)
+from separatrix.study_file.document import Document, Unfinished
+from separatrix.study_file.sections import record_of
 from separatrix.study_file.values import Uncertain, friction_deviation, gathered, number, unwrapped
-from separatrix.toml_values import Reader, build, folded, ratio, table, text, whole
+from separatrix.toml_values import Reader, build, folded, nearest, ratio, table, text, whole
 from separatrix.units import shown
 
+if TYPE_CHECKING:
+    from separatrix.friction.fit import TestedFriction
+
 MOST_CANDIDATES = 1000
+DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].default
+"""Relative standard deviation that an unrepeated test is assumed to have [-]."""
+
+FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
 
 
 def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
     """Build the question of a ranking from the converted keys of its section."""
-    for key in ("friction", "materials"):
-        refuse_both(document, "ranking", "candidates", key)
-    written = document.sections["ranking"]
-    if any(key not in given for key in written):
+    if any(key not in given for key in document.sections["ranking"]):
         raise Unfinished
-    if "candidates" in written:
-        question = _in_place(document, given["candidates"])
-    elif "friction" in written and (file := tests_file(document, given["friction"])) is not None:
-        question = question_of_tests(file, given)
-    elif "friction" in written:
-        question = _from_table(given)
+    if "candidates" in given:
+        environments, candidates = _in_place(document, given["candidates"])
+    elif "friction" in given:
+        environments, candidates = _of_tests(document, given)
     else:
         raise InputError("[ranking]", "lacks: friction (or candidates)")
-    if "friction_scatter" in given:
-        question["friction_scatter"] = given["friction_scatter"]
+    question: dict[str, Any] = {
+        key: given[key] for key in ("friction_scatter", "environment") if key in given
+    }
     if "environment" in given:
-        known = {folded(name): name for name in question["environments"]}
+        known = {folded(name): name for name in environments}
         question["environment"] = known.get(folded(given["environment"]), given["environment"])
+    question |= {"environments": environments, "candidates": candidates}
     return record_of(document, RankingQuestion, question)
 
 
-def _from_table(given: dict[str, Any]) -> dict[str, Any]:
-    library = values.current_library()
-    name = values.known_name(given["friction"], "friction table", "[ranking] friction")
-    table = library.friction_table(name)
-    chosen = chosen_materials(given, tuple(table.friction), name)
-    temperature = values.current_temperature()
-    candidates = tuple(
-        of_conditions(library.candidate(table, material, temperature), table, scatter_of(given))
-        for material in chosen
+def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
+    """Environments and candidates of a friction file beside the study, or of a table of the library."""
+    name, scatter = given["friction"], float(given.get("friction_scatter", DEFAULT_SCATTER))
+    frictions: Mapping[str, Mapping[str, Friction | None]]
+    if name.endswith(".toml"):
+        environments, frictions = _of_file(document.friction_folder / name, given, scatter)
+    else:
+        name = values.known_name(name, "friction table", "[ranking] friction")
+        found = values.current_library().friction_table(name)
+        environments = found.environments
+        frictions = {
+            material: {env: f and _stated(f, env, found, scatter) for env, f in row.items()}
+            for material, row in found.friction.items()
+        }
+    library, kind = values.current_library(), "cage material"
+    temperature, known = values.current_temperature(), library.names(kind)
+    candidates = [
+        Candidate(
+            name=material,
+            friction=frictions[material],
+            material=library.material(kind, material, temperature) if material in known else None,
+        )
+        for material in _chosen(given, tuple(frictions), name)
+    ]
+    return environments, tuple(candidates)
+
+
+def _of_file(
+    path: Path, given: dict[str, Any], scatter: float
+) -> tuple[tuple[str, ...], dict[str, dict[str, Friction | None]]]:
+    """Environments and frictions of a friction file, in the order in which they are first tested."""
+    from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
+
+    if not isfile(path):
+        rule = "names no file beside the study"
+        cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
+        raise InputError("[ranking] friction", rule, shown(given["friction"]), cure)
+    tests = read_friction(path)
+    tested = tuple(dict.fromkeys((test.material, test.environment) for test in tests))
+    known = tuple(dict.fromkeys(material for material, _ in tested))
+    chosen = _chosen(given, known, given["friction"])
+    environments = tuple(dict.fromkeys(env for material, env in tested if material in chosen))
+    checksum = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+    frictions: dict[str, dict[str, Friction | None]] = {name: dict.fromkeys(environments) for name in known}
+    for name, env in tested:
+        if name in chosen:
+            law = TestedFriction(material=name, environment=env, tests=tests, default_scatter=scatter)
+            frictions[name][env] = _mean_of(law, f"{path.name}, sha256 {checksum}")
+    return environments, frictions
+
+
+def _chosen(given: dict[str, Any], known: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Materials that the study ranks, in any spelling; by default all that are known."""
+    by_spelling = {folded(material): material for material in known}
+    chosen = [by_spelling.get(folded(material), material) for material in given.get("materials", known)]
+    for material in chosen:
+        if material not in known:
+            rule, cure = f"names a material that {name} lacks", nearest(material, known)
+            raise InputError("[ranking] materials", rule, shown(material), cure)
+    return tuple(chosen)
+
+
+def _mean_of(law: TestedFriction, source: str) -> Friction:
+    """Mean over the tests, until the law predicts that at the pocket's conditions."""
+    own = law.serving(values.current_temperature())
+    if others := len(law.own) - len(own):
+        source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"
+    sources = "; ".join(dict.fromkeys(test.source for test in own if test.source))
+    return Friction(
+        mean=exp(sum(log(test.friction) for test in own) / len(own)),
+        count=len(own),
+        law=law,
+        source=f"{source}: {sources}"[:2000] if sources else source,
+        confidence="measured",
     )
-    return {"environments": table.environments, "candidates": candidates}
 
 
-def _in_place(document: Document, items: Any) -> dict[str, Any]:
+def _stated(friction: Friction, environment: str, table: FrictionTable, scatter: float) -> Friction:
+    """Friction of a table with the conditions under which the table was measured."""
+    medium, comma, _ = environment.partition(", ")
+    law = StatedFriction(
+        mean=friction.mean,
+        standard_deviation=friction.standard_deviation,
+        count=friction.count,
+        ranges={key: limits for key, limits in table.conditions.items() if key in CONDITIONS},
+        medium=medium if comma else None,
+        default_scatter=scatter,
+    )
+    return replace(friction, law=law)
+
+
+def _in_place(document: Document, items: Any) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
     if not isinstance(items, list) or not 0 < len(items) <= MOST_CANDIDATES:
         rule = f"must be 1 to {MOST_CANDIDATES} tables, each under [[ranking.candidates]]"
         raise InputError("[ranking] candidates", rule, shown(items))
     before = len(document.problems)
-    found = [attempt(document, _candidate, document, item, i) for i, item in enumerate(items)]
-    candidates = [item for item in found if item is not None]
+    candidates = []
+    for i, item in enumerate(items, 1):
+        with document.noting():
+            candidates.append(_candidate(document, item, f"[ranking] candidates[{i}]"))
     if len(document.problems) > before:
         raise Unfinished
     environments = tuple(dict.fromkeys(env for item in candidates for env in item.friction))
-    complete = (_with_gaps(candidate, environments) for candidate in candidates)
-    return {"environments": environments, "candidates": tuple(complete)}
+    return environments, tuple(
+        replace(item, friction={env: item.friction.get(env) for env in environments}) for item in candidates
+    )
 
 
-def _candidate(document: Document, item: Any, number: int) -> Candidate:
-    at = f"[ranking] candidates[{number + 1}]"
+def _candidate(document: Document, item: Any, at: str) -> Candidate:
     given, found = gathered(table(item, at, _CANDIDATE, ("name", "friction")))
     for key, one in found.items():
-        named = f"ranking.{given['name']}.{key.removeprefix('friction.')}"
-        document.distributions[named] = one
+        document.distributions[f"ranking.{given['name']}.{key.removeprefix('friction.')}"] = one
     candidate = build(Candidate, given, at)
     if candidate.material is None or candidate.material.name != NAMELESS:
         return candidate
     return replace(candidate, material=replace(candidate.material, name=candidate.name))
-
-
-def _with_gaps(candidate: Candidate, environments: tuple[str, ...]) -> Candidate:
-    """The candidate with None where others were measured and it was not."""
-    friction = {env: candidate.friction.get(env) for env in environments}
-    return Candidate(name=candidate.name, friction=friction, material=candidate.material)
 
 
 def _frictions(value: Any, at: str) -> Uncertain:
@@ -103,13 +181,11 @@ def _frictions(value: Any, at: str) -> Uncertain:
         rule = f"must be a table from environment to friction, with 1 to {MOST_CANDIDATES} entries"
         raise InputError(at, rule, got, cure)
     frictions: dict[str, Friction | Uncertain] = {}
-    problems = []
+    problems: list[InputError] = []
     for name, item in value.items():
-        try:
+        with noted(problems):
             environment = text(name, f"{at}, name of an environment,")
             frictions[environment] = _friction(item, f'{at}."{environment[:60]}"')
-        except InputError as error:
-            problems.append(error)
     if problems:
         raise together(problems)
     return Uncertain(*gathered(frictions))
@@ -118,17 +194,12 @@ def _frictions(value: Any, at: str) -> Uncertain:
 def _friction(value: Any, where: str) -> Friction | Uncertain:
     """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
     if isinstance(value, dict) and not {"between", "samples"} & set(value):
-        readers: dict[str, Reader] = {
-            "mean": ratio,
-            "standard_deviation": ratio,
-            "count": whole,
-            "source": text,
-        }
+        readers: dict[str, Reader] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
         given = {**value, "standard_deviation": friction_deviation(value, where)}
         kept = {key: item for key, item in given.items() if key in value}
-        stated = build(Friction, table(kept, where, readers, ("mean",)), where)
-        return refuse_scatter_about_zero(stated, where)
-    mean, found = unwrapped(number(ratio, "-")(value, where))
+        stated = table(kept, where, {**readers, "source": text}, ("mean",))
+        return refuse_scatter_about_zero(build(Friction, stated, where), where)
+    mean, found = unwrapped(number("-")(value, where))
     if not found:
         return build(Friction, {"mean": mean}, where)
     deviation = found[""].standard_deviation
@@ -145,29 +216,19 @@ _CANDIDATE: dict[str, Reader] = {
 }
 
 
-FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
-
-
 def name_cage(document: Document, parts: dict[str, Any]) -> None:
-    """Give the cage the candidate of its name.
-
-    Raises
-    ------
-    InputError
-        Neither the library nor a candidate has that name.
-    """
+    """Give the cage the candidate of its name."""
     cage: CageDesign | None = parts.get("cage")
     question: RankingQuestion | None = parts.get("ranking")
-    entry = document.sections.get("cage", {}).get("material")
-    if cage is None or entry is None or (question is None and "ranking" in document.sections):
+    given = document.sections.get("cage", {}).get("material")
+    if cage is None or given is None or (question is None and "ranking" in document.sections):
         return
-    name = entry.value if isinstance(entry.value, str) else cage.material.name if cage.material else ""
+    name = given if isinstance(given, str) else cage.material.name if cage.material else ""
     known = {folded(candidate.name): candidate for candidate in question.candidates} if question else {}
     candidate = known.get(folded(name))
     if candidate is not None:
-        of_candidate = candidate.material if isinstance(entry.value, str) else None
-        material = of_candidate or cage.material
-        parts["cage"] = replace(cage, material=material, material_name=candidate.name)
+        material = candidate.material if isinstance(given, str) else None
+        parts["cage"] = replace(cage, material=material or cage.material, material_name=candidate.name)
     elif cage.material is None:
         names = ", ".join(candidate.name for candidate in known.values())
         more = f" Candidates are {names}." if names else ""
@@ -175,37 +236,32 @@ def name_cage(document: Document, parts: dict[str, Any]) -> None:
 
 
 def name_environment(parts: dict[str, Any]) -> bool:
-    """Give the ranking the one environment that fits the bearing; whether it was wanted and is found."""
+    """Give the ranking the one environment that fits the bearing; return whether there is one.
+
+    It is the environment of the bearing's fluid and balls, else of fluid and rings.
+    """
     question, operation, bearing = (parts.get(name) for name in ("ranking", "operation", "bearing"))
     if question is None or operation is None or bearing is None or question.environment is not None:
         return False
-    found = matching_environment(question, operation, bearing, values.current_library())
-    parts["ranking"] = replace(question, environment=found)
-    return found is not None
-
-
-def matching_environment(
-    question: RankingQuestion, operation: Operation, bearing: BallBearing, library: Library
-) -> str | None:
-    """Return the environment of the bearing's fluid and balls, else of fluid and rings; None if none is."""
     if len(question.environments) == 1 or operation.fluid is None:
-        return None
-    fluid = operation.fluid
+        return False
     for surface in (bearing.ball_material.name, bearing.ring_material.name):
-        found = [name for name in question.environments if _is(name, fluid, surface, library)]
+        found = [name for name in question.environments if _is(name, operation.fluid, surface)]
         if len(found) == 1:
-            return found[0]
-    return None
+            parts["ranking"] = replace(question, environment=found[0])
+            return True
+    return False
 
 
-def _is(environment: str, fluid: str, surface: str, library: Library) -> bool:
+def _is(environment: str, fluid: str, surface: str) -> bool:
     """Whether an environment, "medium, counterface", is this fluid and, if it names one, this counterface."""
     medium, comma, counterface = environment.partition(",")
-    alike = not comma or _alike(counterface, surface, "bearing material", library)
-    return alike and _alike(medium, fluid, "fluid", library)
+    alike = not comma or _alike(counterface, surface, "bearing material")
+    return alike and _alike(medium, fluid, "fluid")
 
 
-def _alike(one: str, other: str, kind: str, library: Library) -> bool:
+def _alike(one: str, other: str, kind: str) -> bool:
     """Whether two names are of the same record, or of what is in no library."""
+    library = values.current_library()
     first, second = (library.named(kind, name.strip()) or folded(name) for name in (one, other))
     return first == second

@@ -5,41 +5,40 @@ from __future__ import annotations
 import types
 import typing
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, replace
 from enum import Enum
-from typing import Any, ParamSpec, TypeVar
+from itertools import product
+from typing import Any, TypeVar
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
-from separatrix.study import (
-    SECTIONS as RECORDS,
-)
-from separatrix.study import (
-    Guidance,
-    KinematicModel,
-    Material,
-    Study,
-    key_of,
-)
+from separatrix.library import Library
+from separatrix.study import SECTIONS as RECORDS
+from separatrix.study import Guidance, KinematicModel, Material, Study, key_of
 from separatrix.study_file import values
-from separatrix.study_file.document import MOST_PROBLEMS, SECTIONS, Document, library_of, used_records
-from separatrix.study_numbers import MOST_DISTRIBUTIONS, contact_angle_of, settled_in
+from separatrix.study_file.document import (
+    ALTERNATIVES,
+    MOST_PROBLEMS,
+    SECTIONS,
+    Document,
+    Unfinished,
+    library_of,
+)
+from separatrix.study_numbers import ANGLE_FROM, MOST_DISTRIBUTIONS, contact_angle_of, settled_in
 from separatrix.toml_values import Reader, choice, list_of, nearest, quantity, ratio, text, whole
 from separatrix.units import printable, shown, unit_of
 
 Record = TypeVar("Record")
-Inputs = ParamSpec("Inputs")
 
-_REQUIRED_SECTIONS = ("bearing", "operation", "film")
+LEFT_OUT = "cage"
+"""In `Study.records`: the refusal of a cage that the study is built without, for the verbs that need none."""
+
 _ELASTIC = ("elastic_modulus", "poisson_ratio")
-_NO_KEYS = frozenset({"material_name"})
-"""Fields of records that have no key: they follow from others."""
-
 _CERTAIN = frozenset({"reference_kick", "runs", "seed"})
 _LISTS = {
     "kicks": values.kicks,
-    "pocket_angles": values.pocket_angles,
+    "pocket_angles": values.items("rad", "evenly spaced pockets"),
     "restitution_factors": values.restitution_factors,
 }
 _MATERIALS = {
@@ -48,20 +47,16 @@ _MATERIALS = {
     ("film", "material"): values.material("film"),
     ("cage", "material"): values.cage_material,
 }
-
-
-class Unfinished(Exception):  # noqa: N818 - not an error: it never leaves this package
-    """A section cannot be built because one of its values was refused already."""
+_USELESS_ALONE = {
+    "operation": ("ramp_start", "ramp_time", "the speeds are steady"),
+    "cage": ("land_lobes", "land_out_of_round", "the land is round"),
+}
+"""A key that has no effect without another one, and why."""
 
 
 def required_fields(record: type) -> list[str]:
     """Fields of a record that have no default."""
     return [f.name for f in fields(record) if f.default is f.default_factory is MISSING]
-
-
-def _number(unit: str) -> Reader:
-    """Reader of a number in this unit, certain or not."""
-    return values.number(ratio if unit == "-" else quantity(unit), unit)
 
 
 def _reader(section: str, record: type, name: str) -> Reader:
@@ -80,12 +75,15 @@ def _reader(section: str, record: type, name: str) -> Reader:
     if isinstance(hint, type) and issubclass(hint, Enum):
         return choice(hint)
     unit = unit_of(record, name)
-    return values.certain(quantity(unit)) if name in _CERTAIN else _number(unit)
+    return values.certain(quantity(unit)) if name in _CERTAIN else values.number(unit)
 
 
 READERS: dict[str, dict[str, Reader]] = {
     **{
-        section: {f.name: _reader(section, record, f.name) for f in fields(record) if f.name not in _NO_KEYS}
+        # the name of the cage's candidate follows from its material
+        section: {
+            f.name: _reader(section, record, f.name) for f in fields(record) if f.name != "material_name"
+        }
         for section, record in RECORDS.items()
     },
     "kinematics": {"model": choice(KinematicModel)},
@@ -99,8 +97,8 @@ READERS: dict[str, dict[str, Reader]] = {
 }
 """How each key of each section is read: the contract of a study file."""
 
-READERS["bearing"]["radial_clearance"] = _number("m")
-READERS["film"] |= {"elastic_modulus": _number("Pa"), "poisson_ratio": _number("-")}
+READERS["bearing"]["radial_clearance"] = values.number("m")
+READERS["film"] |= {"elastic_modulus": values.number("Pa"), "poisson_ratio": values.number("-")}
 
 
 def build_study(document: Document, name: str) -> Study:
@@ -113,58 +111,58 @@ def build_study(document: Document, name: str) -> Study:
     """
     from separatrix.study_file.ranking_section import FROM_BEARING, name_cage, name_environment
 
-    title = attempt(document, _title, document, name)
-    library = attempt(document, library_of, document)
+    title, library, fits = name, None, False
+    parts: dict[str, Any] = {}
+    with document.noting():
+        title = text(document.top.get("title", name), "title")
+    with document.noting():
+        library = library_of(document)
     if library is None:
         raise document.refusal()
     with values.using(library, _temperature(document)):
-        parts: dict[str, Any] = {}
         for section in SECTIONS:
             if section in document.sections:
                 given = _converted(document, section)
-                parts[section] = attempt(document, _record, document, section, given)
-        attempt(document, name_cage, document, parts)
+                parts[section] = None
+                with document.noting():
+                    parts[section] = _record(document, section, given)
+        with document.noting():
+            name_cage(document, parts)
         fits = name_environment(parts)
-    if missing := [f"[{section}]" for section in _REQUIRED_SECTIONS if section not in document.sections]:
+    required = ("bearing", "operation", "film")
+    if missing := [f"[{section}]" for section in required if section not in document.sections]:
         rule = f"lacks the section{'s'[: len(missing) > 1]} {', '.join(missing)}"
         document.problems.append(InputError("", rule))
     if len(document.problems) > MOST_PROBLEMS:
         rule = f"was not read to its end: it has more than {MOST_PROBLEMS} mistakes"
         document.problems.append(InputError("", rule))
-    study = None
     if not document.problems:
         origins = _origins(document) | ({"ranking.environment": FROM_BEARING} if fits else {})
-        made = {"name": name, "title": title or name, "origins": origins, **parts}
-        study = attempt(document, record_of, document, Study, made)
-    if study is not None:
-        study = replace(study, records=used_records(library, document))
-        study = _with_distributions(document, study)
-    if study is None or document.problems:
-        raise document.refusal()
-    return study
+        records = _used_records(library, document)
+        with document.noting():
+            made = {"name": name, "title": title, "origins": origins, "records": records, **parts}
+            return _with_distributions(document, _study(document, made))
+    raise document.refusal()
 
 
-def attempt(
-    document: Document, make: Callable[Inputs, Record], *args: Inputs.args, **kwargs: Inputs.kwargs
-) -> Record | None:
-    """What `make` returns, or None with its refusals noted in the document."""
+def _study(document: Document, made: dict[str, Any]) -> Study:
+    """Build the study; without its cage where nothing gives the stiffness of its pockets."""
     try:
-        return make(*args, **kwargs)
+        return record_of(document, Study, made)
     except InputError as error:
-        document.problems.extend(error.problems or (error,))
-    except Unfinished:
-        pass
-    return None
+        if error.path != "[cage] ball_cage_stiffness":
+            raise
+        refusal = error.at(document.locate(error.path))
+    sentence = f"{refusal.path} {refusal.rule}: the section is left out, and what needs it is refused."
+    warnings.warn(sentence, ValidityWarning, stacklevel=4)
+    for key in [key for key in document.distributions if key.startswith("cage.")]:
+        del document.distributions[key]
+    left = {**made["records"], LEFT_OUT: refusal}
+    return record_of(document, Study, {**made, "cage": None, "records": left})
 
 
-def record_of(document: Document, record: Callable[..., Record], given: dict[str, Any]) -> Record:
-    """Build a record; its refusals name the keys of the file, and the values as the file has them.
-
-    Raises
-    ------
-    InputError
-        The record refuses its values.
-    """
+def record_of(document: Document, record: Callable[..., Record], given: Mapping[str, Any]) -> Record:
+    """Build a record; its refusals name the keys of the file, and the values as the file has them."""
     try:
         return record(**given)
     except InputError as error:
@@ -174,117 +172,102 @@ def record_of(document: Document, record: Callable[..., Record], given: dict[str
 def _as_written(document: Document, problem: InputError) -> InputError:
     path, got = key_of(problem.path), problem.got
     section, _, key = path.removeprefix("[").partition("] ")
-    entry = document.sections.get(section, {}).get(key)
+    value = document.sections.get(section, {}).get(key)
     uncertain = document.distributions.get(f"{section}.{key}")
     if got and uncertain is not None:
         got = f"{uncertain.text}, whose mean is {got}"
-    elif got and entry is not None and isinstance(entry.value, str | int | float):
-        got = shown(entry.value)
+    elif got and isinstance(value, str | int | float):
+        got = shown(value)
     return InputError(path, problem.rule, got, problem.cure)
 
 
-def refuse_both(document: Document, section: str, one: str, other: str) -> None:
-    """Refuse two keys that exclude each other."""
-    written = document.sections.get(section, {})
-    if one in written and other in written:
-        raise InputError(f"[{section}] {one}", f"and {other} exclude each other", cure="Give one of the two.")
-
-
-def _with_distributions(document: Document, study: Study) -> Study | None:
+def _with_distributions(document: Document, study: Study) -> Study:
     """The study with the distributions of its uncertain numbers, each fitting its place."""
     found = document.distributions
     if len(found) > MOST_DISTRIBUTIONS:
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
-        cure = "Make those certain that matter least."
-        document.problems.append(InputError("", rule, str(len(found)), cure))
-        return None
-    tried = {key: attempt(document, _settled, document, study, key) for key in found}
-    settled = {key: one for key, one in tried.items() if one is not None}
-    return replace(study, distributions=settled) if settled else study
-
-
-def _settled(document: Document, study: Study, name: str) -> Distribution:
-    try:
-        return settled_in(study, name, document.distributions[name])
-    except InputError as error:
+        raise InputError("", rule, str(len(found)), "Make those certain that matter least.")
+    settled: dict[str, Distribution] = {}
+    for name, one in found.items():
         section, _, key = name.partition(".")
         if section == "ranking":
-            raise error.at(f"[ranking] candidates, {printable(key, 120)},") from None
-        is_key = key.partition(".")[0] in document.sections[section]
-        raise error.at(f"[{section}] {key}" if is_key else f"[{section}] material.{key}") from None
+            at = f"[ranking] candidates, {printable(key, 120)},"
+        else:
+            is_key = key.partition(".")[0] in document.sections[section]
+            at = f"[{section}] {key}" if is_key else f"[{section}] material.{key}"
+        with document.noting():
+            try:
+                settled[name] = settled_in(study, name, one)
+            except InputError as error:
+                raise error.at(at) from None
+    if document.problems:
+        raise Unfinished
+    return replace(study, distributions=settled)
 
 
 def _temperature(document: Document) -> float | None:
     """Temperature of the study, by which data of the library are chosen; None if absent or refused."""
-    entry = document.sections.get("operation", {}).get("temperature")
+    value = document.sections.get("operation", {}).get("temperature")
     try:
-        value = None if entry is None else READERS["operation"]["temperature"](entry.value, "")
+        found = None if value is None else READERS["operation"]["temperature"](value, "")
     except (InputError, TypeError):  # it is refused in its own place
         return None
-    return None if value is None else float(values.unwrapped(value)[0])
+    return None if found is None else float(values.unwrapped(found)[0])
 
 
-def _title(document: Document, name: str) -> str:
-    entry = document.top.get("title")
-    return name if entry is None else text(entry.value, "title")
+def _used_records(library: Library, document: Document) -> dict[str, Any]:
+    """Whole records of what a study names besides materials: its fluid, its friction table."""
+    fluid = document.sections["operation"].get("fluid")
+    known = None if fluid is None else library.fluid(fluid)
+    records = {} if known is None else {"operation.fluid": known.plain()}
+    table = document.sections.get("ranking", {}).get("friction")
+    if table in library.names("friction table"):
+        records["ranking.friction"] = library.friction_table(table).plain()
+    return records
 
 
 def _converted(document: Document, section: str) -> dict[str, Any]:
     """Values of a section's known keys; what is wrong goes to the document's problems."""
     converted: dict[str, Any] = {}
-    for key, entry in document.sections[section].items():
+    readers = READERS[section]
+    for key, value in document.sections[section].items():
         if len(document.problems) > MOST_PROBLEMS:
             break
-        value, found = values.unwrapped(attempt(document, _read, section, key, entry.value))
-        prefix = section if (section, key) == ("film", "material") else f"{section}.{key}"
-        document.distributions |= {f"{prefix}.{part}".strip("."): one for part, one in found.items()}
-        if value is not None:
-            converted[key] = value
+        with document.noting():
+            if isinstance(value, InputError):
+                raise value
+            at = f"[{section}] {printable(key) or chr(34) * 2}"
+            if key not in readers:
+                homes = [f"[{other}]" for other in SECTIONS if key in READERS[other]]
+                cure = f"It belongs in {' or '.join(homes)}." if homes else nearest(key, readers)
+                raise InputError(at, "is not a valid key in this section", cure=cure)
+            converted[key], found = values.unwrapped(readers[key](value, at))
+            prefix = section if (section, key) == ("film", "material") else f"{section}.{key}"
+            document.distributions |= {f"{prefix}.{part}".strip("."): one for part, one in found.items()}
     return converted
 
 
-def _read(section: str, key: str, value: Any) -> Any:
-    if isinstance(value, InputError):
-        raise value
-    at = f"[{section}] {printable(key) or chr(34) * 2}"
-    if key in READERS[section]:
-        return READERS[section][key](value, at)
-    homes = [f"[{other}]" for other in SECTIONS if key in READERS[other]]
-    cure = f"It belongs in {' or '.join(homes)}." if homes else nearest(key, READERS[section])
-    raise InputError(at, "is not a valid key in this section", cure=cure)
-
-
 def _record(document: Document, section: str, given: dict[str, Any]) -> Any:
-    """Build the record of a section from its converted keys.
-
-    Raises
-    ------
-    InputError
-        A key is missing, is given without another one that it needs, or the record refuses its values.
-    Unfinished
-        A value that was written has been refused.
-    """
+    """Build the record of a section from its converted keys."""
     from separatrix.study_file.ranking_section import ranking
 
     written = document.sections[section]
-    if section == "ranking":
-        return ranking(document, given)
     if section == "kinematics":
         return given.get("model", KinematicModel.FREE)
-    refused = [key for key in written if key in READERS[section] and key not in given]
-    if section == "bearing":
-        given = _bearing(document, given)
-    elif section == "operation":
-        refuse_both(document, "operation", "tilt", "moment")
-        _refuse_alone(document, "operation", "ramp_start", "ramp_time", "the speeds are steady")
-    elif section == "film":
-        given = _film(document, given, refused)
-    elif section == "cage":
-        given = _cage(document, given, refused)
+    for one, other in product(*ALTERNATIVES.get(section, ((), ()))):
+        if one in written and other in written:
+            rule = f"and {other} exclude each other"
+            raise InputError(f"[{section}] {one}", rule, cure="Give one of the two.")
+    if section == "ranking":
+        return ranking(document, given)
+    given = _OWN_RULES.get(section, lambda _, given: given)(document, given)
+    key, other, otherwise = _USELESS_ALONE.get(section, ("", "", ""))
+    if key in written and other not in written:
+        rule, cure = f"needs {other}: without it {otherwise}", "Give it, or leave both out."
+        raise InputError(f"[{section}] {key}", rule, cure=cure)
     record = RECORDS[section]
     required = required_fields(record)
-    missing = [key for key in required if key not in written and key not in given]
-    if missing:
+    if missing := [key for key in required if key not in written and key not in given]:
         named = ("contact_angle (or radial_clearance)" if key == "contact_angle" else key for key in missing)
         raise InputError(f"[{section}]", f"lacks: {', '.join(named)}")
     if any(key not in given for key in required):
@@ -294,41 +277,27 @@ def _record(document: Document, section: str, given: dict[str, Any]) -> Any:
 
 def _bearing(document: Document, given: dict[str, Any]) -> dict[str, Any]:
     """Give the contact angle without load that the radial clearance makes."""
-    refuse_both(document, "bearing", "radial_clearance", "contact_angle")
-    clearance = given.pop("radial_clearance", None)
-    if clearance is None:
-        if "radial_clearance" in document.sections["bearing"]:
-            raise Unfinished
+    if "radial_clearance" not in document.sections["bearing"]:
         return given
-    angle = 0.0  # where something is missing or wrong, for which the record is refused
-    diameter, inner, outer = (
-        given.get(key) for key in ("ball_diameter", "inner_conformity", "outer_conformity")
-    )
-    if (
-        diameter is not None
-        and inner is not None
-        and outer is not None
-        and (inner + outer - 1.0) * diameter > 0.0
-    ):
-        try:
-            angle = contact_angle_of(clearance, diameter, inner, outer)
-        except InputError as error:
-            raise together([_as_written(document, error)]) from None
+    if "radial_clearance" not in given:
+        raise Unfinished
+    clearance, angle = given.pop("radial_clearance"), 0.0
+    if all(key in given for key in ANGLE_FROM):
+        diameter, inner, outer = (given[key] for key in ANGLE_FROM)
+        if (inner + outer - 1.0) * diameter > 0.0:  # else the record is refused
+            angle = record_of(document, lambda: contact_angle_of(clearance, diameter, inner, outer), {})
     return {**given, "contact_angle": angle}
 
 
-def _film(document: Document, given: dict[str, Any], refused: list[str]) -> dict[str, Any]:
+def _film(document: Document, given: dict[str, Any]) -> dict[str, Any]:
     """Make the film's material of its modulus and Poisson's ratio where they are given in place of a name."""
     written = document.sections["film"]
-    for key in _ELASTIC:
-        refuse_both(document, "film", key, "material")
-    in_place = [key for key in _ELASTIC if key in written]
-    if len(in_place) == 1:
-        missing = _ELASTIC[1 - _ELASTIC.index(in_place[0])]
-        raise InputError("[film]", f"lacks: {missing}")
-    if refused:
+    lacking = [key for key in _ELASTIC if key not in written]
+    if len(lacking) == 1:
+        raise InputError("[film]", f"lacks: {lacking[0]}")
+    if _is_refused(document, "film", given):
         raise Unfinished
-    if in_place:
+    if not lacking:
         properties = {key: given.pop(key) for key in _ELASTIC}
         try:
             given["material"] = Material(name="film given in the study", **properties)
@@ -338,43 +307,40 @@ def _film(document: Document, given: dict[str, Any], refused: list[str]) -> dict
     return given
 
 
-def _cage(document: Document, given: dict[str, Any], refused: list[str]) -> dict[str, Any]:
+def _cage(document: Document, given: dict[str, Any]) -> dict[str, Any]:
     """Check the keys of the land against the guidance, and leave a candidate's name to `name_cage`."""
     written = document.sections["cage"]
-    land = [key for key in written if key in READERS["cage"] and key.startswith("land_")]
-    if refused:
+    if _is_refused(document, "cage", given):
         raise Unfinished
+    land = [key for key in written if key in READERS["cage"] and key.startswith("land_")]
     if land and "guidance" not in written:
+        rule = "needs guidance: without it the balls guide the cage"
         cure = 'Give guidance = "outer" or "inner", or leave it out.'
-        raise InputError(
-            f"[cage] {land[0]}", "needs guidance: without it the balls guide the cage", cure=cure
-        )
+        raise InputError(f"[cage] {land[0]}", rule, cure=cure)
     if land and given["guidance"] is Guidance.BALL:
         place = document.places.of(f"[cage] {land[0]}")
         sentence = f'{place}: [cage] {", ".join(land)}: not used, because guidance is "ball".'
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
         given = {key: value for key, value in given.items() if key not in land}
-    refuse_both(document, "cage", "pocket_angles", "pocket_spacing_scatter")
-    _refuse_alone(document, "cage", "land_lobes", "land_out_of_round", "the land is round")
     return {**given, "material": None} if isinstance(given.get("material"), str) else given
 
 
-def _refuse_alone(document: Document, section: str, key: str, other: str, otherwise: str) -> None:
-    """Refuse a key that has no effect without another one."""
-    written = document.sections[section]
-    if key in written and other not in written:
-        cure = "Give it, or leave both out."
-        raise InputError(f"[{section}] {key}", f"needs {other}: without it {otherwise}", cure=cure)
+_OWN_RULES = {"bearing": _bearing, "film": _film, "cage": _cage}
+
+
+def _is_refused(document: Document, section: str, given: Mapping[str, Any]) -> bool:
+    """Whether a value of the section was refused."""
+    return any(key in READERS[section] and key not in given for key in document.sections[section])
 
 
 def _origins(document: Document) -> dict[str, str]:
     """Place and text of every given key."""
     origins = {}
-    for section, entries in document.sections.items():
-        for key, entry in entries.items():
-            plain = not isinstance(entry.value, dict | list) or f"{section}.{key}" in document.distributions
-            shown_text = f": {values.written(entry.value)}" if plain else ""
-            origins[f"{section}.{key}"] = document.places.of(f"[{section}] {key}") + shown_text
+    for section, given in document.sections.items():
+        for key, value in given.items():
+            plain = not isinstance(value, dict | list) or f"{section}.{key}" in document.distributions
+            text = f": {values.written(value)}" if plain else ""
+            origins[f"{section}.{key}"] = document.places.of(f"[{section}] {key}") + text
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"
     return origins

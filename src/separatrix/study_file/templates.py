@@ -1,25 +1,22 @@
-"""A study as a workbook to fill in: keys and remarks of the commented template, units in a column."""
+"""The workbook to fill in: keys and remarks of the commented template, units in a column."""
 
 from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from fractions import Fraction
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix import library
-from separatrix.errors import InputError
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape
-from separatrix.study_file.cells import COLUMNS, SEPARATOR, number_text
-from separatrix.study_file.document import SECTIONS, Document, load
+from separatrix.study_file.cells import COLUMNS, SEPARATOR, with_unit
+from separatrix.study_file.document import SECTIONS, TEMPLATE, load
 from separatrix.study_file.sections import required_fields
-from separatrix.study_file.workbook import CANDIDATES, MEASURED, STUDY_SHEET
+from separatrix.study_file.workbook import CANDIDATES, MEASURED, OWN, STUDY_SHEET
 from separatrix.units import NUMBER, UNITS
 from separatrix.workbook_looks import (
     HEADING,
@@ -39,7 +36,6 @@ if TYPE_CHECKING:
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 
-TEMPLATE = Path(__file__).with_name("template.toml")
 LISTS_SHEET = "lists"
 INSTRUCTIONS = (
     "A study for separatrix: one bearing, its operating point, the film on its races, its cage, candidates.",
@@ -58,10 +54,10 @@ INSTRUCTIONS = (
     "and: separatrix rank THIS_FILE (which cage material runs stably?)",
 )
 EMPTY_ROWS = 12
-"""Yellow rows for candidates beyond those that are given."""
+"""Yellow rows for candidates."""
 
-TEXTS = frozenset({"title", "extends", "library", "fluid", "name", "source", "confidence"})
-"""Keys, and last parts of dotted keys, that are words even if they look like a quantity."""
+TEXTS = frozenset({"title", "extends", "fluid"})
+"""Keys that are words even if they look like a quantity."""
 
 _CHOICES: dict[str, type[Enum]] = {
     "kinematics.model": KinematicModel,
@@ -79,7 +75,6 @@ _NAMES = {
 _HEADER = re.compile(r"(# )?\[\[?([a-z_.]+)\]\]?\s*(?:#\s*(.*))?")
 _KEY = re.compile(r"(# )?([a-z_]+) = (.*)")
 _QUANTITY = re.compile(rf"\s*({NUMBER}) ?([^0-9\s].*?)?\s*")
-_SPREAD = re.compile(r"(.+?)\s*\+-\s*(.+)")
 ENTRY = Look(fill=INPUT)
 
 
@@ -125,78 +120,50 @@ def section_remarks() -> dict[str, str]:
 
 
 class Written(NamedTuple):
-    """The cells of a row."""
+    """A row of the template: its key, the cells of its value and its unit."""
 
-    value: Any = None
-    spread: Any = None
-    unit: str = ""
+    key: str
+    value: Any
+    unit: str
 
 
-def cells_of(key: str, value: Any) -> Iterator[tuple[str, Written]]:
-    """Yield the keys and cells of a value of a TOML file; a table has a row for each of its parts."""
+def cells_of(key: str, value: Any) -> Iterator[Written]:
+    """Yield the rows of a value of the template; a table has a row for each of its parts."""
     if isinstance(value, dict):
         for part, item in value.items():
             yield from cells_of(f"{key}.{part}", item)
     elif isinstance(value, list):
-        found = [_quantity(item) if isinstance(item, str) else (item, "") for item in value]
-        numbers = [float(number) for number, _ in found if isinstance(number, int | float)]
-        units = {unit for _, unit in found}
-        same = len(units) == 1 and len(numbers) == len(value)
-        items = map(number_text, numbers) if same else map(str, value)
-        yield key, Written(f"{SEPARATOR} ".join(items), unit=units.pop() if same else "")
-    elif not isinstance(value, str) or key.rpartition(".")[2] in TEXTS:
-        yield key, Written(value)
-    elif (spread := _SPREAD.fullmatch(value)) is not None:
-        number, unit = _quantity(spread[1])
-        half, half_unit = _quantity(spread[2])
-        if number is not None and half is not None and half_unit == unit:
-            yield key, Written(number, half, unit)
-        elif number is not None and spread[2].endswith("%"):
-            yield key, Written(number, spread[2], unit)
-        else:  # parts of different units
-            yield key, Written(value)
+        found = [_quantity(item) for item in value]
+        texts = [
+            item if number is None else with_unit(number, "")
+            for item, (number, _) in zip(value, found, strict=True)
+        ]
+        yield Written(key, f"{SEPARATOR} ".join(texts), found[0][1])
     else:
-        number, unit = _quantity(value)
-        yield key, Written(value if number is None else number, unit=unit)
+        number, unit = (None, "") if key in TEXTS else _quantity(value)
+        yield Written(key, value if number is None else number, unit)
 
 
-def _quantity(text: str) -> tuple[float | None, str]:
-    """Return number and unit of a text, if a cell holds the number without loss; else None."""
-    match = _QUANTITY.fullmatch(text)
-    unit = match[2] or "" if match else ""
-    if match is None or not any(unit in known for known in UNITS.values()):
+def _quantity(value: Any) -> tuple[float | None, str]:
+    """Return number and unit of a text; None if it is none."""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None or not any((match[2] or "") in known for known in UNITS.values()):
         return None, ""
-    number = float(match[1])
-    return (number, unit) if Fraction(number_text(number)) == Fraction(match[1]) else (None, "")
+    return float(match[1]), match[2] or ""
 
 
 def template_workbook() -> bytes:
     """Return the workbook that ``separatrix new --excel`` writes; valid as it is."""
-    return study_workbook(load(TEMPLATE))
-
-
-def study_workbook(document: Document) -> bytes:
-    """Return a study as a workbook which reads back as the same study.
-
-    Raises
-    ------
-    InputError
-        A friction is given in a form that has no columns: bounds, or samples.
-    """
-    book = new_workbook()
-    choices = _Choices()
+    document, book, choices = load(TEMPLATE), new_workbook(), _Choices()
     sheet = add_sheet(book, "instructions")
     headings(sheet, ("How to fill this in",))
     for number, line in enumerate(INSTRUCTIONS, 2):
         put(sheet, number, 1, line, WRAPPED)
     widths(sheet, 110)
-    _section(add_sheet(book, STUDY_SHEET), "", {k: e.value for k, e in document.top.items()}, choices)
+    _section(add_sheet(book, STUDY_SHEET), "", document.top, choices)
     for name in SECTIONS:
-        values = {key: entry.value for key, entry in document.sections.get(name, {}).items()}
-        values.pop(CANDIDATES, None)
-        _section(add_sheet(book, name), name, values, choices)
-    given = document.sections.get("ranking", {}).get(CANDIDATES)
-    _candidates(add_sheet(book, CANDIDATES), given.value if given else [], choices)
+        _section(add_sheet(book, name), name, document.sections[name], choices)
+    _candidates(add_sheet(book, CANDIDATES), choices)
     choices.write(book)
     return workbook_bytes(book)
 
@@ -205,81 +172,34 @@ def _section(sheet: Worksheet, section: str, values: Mapping[str, Any], choices:
     """Write the keys of a section, those without a value too."""
     headings(sheet, COLUMNS, keep_columns=1)
     row = 1
-    for one, key in _keys(section, values):
-        for name, written in cells_of(key, values[key] if key in values or one is None else one.example):
+    for one in (one for one in template_keys() if one.section == section):
+        for name, value, unit in cells_of(one.key, one.example):
             row += 1
-            put(sheet, row, 1, name, Look(bold=one is not None and one.is_required), exact=True)
-            shown = written if key in values else Written(unit=written.unit)
-            for column, value in enumerate(shown, 2):
-                put(sheet, row, column, value, ENTRY, exact=True)
-            put(sheet, row, 5, one.meaning if one is not None and name == key else "", SMALL)
-            choices.add(sheet, row, f"{section}.{name}", written.unit)
+            put(sheet, row, 1, name, Look(bold=one.is_required), exact=True)
+            for column, shown in enumerate((value if one.key in values else None, None, unit), 2):
+                put(sheet, row, column, shown, ENTRY, exact=True)
+            put(sheet, row, 5, one.meaning if name == one.key else "", SMALL)
+            choices.add(sheet, row, f"{section}.{name}", unit)
     if remark := section_remarks().get(section):
         put(sheet, row + 1, 5, remark, SMALL)
     widths(sheet, 30, 24, 10, 10, 90)
 
 
-def _keys(section: str, values: Mapping[str, Any]) -> Iterator[tuple[TemplateKey | None, str]]:
-    """Yield the keys of a section: those of the template, then others that are given."""
-    known = {one.key: one for one in template_keys() if one.section == section}
-    yield from ((one, key) for key, one in known.items())
-    yield from ((None, key) for key in values if key not in known)
-
-
-def _candidates(sheet: Worksheet, items: Sequence[Mapping[str, Any]], choices: _Choices) -> None:
-    """Write the candidates: their frictions by environment, with room for more of them.
-
-    Raises
-    ------
-    InputError
-        A friction is in a form that has no column.
-    """
-    for item in items:
-        for environment, friction in item["friction"].items():
-            if isinstance(friction, Mapping) and not set(friction) <= set(MEASURED):
-                where, forms = f"{item['name']}, {environment}", ", ".join(friction)
-                rule = f"has no column in a workbook for {forms}"
-                raise InputError(where, rule, cure='Write it like "0.12 +- 20 %".')
-    columns = list(_candidate_columns(items))
-    for number, (above, keys) in enumerate(columns, 1):
+def _candidates(sheet: Worksheet, choices: _Choices) -> None:
+    """Write the headings of the candidates, with room for some."""
+    examples = {(one.section, one.key): one.example for one in template_keys()}
+    columns = [("", "name"), ("", "material"), ("GPa", "elastic_modulus"), ("", "poisson_ratio")]
+    for environment in examples["ranking.candidates", "friction"]:
+        columns += [(environment, part) for part in MEASURED if part != "source"]
+    for number, (above, below) in enumerate(columns, 1):
         put(sheet, 1, number, above, HEADING, exact=True)
-        put(sheet, 2, number, keys[-1], HEADING, exact=True)
-    for row in range(3, 3 + len(items) + EMPTY_ROWS):
-        item = items[row - 3] if row - 3 < len(items) else {}
-        for number, (above, keys) in enumerate(columns, 1):
-            put(sheet, row, number, _in_column(item, above, keys), ENTRY, exact=True)
+        put(sheet, 2, number, below, HEADING, exact=True)
+        for row in range(3, 3 + EMPTY_ROWS):
+            put(sheet, row, number, None, ENTRY, exact=True)
+    for row in range(3, 3 + EMPTY_ROWS):
         choices.add(sheet, row, "cage.material", "")
     sheet.freeze_panes = "B3"
-    widths(sheet, *(26.0 if keys[-1] in ("name", "material") else 20.0 for _, keys in columns))
-
-
-def _candidate_columns(items: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield the first heading of each column, and the keys of its value in a candidate."""
-    yield from (("", ("name",)), ("", ("material",)), ("GPa", ("material", "elastic_modulus")))
-    yield "", ("material", "poisson_ratio")
-    example = next(
-        one.example for one in template_keys() if (one.section, one.key) == ("ranking.candidates", "friction")
-    )
-    given = [item["friction"] for item in items] or [dict.fromkeys(example)]
-    for environment in dict.fromkeys(name for frictions in given for name in frictions):
-        frictions = [one.get(environment) for one in given]
-        parts = {key for one in frictions if isinstance(one, Mapping) for key in one}
-        for part in MEASURED:
-            if part != "source" or part in parts:
-                yield environment, ("friction", environment, part)
-
-
-def _in_column(item: Mapping[str, Any], above: str, keys: tuple[str, ...]) -> Any:
-    """Return what a candidate has in a column; None if nothing."""
-    value: Any = item
-    for key in keys:
-        value = value.get(key) if isinstance(value, Mapping) else None
-    if keys[-1] == "mean" and value is None:
-        value = item.get("friction", {}).get(above)
-    if value is None or isinstance(value, Mapping):
-        return None
-    written = next(iter(cells_of(keys[-1], value)))[1]
-    return written.value if written.unit in ("", above) and not written.spread else value
+    widths(sheet, *(26.0 if below in OWN else 20.0 for _, below in columns))
 
 
 class _Choices:

@@ -12,9 +12,8 @@ import dataclasses
 import re
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import SECTIONS as RECORDS
@@ -23,20 +22,19 @@ from separatrix.study_file.cells import (
     COLUMNS,
     MOST_COLUMNS,
     MOST_ROWS,
+    SEPARATOR,
     Cell,
-    Row,
+    Plain,
     Sheet,
     begins_as_number,
-    is_list,
     is_number,
-    list_of,
-    number_text,
+    is_plain,
     percent,
     plain_number,
-    rows_of,
     sheets_of,
+    with_unit,
 )
-from separatrix.study_file.document import SECTIONS, TOP, Document, Entry, LibraryPlace
+from separatrix.study_file.document import SECTIONS, TOP, Document
 from separatrix.study_numbers import numbers_of
 from separatrix.toml_text import Places, label_of
 from separatrix.toml_values import nearest
@@ -51,17 +49,17 @@ PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "source")
 """Of a material in place; one with a unit has it in the first row."""
 
 MEASURED = ("mean", "standard_deviation", "count", "source")
+LISTS = frozenset(
+    {"kicks", "pocket_angles", "restitution_factors", "materials", "library", "between", "samples"}
+)
+"""Keys, and last parts of dotted keys, that are lists even of one item."""
+
 _KEY = re.compile(r"[A-Za-z0-9_]+(?:\.[A-Za-z0-9_ -]+){0,2}")
-_NAMES = (*SECTIONS, STUDY_SHEET, CANDIDATES)
+_NAMES = (STUDY_SHEET, *SECTIONS, CANDIDATES)
 
 
 def document_of(path: Path) -> Document:
     """Return the document of a workbook.
-
-    Raises
-    ------
-    InputError
-        It is not a workbook that can be read safely, or is not laid out as a study.
 
     Warns
     -----
@@ -69,84 +67,166 @@ def document_of(path: Path) -> Document:
         It holds formulas: their saved values are taken.
     """
     label = label_of(path)
-    document = Document(label, places=Places(label), folder=path.parent)
+    document = Document(path, places=Places(label), friction_folder=path.parent)
     formulas: list[str] = []
     known: dict[str, str] = {}
-    for sheet in sheets_of(path, document.label, lambda name: _folded(name) in _NAMES):
-        folded = _folded(sheet.name)
-        if folded not in _NAMES:
-            if {"key", "value"} <= sheet.headings().keys() or {"name", "mean"} <= _texts(sheet, 2):
-                cure = nearest(sheet.name, (STUDY_SHEET, *SECTIONS, CANDIDATES))
-                raise InputError(sheet.place, "is not a section of a study", cure=cure)
+    for sheet in sheets_of(path, label, lambda name: name.strip().casefold() in _NAMES):
+        name = sheet.name.strip().casefold()
+        if name not in _NAMES:
+            second = {
+                str(c.value).strip()
+                for (row, _), c in sheet.cells.items()
+                if row == 2 and isinstance(c, Cell)
+            }
+            if {"key", "value"} <= sheet.headings().keys() or {"name", "mean"} <= second:
+                raise InputError(sheet.place, "is not a section of a study", cure=nearest(sheet.name, _NAMES))
             continue
         if sheet.beyond:
             from openpyxl.utils import get_column_letter
 
             rule = f"lies beyond row {MOST_ROWS} or column {get_column_letter(MOST_COLUMNS)}, and is not read"
             raise InputError(sheet.beyond, rule, cure="Move it, or clear it.")
-        if (twin := known.setdefault(folded, sheet.name)) != sheet.name:
+        if (twin := known.setdefault(name, sheet.name)) != sheet.name:
             cure = "Delete one of them, or give it another name."
             raise InputError(sheet.place, "is a second sheet of that name", shown(twin), cure)
-        formulas += _add(document, sheet, folded)
-    document.libraries.append(LibraryPlace(path, document.top.get("library")))
+        if name == CANDIDATES:
+            _add_candidates(document, sheet)
+        else:
+            _add_keys(document, sheet, name)
+        formulas += sheet.formulas
+    document.libraries.append((path, document.top.get("library")))
     if not document.sections:
         cure = "`separatrix new --excel PATH.xlsx` writes one to fill in."
-        raise InputError(document.label, "has no sheet of a study with a value in it", cure=cure)
+        raise InputError(label, "has no sheet of a study with a value in it", cure=cure)
     if formulas:
         listed = ", ".join(formulas[:5]) + (", ..." if len(formulas) > 5 else "")
         what = "the cell holds a formula" if len(formulas) == 1 else f"{len(formulas)} cells hold formulas"
-        sentence = f"{document.label}: {what} ({listed}); the saved values are used, nothing is recomputed."
+        sentence = f"{label}: {what} ({listed}); the saved values are used, nothing is recomputed."
         warnings.warn(sentence, ValidityWarning, stacklevel=4)
     return document
 
 
-def _folded(name: str) -> str:
-    return name.strip().casefold()
+class _Row(NamedTuple):
+    """The cells of a row that has a value."""
+
+    number: int
+    key: Cell
+    value: Cell
+    spread: Cell | None
+    unit: Cell | None
 
 
-def _texts(sheet: Sheet, row: int) -> set[str]:
-    cells = (cell for (number, _), cell in sheet.cells.items() if number == row and isinstance(cell, Cell))
-    return {str(cell.value).strip() for cell in cells}
-
-
-def _add(document: Document, sheet: Sheet, section: str) -> list[str]:
-    """Add what a sheet says to the document; return the places of its formulas."""
-    if section == CANDIDATES:
-        return _add_candidates(document, sheet)
-    if not {"key", "value"} <= sheet.headings().keys():
+def _add_keys(document: Document, sheet: Sheet, section: str) -> None:
+    """Add the keys of a section, or those above the sections, to the document."""
+    columns, known = sheet.headings(), document.places.known
+    if not {"key", "value"} <= columns.keys():
         cure = f"Its first row has the headings {', '.join(COLUMNS)}."
         raise InputError(sheet.place, "has no headings key and value", cure=cure)
-    rows = list(_known_once(sheet))
-    entries: dict[str, Entry] = {}
-    for row in rows:
-        path = f"[{section}] {row.key}" if section != STUDY_SHEET else row.key
-        document.places.known |= {path: row.place, f"{path}, after +-,": row.spread_place}
-        key, *inside = row.key.split(".")
-        document.places.known.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.place)
+    entries: dict[str, Any] = {}
+    for row in list(_rows(sheet, columns)):
+        dotted, unit = row.key.text, "" if row.unit is None or row.unit.text == "-" else row.unit.text
+        key, *inside = dotted.split(".")
+        value: Any = _written(dotted, row, unit)
+        path = f"[{section}] {dotted}" if section != STUDY_SHEET else dotted
+        known |= {path: row.value.place, f"{path}, after +-,": (row.spread or row.value).place}
+        known.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.value.place)
         if section == STUDY_SHEET and key not in TOP:
             cure = f"On this sheet there are only {', '.join(TOP)}."
-            document.problems.append(
-                InputError(f"{row.place}: {path}", "is not a key of this sheet", cure=cure)
-            )
+            where = f"{row.value.place}: {path}"
+            document.problems.append(InputError(where, "is not a key of this sheet", cure=cure))
             continue
-        unit = _unit_of(section, key, inside)
-        value: Any = row.value
-        if row.lacks_unit and unit in UNITS:
-            value = missing_unit(row.lacks_unit, unit, f"{row.unit_place}: {path}", in_cell=True)
+        items = value if isinstance(value, list) else [value]
+        bare = "" if unit else next((with_unit(item, "") for item in items if is_number(item)), "")
+        due = _unit_of(section, key, inside)
+        if bare and due in UNITS:
+            at = sheet.at(row.number, columns["unit"]) if "unit" in columns else row.value.place
+            refusal = missing_unit(bare, due, f"{at}: {path}", in_cell=True)
             if inside:
-                raise value
+                raise refusal
+            value = refusal
         if inside:
-            _set(entries.setdefault(key, Entry({}, document.folder)).value, inside, row.value, row)
+            if not _put(entries, (key, *inside), value):
+                where = f"{row.key.place}: {printable(dotted)}"
+                raise InputError(where, "is given as a value of its own, too")
         elif key in entries:
-            raise InputError(f"{row.key_place}: {printable(key)}", "is given by rows of its parts, too")
+            raise InputError(f"{row.key.place}: {printable(key)}", "is given by rows of its parts, too")
         else:
-            entries[key] = Entry(value, document.folder)
+            entries[key] = value
     if section == STUDY_SHEET:
         document.top.update(entries)
     elif entries:
-        document.places.known[f"[{section}]"] = sheet.place
+        known[f"[{section}]"] = sheet.place
         document.sections.setdefault(section, {}).update(entries)
-    return [formula for row in rows for formula in row.formulas]
+
+
+def _rows(sheet: Sheet, columns: dict[str, int]) -> Iterator[_Row]:
+    """Yield the rows that have a value; a key is written once, and as keys are."""
+    seen: dict[str, str] = {}
+    for number in range(2, sheet.last_row + 1):
+        key, value, spread, unit = (sheet.given(number, columns.get(name)) for name in COLUMNS[:4])
+        if key is None and (stray := value or spread) is not None:
+            cure = "Name the key in the same row, or clear it."
+            raise InputError(stray.place, "is a value without a key", cure=cure)
+        if value is None and spread is not None:
+            raise InputError(spread.place, "is a width without a value")
+        if key is None or value is None:
+            continue
+        if _KEY.fullmatch(key.text) is None:
+            raise InputError(key.place, "must be the name of a key", shown(key.text))
+        if key.text in seen:
+            rule, cure = "is given a second time", f"It is in {seen[key.text]}, too."
+            raise InputError(f"{key.place}: {key.text}", rule, cure=cure)
+        seen[key.text] = key.place.rpartition(" ")[2]
+        yield _Row(number, key, value, spread, unit)
+
+
+def _written(key: str, row: _Row, unit: str) -> Plain | list[Plain]:
+    """Return the value of a row as a TOML file would give it."""
+    value, spread = row.value, row.spread
+    if isinstance(value.value, str) and _is_list(key, value.value):
+        if spread is not None:
+            raise InputError(spread.place, "is a width beside a list", cure="Clear one of them.")
+        return _items(value.value, unit)
+    plain: Plain = value.value
+    if isinstance(plain, str) and unit:
+        has_own = begins_as_number(plain) and re.search(r"[^\W\d_]|°", plain) and not is_plain(plain.strip())
+        if has_own and row.unit is not None:
+            rule, cure = "is a unit beside a value that brings its own", "Clear this cell."
+            raise InputError(row.unit.place, rule, shown(plain), cure)
+        plain = f"{plain} {unit}"
+    elif is_number(plain):
+        if unit and value.is_percent:
+            got, cure = f"{shown(plain)} {unit}", "Format the cell as a number."
+            raise InputError(value.place, "is a percentage with a unit", got, cure)
+        plain = with_unit(plain, unit) if unit else plain_number(plain)
+    if spread is not None:
+        return f"{plain} +- {_width(spread, unit)}"
+    return [plain] if _takes_list(key) and not isinstance(plain, bool) else plain
+
+
+def _width(cell: Cell, unit: str) -> str:
+    if is_number(cell.value):
+        return percent(cell.value) if cell.is_percent else with_unit(cell.value, unit)
+    text = str(cell.value).strip().removeprefix("+-").removeprefix("±").lstrip()
+    return f"{text} {unit}".strip() if is_plain(text) else text
+
+
+def _takes_list(key: str) -> bool:
+    return key.rpartition(".")[2] in LISTS
+
+
+def _is_list(key: str, text: str) -> bool:
+    """Whether a text is a list: its key takes one, or there are numbers on both sides of a separator."""
+    parts = [part for part in text.split(SEPARATOR) if part.strip()]
+    return _takes_list(key) or (SEPARATOR in text and all(map(begins_as_number, parts)))
+
+
+def _items(text: str, unit: str) -> list[Plain]:
+    """Return the items of a list in one cell."""
+    return [
+        item if not is_plain(item) else f"{item} {unit}" if unit else plain_number(float(item))
+        for item in (part.strip() for part in text.split(SEPARATOR) if part.strip())
+    ]
 
 
 def _unit_of(section: str, key: str, inside: list[str]) -> str:
@@ -158,30 +238,17 @@ def _unit_of(section: str, key: str, inside: list[str]) -> str:
     return unit_of(record, name) if record is not None and known else names.get(name, "")
 
 
-def _known_once(sheet: Sheet) -> Iterator[Row]:
-    """Yield the rows that have a value; a key is written once, and as keys are."""
-    seen: dict[str, str] = {}
-    for row in rows_of(sheet):
-        if _KEY.fullmatch(row.key) is None:
-            raise InputError(row.key_place, "must be the name of a key", shown(row.key))
-        if row.key in seen:
-            cure = f"It is in {seen[row.key]}, too."
-            raise InputError(f"{row.key_place}: {row.key}", "is given a second time", cure=cure)
-        seen[row.key] = row.key_place.rpartition(" ")[2]
-        yield row
-
-
-def _set(table: Any, keys: list[str], value: Any, row: Row) -> None:
-    """Set an item of a table in place, itself perhaps in a table."""
+def _put(table: Any, keys: tuple[str, ...], value: Any) -> bool:
+    """Set an item of a table, itself perhaps in a table; return whether its place was free."""
     for key in keys[:-1]:
         table = table.setdefault(key, {}) if isinstance(table, dict) else None
     if not isinstance(table, dict) or keys[-1] in table:
-        raise InputError(f"{row.key_place}: {printable(row.key)}", "is given as a value of its own, too")
+        return False
     table[keys[-1]] = value
+    return True
 
 
-@dataclass(frozen=True, slots=True)
-class _Column:
+class _Column(NamedTuple):
     """What a column of the candidates holds: a property, or a number of an environment."""
 
     number: int
@@ -197,24 +264,25 @@ class _Column:
         return ("material", self.what) if self.what in PROPERTIES else (self.what,)
 
 
-def _add_candidates(document: Document, sheet: Sheet) -> list[str]:
-    """Add the candidates as tables; return the places of formulas among them."""
-    columns = list(_columns(sheet))
+def _add_candidates(document: Document, sheet: Sheet) -> None:
+    """Add the candidates as tables."""
+    columns, known = list(_columns(sheet)), document.places.known
     items: list[dict[str, Any]] = []
-    formulas: list[str] = []
     for row in range(3, sheet.last_row + 1):
         item: dict[str, Any] = {}
         at = f"[ranking] candidates[{len(items) + 1}]"
         for column in columns:
             if (cell := sheet.given(row, column.number)) is None:
                 continue
-            _set_part(item, column.path, _part(cell, column), cell.place)
-            formulas += [cell.formula] if cell.formula else []
+            if not _put(item, column.path, _part(cell, column)):
+                rule = "is a property of a material that is also named"
+                cure = "Give the name of one in the library, or the properties."
+                raise InputError(cell.place, rule, cure=cure)
             first, *rest = column.path
             names = [f'"{rest[0][:60]}"', *rest[1:]] if first == "friction" else rest
-            document.places.known[".".join([f"{at}.{first}", *names])] = cell.place
+            known[".".join([f"{at}.{first}", *names])] = cell.place
             if column.what == "mean":
-                document.places.known[".".join([f"{at}.{first}", *names[:-1]])] = cell.place
+                known[".".join([f"{at}.{first}", *names[:-1]])] = cell.place
         if item and "name" not in item:
             number = next((column.number for column in columns if column.what == "name"), 1)
             rule = f"must name the candidate of row {row}"
@@ -223,11 +291,10 @@ def _add_candidates(document: Document, sheet: Sheet) -> list[str]:
             given = item.get("friction", {})
             alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
             items.append(item | ({"friction": alone} if alone else {}))
-            document.places.known[at] = f"{sheet.place}, row {row}"
+            known[at] = f"{sheet.place}, row {row}"
     if items:
-        document.places.known["[ranking] candidates"] = sheet.place
-        document.sections.setdefault("ranking", {})[CANDIDATES] = Entry(items, document.folder)
-    return formulas
+        known["[ranking] candidates"] = sheet.place
+        document.sections.setdefault("ranking", {})[CANDIDATES] = items
 
 
 def _columns(sheet: Sheet) -> Iterator[_Column]:
@@ -258,31 +325,15 @@ def _columns(sheet: Sheet) -> Iterator[_Column]:
         yield column
 
 
-def _set_part(item: dict[str, Any], path: tuple[str, ...], value: Any, where: str) -> None:
-    for key in path[:-1]:
-        item = item.setdefault(key, {})
-        if not isinstance(item, dict):
-            rule = "is a property of a material that is also named"
-            raise InputError(where, rule, cure="Give the name of one in the library, or the properties.")
-    item[path[-1]] = value
-
-
 def _part(cell: Cell, column: _Column) -> Any:
-    value = cell.value
-    if (
-        column.what in MEASURED
-        and column.what != "source"
-        and isinstance(value, str)
-        and not begins_as_number(value)
-    ):
+    value, is_measured = cell.value, column.what in MEASURED and column.what != "source"
+    if is_measured and isinstance(value, str) and not begins_as_number(value):
         cure = "Leave the cell empty if it was not measured."
         raise InputError(cell.place, "must be a number", shown(value), cure)
     if is_number(value):
         if column.what == "standard_deviation" and cell.is_percent:
             return percent(value)
-        return f"{number_text(value)} {column.unit}" if column.unit else plain_number(value)
-    return (
-        list_of(value, "")
-        if column.environment and isinstance(value, str) and is_list(column.what, value)
-        else value
-    )
+        return with_unit(value, column.unit) if column.unit else plain_number(value)
+    if column.environment and isinstance(value, str) and _is_list(column.what, value):
+        return _items(value, "")
+    return value
