@@ -10,23 +10,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
+from cages import TURNING
 
-from separatrix.cage import PlanarCage
 from separatrix.cage.planar import turned_forward
 from separatrix.study import Guidance, PocketShape
 
-BACKWARD = PlanarCage(
-    mass=0.025,
-    moment_of_inertia=0.025 * 0.0325**2,
+BACKWARD = replace(
+    TURNING,
     ball_count=7,
-    pitch_radius=0.0325,
     cage_speed=-669.0,
     inner_speed=-1570.8,
-    outer_speed=0.0,
     pocket_clearance=4e-4,
-    ball_cage_stiffness=3e6,
-    race_damping=800.0,
-    ball_cage_friction=0.12,
     guidance=Guidance.INNER,
     land_clearance=3e-4,
     land_out_of_round=1e-5,

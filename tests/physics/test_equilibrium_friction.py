@@ -4,27 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from cages import BEARING_218 as BEARING
 from scipy.special import ellipe
 
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
 from separatrix.chain.equilibrium.problem import problem
-from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
+from separatrix.study import KinematicModel, Operation, Race
 from separatrix.units import Array
 
 RPM = 2.0 * math.pi / 60.0
-STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
-BEARING = BallBearing(
-    ball_diameter=22.23e-3,
-    pitch_diameter=125.26e-3,
-    ball_count=16,
-    contact_angle=math.radians(40.0),
-    inner_conformity=0.523167,
-    outer_conformity=0.523167,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
 
 
 def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells: int = 48) -> Array:
@@ -75,9 +65,8 @@ def test_slopes_are_those_of_the_resultants() -> None:
 
 def free(inner: float, outer: float = 0.0, friction: float = 0.15, **loads: float) -> Equilibrium:
     """The 218 bearing without race control."""
-    operation = Operation(
-        inner_speed=inner * RPM, outer_speed=outer * RPM, **({"axial_load": 22_250.0} | loads)
-    )
+    loads = {"axial_load": 22_250.0} | loads
+    operation = Operation(inner_speed=inner * RPM, outer_speed=outer * RPM, **loads)
     return equilibrium(BEARING, operation, KinematicModel.FREE, friction)
 
 

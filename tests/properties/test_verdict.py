@@ -3,19 +3,15 @@
 from dataclasses import fields, replace
 
 import numpy as np
+from cages import ON_A_LAND
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import Cause, Ensemble, PlanarCage, RunOutcome, Verdict, judge
-from separatrix.study import Guidance
+from separatrix.cage import Cause, Ensemble, RunOutcome, Verdict, judge
 
 quick = settings(derandomize=True, max_examples=150, deadline=None)
 
-CAGE = PlanarCage(
-    mass=0.025, moment_of_inertia=26.4e-6, ball_count=3, pitch_radius=0.0325, cage_speed=670.0,
-    inner_speed=1570.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=600.0,
-    ball_cage_friction=0.1, guidance=Guidance.OUTER, land_clearance=1e-3,
-)  # fmt: skip
+CAGE = replace(ON_A_LAND, ball_count=3)
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 WHOLE = ("outcome", "cause", "whirl_direction", "land_impacts")
 
