@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
-from cages import TURNING, followed
+from cages import EVERYTHING, RAMP, TURNING, UNEVEN, WAVES, followed
 
 from separatrix.cage import RunOutcome, run_ensemble, simulate
 from separatrix.cage.closed_forms import drive_energy
@@ -30,25 +30,6 @@ HERTZ = replace(BALL, hertz_coefficient=3e8)
 ROUND = replace(BALL, pocket_shape=PocketShape.CYLINDRICAL)
 SLOT = replace(BALL, pocket_shape=PocketShape.ELONGATED, pocket_axial_clearance=3.6e-4)
 GRIPPED = replace(BALL, pocket_clearance=0.0)
-UNEVEN = tuple(2 * math.pi * (j + 0.15 * math.sin(5 * j)) / 13 for j in range(13))
-WAVES = {"orbital_cosines": (0.3, 0.1), "orbital_sines": (-0.1, 0.2)}
-RAMP = {"ramp_time": 5e-4, "ramp_start": 0.2}
-EVERYTHING = replace(
-    LAND,
-    land_clearance=4e-4,
-    land_restitution=0.5,
-    land_out_of_round=2e-5,
-    land_lobes=3,
-    land_count=2,
-    unbalance=1e-6,
-    gravity=9.81,
-    hertz_coefficient=3e8,
-    pocket_shape=PocketShape.CYLINDRICAL,
-    pocket_axial_offset=1e-4,
-    pocket_angles=UNEVEN,
-    **WAVES,
-    **RAMP,
-)
 LEAD = np.linspace(-9e-5, 9e-5, 13)
 
 CASES = {

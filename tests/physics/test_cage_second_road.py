@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
-from cages import ON_A_LAND, followed
+from cages import EVERYTHING, ON_A_LAND, followed
 
 from separatrix.cage import linear_roots
 from separatrix.study import Guidance, PocketShape
@@ -22,23 +22,6 @@ CAGE = replace(ON_A_LAND, cage_speed=669.0, inner_speed=1570.8)
 FREE = replace(CAGE, guidance=Guidance.BALL, pocket_clearance=10.0)
 HEAD_ON = replace(
     FREE, ball_count=1, pocket_clearance=2e-4, moment_of_inertia=1e6, cage_speed=0.0, ball_cage_friction=0.0
-)
-EVERYTHING = replace(
-    CAGE,
-    land_clearance=4e-4,
-    land_out_of_round=2e-5,
-    land_lobes=3,
-    land_count=2,
-    unbalance=1e-6,
-    gravity=9.81,
-    hertz_coefficient=3e8,
-    pocket_shape=PocketShape.CYLINDRICAL,
-    pocket_axial_offset=1e-4,
-    pocket_angles=tuple(2 * math.pi * (j + 0.1 * math.sin(5 * j)) / 13 for j in range(13)),
-    orbital_cosines=(0.05, 0.03),
-    orbital_sines=(-0.02, 0.04),
-    ramp_time=0.0015,
-    ramp_start=0.3,
 )
 LEAD = np.linspace(-1e-4, 1e-4, 13)
 

@@ -42,23 +42,12 @@ WRONG = [
         {"guidance": Guidance.INNER},
         'land_clearance is missing; got None. Give the diametral clearance, or guidance = "ball"',
     ),
-    *(
-        ({field: value}, field)
-        for field, values in {
-            "mass": (0.0, math.nan),
-            "moment_of_inertia": (-1.0,),
-            "ball_count": (0,),
-            "pitch_radius": (0.0,),
-            "cage_speed": (math.inf,),
-            "pocket_clearance": (-1e-6,),
-            "ball_cage_stiffness": (0.0,),
-            "race_damping": (0.0, math.nan),
-            "ball_cage_friction": (-0.1,),
-            "land_restitution": (1.1,),
-            "gravity": (-9.8,),
-        }.items()
-        for value in values
-    ),
+    *[({"mass": value}, "mass") for value in (0.0, math.nan)],
+    *[({"race_damping": value}, "race_damping") for value in (0.0, math.nan)],
+    *[({name: -1e-6}, name) for name in ("moment_of_inertia", "pocket_clearance", "ball_cage_friction")],
+    *[({name: 0}, name) for name in ("ball_count", "pitch_radius", "ball_cage_stiffness")],
+    *[({"cage_speed": math.inf}, "cage_speed"), ({"land_restitution": 1.1}, "land_restitution")],
+    ({"gravity": -9.8}, "gravity"),
 ]
 
 

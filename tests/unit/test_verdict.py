@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cages import AT_REST as CAGE
+from cages import ensemble
 from scipy import stats
 
 from separatrix.cage import (
     CageMotion,
     Cause,
-    Ensemble,
     RunOutcome,
     Verdict,
     judge,
@@ -22,36 +22,8 @@ from separatrix.cage.closed_forms import drifts, drive_energy, room
 from separatrix.study import Guidance
 
 GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=4e-4)
-NOTHING = (
-    *("largest_offset", "mean_offset", "offset_spread", "orbit_speed", "drift_rate", "end_energy"),
-    *("whirl_frequency", "largest_land_force", "energy_imbalance", "pocket_power", "land_power"),
-    *("rubbing_force", "rubbing_speed"),
-)
 SETTLES, WHIRLS = RunOutcome.SETTLES, RunOutcome.WHIRLS
 DRIFTS, UNRESOLVED = RunOutcome.DRIFTS, RunOutcome.UNRESOLVED
-
-
-def ensemble(
-    rows: list[list[RunOutcome]], kicks: tuple[float, ...] = (0.1, 0.5, 2.0), **evidence: object
-) -> Ensemble:
-    """Ensemble with these outcomes, in which balls were met; evidence is spread over all runs."""
-    outcome = np.array(rows, dtype=np.int64)
-    floats = dict.fromkeys(NOTHING, 0.0) | {
-        "growth_rate": np.where(outcome == WHIRLS, 9.0, -25.0),
-        "largest_contact_force": 1.0,
-        "followed": 0.3,
-        "judged_from": 0.24,
-    }
-    cause = np.where(outcome == UNRESOLVED, int(evidence.pop("cause", Cause.FALLING)), int(Cause.NONE))
-    whole = {"whirl_direction": 0, "land_impacts": 0, "cause": cause}
-    changed = {name: evidence.pop(name) for name in list(evidence) if name in floats | whole}
-    spread = {
-        name: np.broadcast_to(np.asarray(value, dtype=float if name in floats else int), outcome.shape).copy()
-        for name, value in (floats | whole | changed).items()
-    }
-    impacts = np.zeros((*outcome.shape, CAGE.ball_count), dtype=np.int64)
-    given = {"kicks": np.array(kicks[: len(rows)]), "pocket_impacts": impacts, "duration": 0.3}
-    return Ensemble(outcome=outcome, **{**spread, **given, **evidence})
 
 
 STABLE, UNSTABLE, UNDECIDED = Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED
