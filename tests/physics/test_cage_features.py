@@ -82,6 +82,12 @@ DRAWN = {
     "scattered pockets": {"pocket_spacing_scatter": 0.2},
     "scattered diameters": {"ball_diameter_scatter": 4e-5},
     "scattered positions": {"pocket_position_scatter": 2e-5},
+    "scattered pockets and diameters, turning backward": {
+        "cage_speed": -669.0,
+        "inner_speed": -1570.8,
+        "pocket_spacing_scatter": 0.1,
+        "ball_diameter_scatter": 2e-5,
+    },
     "scattered diameters in bores": {
         "pocket_shape": PocketShape.CYLINDRICAL,
         "pocket_axial_offset": 5e-5,

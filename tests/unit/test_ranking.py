@@ -52,23 +52,11 @@ def judgement(**given):
 
 def ranked(name, stiffness, eta, threshold, half):
     """A candidate with this threshold and the half width of its interval."""
-    return Ranked(
-        name=name,
-        friction=0.1,
-        friction_error=None,
-        friction_deviation=None,
-        friction_scatter_assumed=False,
-        extrapolation=(),
-        ball_cage_stiffness=stiffness,
-        restitution_factor=eta,
-        restitution_threshold=threshold,
-        restitution_threshold_low=threshold - half,
-        restitution_threshold_high=threshold + half,
-        margin=threshold - eta,
-        within_reach=True,
-        judgement=judgement(),
-        reason="",
-    )
+    values = dict.fromkeys((f.name for f in fields(Ranked)), None) | {"extrapolation": (), "reason": ""}
+    ends = {"restitution_threshold_low": threshold - half, "restitution_threshold_high": threshold + half}
+    values |= {"name": name, "ball_cage_stiffness": stiffness, "restitution_factor": eta, **ends}
+    values |= {"restitution_threshold": threshold, "margin": threshold - eta, "judgement": judgement()}
+    return Ranked(**values)
 
 
 @pytest.mark.parametrize(

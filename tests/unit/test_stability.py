@@ -18,7 +18,6 @@ from separatrix.limits import (
     Response,
     Side,
     cage_at,
-    closed_hard_limit,
     critical_friction,
     limits,
     restitution_threshold,
@@ -210,24 +209,18 @@ def test_without_a_crossing_the_side_is_told(probability, guess, side):
     assert response(probability).crossing(0.5, 96, guess) is side
 
 
-def test_few_runs_are_wasted_far_from_the_crossing():
-    """96 runs near it; 8 at each end, and fewer looks than the ladder has places from a far guess."""
-    found = response(logistic(0.1, 8.0))
-    found.crossing(0.5, 96, 0.9)
-    assert 96 <= sum(count.runs for count in found.counts.values()) <= 96 + 8 * 9
-
-
-def test_runs_are_numbered_one_after_the_other():
-    """No run is counted twice, so that the counts are independent."""
+def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_crossing():
+    """No run is counted twice, so counts are independent: 96 near the crossing, 8 at each end, few looks."""
     asked = []
 
     def look(friction, first_run, runs):
         asked.append((first_run, runs))
         return Count(round(runs * logistic(0.1, 8.0)(friction)) if friction else 0, runs)
 
-    Response(look, 64).crossing(0.5, 96, 0.1)
+    Response(look, 64).crossing(0.5, 96, 0.9)
     ends = [0, *accumulate(runs for _, runs in asked)]
     assert [first for first, _ in asked] == ends[:-1]
+    assert 96 <= ends[-1] <= 96 + 8 * 9
 
 
 def test_unresolved_runs_are_told(monkeypatch):
@@ -242,10 +235,10 @@ def test_unresolved_runs_are_told(monkeypatch):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
 
 
-@pytest.mark.parametrize("eta", [0.05, 0.5, 0.95, 1.0])
+@pytest.mark.parametrize("eta", [0.0, 0.05, 0.5, 0.95, 1.0])
 def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
     """The damping that is set for a factor is read back as that factor; rounding only."""
-    assert own_restitution_factor(cage_at(SHIPPED.cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9)
+    assert own_restitution_factor(cage_at(SHIPPED.cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9, abs=1e-12)
 
 
 def test_24_that_agree_are_unanimous():
@@ -256,13 +249,6 @@ def test_24_that_agree_are_unanimous():
     assert Count(0, 8).unanimous(0.5)
     assert not Count(1, 24).unanimous(0.5)
     assert not Count(0, 0).unanimous(0.5)
-
-
-@pytest.mark.parametrize(("balls", "limit"), [(11, 0.1438), (12, 0.2679)])
-def test_hard_dead_impacts_have_a_closed_limit(balls, limit):
-    """tan(pi/22) and tan(pi/12), four digits given; two balls leave the cage a way out."""
-    assert closed_hard_limit(balls) == pytest.approx(limit, abs=5e-5)
-    assert closed_hard_limit(2) is None
 
 
 def traced(height, spread=0.002):

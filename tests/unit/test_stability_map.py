@@ -290,13 +290,11 @@ def test_a_refused_study_is_asked_for_once(study):
     assert finder._state.cache_info().misses == 1
 
 
-def test_a_map_without_friction_or_of_one_parameter_is_refused(study):
-    """A friction is asked for where no axis is it; two axes of one parameter are none."""
+def test_a_map_without_friction_is_refused(study):
+    """A friction is asked for where no axis is it."""
     bare = replace(study, ranking=None, cage=replace(study.cage, ball_cage_friction=None))
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
         stability_map(question(bare, y=KICKS))
-    with pytest.raises(InputError, match="two different parameters"):
-        question(study, x=KICKS, y=KICKS)
 
 
 def test_an_interrupt_leaves_points_that_say_so(study):

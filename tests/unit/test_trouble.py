@@ -17,7 +17,6 @@ from separatrix.cage import Cause, RunOutcome, Verdict, judge, run_ensemble, sim
 from separatrix.chain.restitution import damping_for
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.limits.growth import race_damping_at
 from separatrix.present import document, report
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
@@ -146,12 +145,6 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
     assert found.verdict in Verdict
     assert found.reason.endswith(".")
     assert np.isfinite(found.growth_rate)
-
-
-def test_eta_of_zero_and_of_one_are_dampings():
-    """The most that returns nothing, sqrt(k M)/2, and one without bound."""
-    assert race_damping_at(CAGE, 0.0) == pytest.approx(math.sqrt(3e6 * 0.025) / 2.0, rel=1e-12)  # rounding
-    assert race_damping_at(CAGE, 1.0) == math.inf
 
 
 def test_an_unresolved_run_says_so():
