@@ -9,7 +9,7 @@ from cages import AT_REST as CAGE
 from cages import followed
 
 from separatrix.cage import run_ensemble, run_hard_ensemble, simulate
-from separatrix.cage.closed_forms import drive_energy, time_unit
+from separatrix.cage.closed_forms import drifts, drive_energy, time_unit
 from separatrix.cage.ending import PLACE, run_limits
 from separatrix.cage.ensemble import random_starts
 from separatrix.cage.run import random_start
@@ -109,8 +109,10 @@ def test_only_a_centre_that_nothing_holds_can_drift():
     """Turning or weight without a land; in a held cage the mean offset shows whether it is in its place."""
     turning = replace(CAGE, cage_speed=670.0)
     held = replace(turning, **LAND)
-    loose, still, guided = (run_limits(cage, 0.5, 0.3) for cage in (turning, CAGE, held))
-    assert [limits.drifts for limits in (loose, still, guided)] == [True, False, False]
+    cages = (turning, replace(CAGE, gravity=9.81), CAGE, held, replace(held, gravity=9.81))
+    assert [drifts(cage) for cage in cages] == [True, True, False, False, False]
+    loose, _, _, guided, _ = limits = [run_limits(cage, 0.5, 0.3) for cage in cages]
+    assert [one.drifts for one in limits] == [drifts(cage) for cage in cages]
     assert loose.place < 0.0
     assert guided.place == pytest.approx(PLACE * 2e-4, rel=1e-12)  # rounding
 

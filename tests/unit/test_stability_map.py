@@ -295,20 +295,3 @@ def test_a_map_without_friction_is_refused(study):
     bare = replace(study, ranking=None, cage=replace(study.cage, ball_cage_friction=None))
     with pytest.raises(InputError, match="ball_cage_friction is missing"):
         stability_map(question(bare, y=KICKS))
-
-
-def test_an_interrupt_leaves_points_that_say_so(study):
-    """Points that were under way are kept; the others are not run."""
-    told = []
-
-    def interrupt(done: int, total: int) -> None:
-        told.append(done)
-        if len(told) == 1:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as caught:
-        stability_map(question(study, runs=1), runner=Runner(progress=interrupt))
-    found = caught.value.finished
-    assert not found.complete
-    assert 16 <= found.counts["not_run"] < 20  # the corners, the first round, may have been under way
-    assert {p.reason for p in found.points if not p.runs} == {"not run: interrupted"}

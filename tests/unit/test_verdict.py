@@ -18,7 +18,7 @@ from separatrix.cage import (
     whirl_probability,
     wilson_interval,
 )
-from separatrix.cage.closed_forms import drifts, drive_energy, room
+from separatrix.cage.closed_forms import drive_energy, room
 from separatrix.study import Guidance
 
 GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=4e-4)
@@ -176,13 +176,6 @@ def test_the_drift_is_that_of_the_runs_that_do_not_whirl():
     mostly = ensemble([[SETTLES] * 3 + [WHIRLS] * 4], drift_rate=rates)
     assert judge(CAGE, mostly).drift_rate == 2.0
     assert judge(CAGE, ensemble([[WHIRLS] * 7], drift_rate=rates)).drift_rate == 0.0
-
-
-def test_turning_or_weight_moves_a_cage_that_nothing_holds():
-    """Without a land; one at rest in orbit stays."""
-    moved = (replace(CAGE, cage_speed=670.0), replace(CAGE, gravity=9.81))
-    assert [drifts(cage) for cage in (*moved, CAGE)] == [True, True, False]
-    assert not drifts(replace(GUIDED, gravity=9.81))
 
 
 def test_whirl_probability_is_the_share_at_each_kick():
