@@ -1,7 +1,8 @@
 """The planar cage by another program: the equations as written, classical Runge-Kutta at a fixed small step.
 
-It knows no events, shares no code with the engine, and takes the cage's inputs only. The land's friction is
-made continuous: it rises linearly with the sliding up to `SLIP` and is then at its limit.
+It knows no events, takes the cage's inputs only, and shares no code with the engine but the damper of the
+land (held to an integration in test_cage_motion). The land's friction is made continuous: it rises linearly
+with the sliding up to `SLIP` and is then at its limit.
 """
 
 import math
@@ -10,9 +11,9 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from scipy.optimize import brentq
 
 from separatrix.cage import PlanarCage
+from separatrix.cage.closed_forms import rebound_damping
 from separatrix.study import Guidance, PocketShape
 
 SLIP = 2e-4
@@ -271,7 +272,7 @@ def numbers(cage: PlanarCage, half_play=None, pocket_angle=None, slip=SLIP) -> N
         ramp_time=cage.ramp_time,
         gap=math.inf if cage.guidance is Guidance.BALL else cage.land_clearance / 2,
         land_stiffness=stiffness,
-        land_damper=2 * damping_ratio(cage.land_restitution) * math.sqrt(stiffness * cage.mass),
+        land_damper=2 * rebound_damping(cage.land_restitution) * math.sqrt(stiffness * cage.mass),
         land_friction=cage.land_friction,
         lobe=cage.land_out_of_round * (-1 if inner and cage.land_lobes % 2 else 1),
         lobes=float(cage.land_lobes),
@@ -293,31 +294,6 @@ def contact(cage):
         return c, 0.0
     end = c if cage.pocket_shape is PocketShape.CYLINDRICAL else cage.pocket_axial_clearance / 2
     return c - end + math.sqrt(end**2 - z**2), math.asin(z / end)
-
-
-def damping_ratio(restitution):
-    """Damping ratio of a spring and a damper, together never pulling, whose impact returns so much speed."""
-    if restitution == 1.0:
-        return 0.0
-    return brentq(lambda zeta: returned(zeta) - restitution, 0.0, 100.0, xtol=1e-14)
-
-
-def returned(zeta):
-    """Speed at which a unit impact leaves: x'' = -x - 2 zeta x' from x = 0, until x + 2 zeta x' = 0.
-
-    With the roots -zeta +- root of the motion, x = exp(-zeta t) sinh(root t) / root, and the force is zero
-    when tanh(root t) = 2 zeta root / (2 zeta^2 - 1); there the speed is x' = -x / 2 zeta.
-    """
-    if zeta == 0.0:
-        return 1.0
-    root = np.emath.sqrt(zeta**2 - 1.0 + 0j) or 1e-9
-    if zeta < 1.0:
-        turn = abs(root)
-        t = math.atan2(2 * zeta * turn, 2 * zeta**2 - 1.0) / turn
-    else:
-        t = math.atanh((2 * zeta * root / (2 * zeta**2 - 1.0)).real) / root.real
-    x = (np.exp(-zeta * t) * np.sinh(root * t) / root).real
-    return x / (2 * zeta)
 
 
 def energy(rows, centre, p):

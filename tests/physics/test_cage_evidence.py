@@ -10,26 +10,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import ON_A_LAND
 
-from separatrix.cage import PlanarCage, run_ensemble, simulate
+from separatrix.cage import run_ensemble, simulate
 from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.study import Guidance, StabilitySettings
 
-M, R, K = 0.025, 0.0325, 3e6
-HELD = PlanarCage(
-    mass=M,
-    moment_of_inertia=1.3 * M * R**2,
-    ball_count=13,
-    pitch_radius=R,
-    cage_speed=670.0,
-    inner_speed=1570.0,
-    outer_speed=0.0,
-    pocket_clearance=6e-4,
-    ball_cage_stiffness=K,
+HELD = replace(
+    ON_A_LAND,
+    moment_of_inertia=1.3 * ON_A_LAND.moment_of_inertia,
     race_damping=1500.0,
-    ball_cage_friction=0.12,
-    guidance=Guidance.OUTER,
     land_clearance=5e-4,
 )
 CAGES = {

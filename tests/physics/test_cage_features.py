@@ -12,26 +12,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
+from cages import EVERYTHING, RAMP, TURNING, UNEVEN, WAVES, followed
 
-from separatrix.cage import PlanarCage, RunOutcome, follow, run_ensemble, simulate
+from separatrix.cage import RunOutcome, run_ensemble, simulate
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.ensemble import random_starts
 from separatrix.study import Guidance, PocketShape, StabilitySettings
 
 M, R = 0.025, 0.0325
-BALL = PlanarCage(
-    mass=M,
-    moment_of_inertia=M * R**2,
-    ball_count=13,
-    pitch_radius=R,
-    cage_speed=669.0,
-    inner_speed=1570.8,
-    outer_speed=0.0,
-    pocket_clearance=4e-4,
-    ball_cage_stiffness=3e6,
-    race_damping=800.0,
-    ball_cage_friction=0.12,
-)
+BALL = replace(TURNING, cage_speed=669.0, inner_speed=1570.8, pocket_clearance=4e-4)
 LAND = replace(
     BALL, guidance=Guidance.OUTER, land_clearance=3e-4, pocket_clearance=6e-4, land_restitution=1.0
 )
@@ -41,25 +30,6 @@ HERTZ = replace(BALL, hertz_coefficient=3e8)
 ROUND = replace(BALL, pocket_shape=PocketShape.CYLINDRICAL)
 SLOT = replace(BALL, pocket_shape=PocketShape.ELONGATED, pocket_axial_clearance=3.6e-4)
 GRIPPED = replace(BALL, pocket_clearance=0.0)
-UNEVEN = tuple(2 * math.pi * (j + 0.15 * math.sin(5 * j)) / 13 for j in range(13))
-WAVES = {"orbital_cosines": (0.3, 0.1), "orbital_sines": (-0.1, 0.2)}
-RAMP = {"ramp_time": 5e-4, "ramp_start": 0.2}
-EVERYTHING = replace(
-    LAND,
-    land_clearance=4e-4,
-    land_restitution=0.5,
-    land_out_of_round=2e-5,
-    land_lobes=3,
-    land_count=2,
-    unbalance=1e-6,
-    gravity=9.81,
-    hertz_coefficient=3e8,
-    pocket_shape=PocketShape.CYLINDRICAL,
-    pocket_axial_offset=1e-4,
-    pocket_angles=UNEVEN,
-    **WAVES,
-    **RAMP,
-)
 LEAD = np.linspace(-9e-5, 9e-5, 13)
 
 CASES = {
@@ -112,6 +82,12 @@ DRAWN = {
     "scattered pockets": {"pocket_spacing_scatter": 0.2},
     "scattered diameters": {"ball_diameter_scatter": 4e-5},
     "scattered positions": {"pocket_position_scatter": 2e-5},
+    "scattered pockets and diameters, turning backward": {
+        "cage_speed": -669.0,
+        "inner_speed": -1570.8,
+        "pocket_spacing_scatter": 0.1,
+        "ball_diameter_scatter": 2e-5,
+    },
     "scattered diameters in bores": {
         "pocket_shape": PocketShape.CYLINDRICAL,
         "pocket_axial_offset": 5e-5,
@@ -159,7 +135,7 @@ def test_the_engine_takes_the_second_road(case):
     cage, plain = replace(base, **change), replace(base, **instead)
     lead = LEAD[: cage.ball_count] * (cage.pocket_clearance > 0)
     how = {"kick": 2.0, "direction": 0.4, "ball_lead": lead, "duration": 1e-3}
-    ours = follow(cage, **how, until=1e-3, samples=400)
+    ours = followed(cage, 1e-3, kick=2.0, direction=0.4, lead=lead, samples=400)
     np.testing.assert_array_equal(ours.ball_lead[0], lead)
     assert ours.time[-1] == pytest.approx(1e-3, rel=1e-6)
     hold(ours, *both(cage, **how), small_step.follow(plain, **how, step=1e-7, samples=10**7))
@@ -187,7 +163,7 @@ def test_every_source_does_the_work_that_it_does_on_the_second_road(case):
     cage = replace(base, **change)
     lead = LEAD * (cage.pocket_clearance > 0)
     how = {"kick": 2.0, "direction": 0.4, "ball_lead": lead, "duration": 1e-3}
-    ours = follow(cage, **how, until=1e-3, samples=400)
+    ours = followed(cage, 1e-3, kick=2.0, direction=0.4, lead=lead, samples=400)
     works = dict(ours.work)
     works["moving_frame"] = works["moving_frame"] + works.pop("unbalance")
     works["energy"] = ours.kinetic_energy + ours.spring_energy + ours.land_energy
@@ -224,15 +200,9 @@ def test_as_many_runs_grow_with_everything_on():
     with more than the drive energy. 96 runs tell 0.2; the step is a 25th of a contact's time.
     """
     waves = {"orbital_cosines": (0.02, 0.01), "orbital_sines": (-0.01, 0.01)}
-    cage = replace(
-        EVERYTHING,
-        land_clearance=1e-3,
-        pocket_clearance=6e-4,
-        ball_cage_friction=0.09,
-        ramp_time=0.02,
-        **waves,
-    )
-    cage = replace(cage, ramp_start=0.5)
+    ramp = {"ramp_time": 0.02, "ramp_start": 0.5}
+    wide = {"land_clearance": 1e-3, "pocket_clearance": 6e-4}
+    cage = replace(EVERYTHING, ball_cage_friction=0.09, **wide, **waves, **ramp)
     kick, runs, duration = 0.5, 96, 0.1
     settings = StabilitySettings(kicks=(kick,), runs=runs, duration=duration)
     ours = np.mean(run_ensemble(cage, settings).outcome == RunOutcome.WHIRLS)
@@ -251,22 +221,11 @@ def test_a_hertz_pocket_that_follows_its_ball_slowly_meets_it_a_finite_number_of
     Without a distance between two touches some 700 000 come to a pocket in one beat, and the run is given up.
     """
     cage = replace(
-        LAND,
-        mass=0.0028,
-        moment_of_inertia=1.72e-5,
-        ball_count=6,
-        pitch_radius=0.0786,
-        cage_speed=5.15,
-        inner_speed=10.5,
-        pocket_clearance=2.5e-6,
-        ball_cage_stiffness=2.6e6,
-        hertz_coefficient=2.5e9,
-        race_damping=1.08,
-        ball_cage_friction=0.01,
-        land_clearance=2.44e-3,
-        land_friction=0.0,
+        LAND, mass=0.0028, moment_of_inertia=1.72e-5, ball_count=6, pitch_radius=0.0786, cage_speed=5.15,
+        inner_speed=10.5, pocket_clearance=2.5e-6, ball_cage_stiffness=2.6e6, hertz_coefficient=2.5e9,
+        race_damping=1.08, ball_cage_friction=0.01, land_clearance=2.44e-3, land_friction=0.0,
         land_stiffness=1.57e6,
-    )
+    )  # fmt: skip
     runs = run_ensemble(cage, StabilitySettings(duration=5e-3, ball_scatter=0.3), kicks=(5.0,), runs=4)
     assert np.all(runs.outcome == RunOutcome.SETTLES)
     assert np.all(runs.pocket_impacts < 1000)

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import AT_REST, damping_of, followed
 
 from separatrix.cage import (
     PlanarCage,
     drift_law,
-    follow,
     linear_critical_friction,
     linear_roots,
     linear_whirl_frequency,
@@ -18,38 +18,18 @@ from separatrix.cage import (
 )
 from separatrix.study import StabilitySettings
 
-M, K, Z, R = 0.05, 3e6, 11, 0.0325
-
-
-def damping_of(eta: float) -> float:
-    """C_mu of a nominal restitution factor (physics of Eq. 17 as modelled)."""
-    zeta = -math.log(eta) / math.hypot(math.pi, math.log(eta))
-    return math.sqrt(K * M) / (2 * zeta)
+M, K, Z = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count
 
 
 def gripped(damping: float, friction: float = 0.0, **change: float) -> PlanarCage:
     """Cage whose pockets have no play."""
-    cage = PlanarCage(
-        mass=M,
-        moment_of_inertia=M * R * R,
-        ball_count=Z,
-        pitch_radius=R,
-        cage_speed=0.0,
-        inner_speed=1500.0,
-        outer_speed=0.0,
-        pocket_clearance=0.0,
-        ball_cage_stiffness=K,
-        race_damping=damping,
-        ball_cage_friction=friction,
-    )
-    return replace(cage, **change)
+    grip = {"pocket_clearance": 0.0, "race_damping": damping, "ball_cage_friction": friction}
+    return replace(AT_REST, **grip | change)
 
 
 def growth_rate(cage: PlanarCage, duration: float) -> float:
     """Growth rate of the amplitude between the middle and the end of a run, from the kinetic energy [1/s]."""
-    run = follow(
-        cage, kick=0.5, direction=0.3, ball_lead=np.zeros(Z), duration=duration, until=duration, samples=40000
-    )
+    run = followed(cage, duration, direction=0.3, samples=40000)
     half, end = run.time[-1] / 2, run.time[-1]
     width = 5 / linear_whirl_frequency(cage)  # whole turns, so that the mean has no beat
     means = []
@@ -61,19 +41,11 @@ def growth_rate(cage: PlanarCage, duration: float) -> float:
 
 @pytest.mark.parametrize(("damping", "friction"), [(2000.0, 0.08257), (4000.0, 0.04129), (8000.0, 0.02064)])
 def test_critical_friction_of_the_linear_limit(damping, friction):
-    """sqrt(2 k M/Z)/C_mu for M 0.05, k 3e6, Z 11; to the four digits given."""
-    assert linear_critical_friction(gripped(damping)) == pytest.approx(friction, abs=5e-6)
-
-
-def test_critical_friction_is_twice_the_damping_ratio():
-    """The other form of the law, 2 zeta sqrt(2/Z); rounding only."""
-    zeta = math.sqrt(K * M) / (2 * 3000.0)
-    assert linear_critical_friction(gripped(3000.0)) == pytest.approx(2 * zeta * math.sqrt(2 / Z), rel=1e-14)
-
-
-def test_whirl_frequency_of_the_linear_limit():
-    """sqrt(Z k/2M)/(2 pi) = 2891.2 Hz."""
-    assert linear_whirl_frequency(gripped(2000.0)) == pytest.approx(2891.2, abs=0.05)
+    """sqrt(2 k M/Z)/C_mu = 2 zeta sqrt(2/Z), to the four digits given; whirl at sqrt(Z k/2M)/(2 pi)."""
+    found, zeta = linear_critical_friction(gripped(damping)), math.sqrt(K * M) / (2 * damping)
+    assert found == pytest.approx(friction, abs=5e-6)
+    assert found == pytest.approx(2 * zeta * math.sqrt(2 / Z), rel=1e-14)  # rounding
+    assert linear_whirl_frequency(gripped(damping)) == pytest.approx(2891.2, abs=0.05)  # digits given
 
 
 @pytest.mark.parametrize("eta", [0.1, 0.3, 0.5, 0.7, 0.9])

@@ -10,36 +10,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
+from cages import EVERYTHING
 
-from separatrix.cage import PlanarCage
 from separatrix.cage.planar import turned_forward
-from separatrix.study import Guidance, PocketShape
+from separatrix.study import Guidance
 
-BACKWARD = PlanarCage(
-    mass=0.025,
-    moment_of_inertia=0.025 * 0.0325**2,
+BACKWARD = replace(
+    EVERYTHING,
     ball_count=7,
-    pitch_radius=0.0325,
     cage_speed=-669.0,
     inner_speed=-1570.8,
-    outer_speed=0.0,
-    pocket_clearance=4e-4,
-    ball_cage_stiffness=3e6,
-    race_damping=800.0,
-    ball_cage_friction=0.12,
     guidance=Guidance.INNER,
     land_clearance=3e-4,
     land_out_of_round=1e-5,
-    land_lobes=3,
-    land_count=2,
-    unbalance=2e-6,
     gravity=50.0,
-    pocket_shape=PocketShape.CYLINDRICAL,
-    pocket_axial_offset=8e-5,
+    hertz_coefficient=None,
     pocket_angles=(0.1, 1.0, 1.8, 2.9, 3.7, 4.5, 5.4),
-    orbital_cosines=(-0.2, 0.03),
-    orbital_sines=(0.05, -0.02),
-    ramp_time=2e-3,
 )
 LEAD = np.array([-9e-5, -3e-5, 5e-5, 9e-5, 0.0, 2e-5, -6e-5])
 

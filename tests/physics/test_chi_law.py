@@ -8,25 +8,15 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from cages import SMALL as CAGE
 
-from separatrix.cage import (
-    PlanarCage,
-    linear_critical_friction,
-    run_ensemble,
-    run_hard_ensemble,
-    whirl_probability,
-)
+from separatrix.cage import linear_critical_friction, run_ensemble, run_hard_ensemble, whirl_probability
 from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ending import BEAT, LONGEST
 from separatrix.limits import cage_at
 from separatrix.study import StabilitySettings
 
-RADIUS, MASS, STIFFNESS, HALF_PLAY = 0.03, 0.05, 3e6, 0.3e-3
-CAGE = PlanarCage(
-    mass=MASS, moment_of_inertia=MASS * RADIUS**2, ball_count=11, pitch_radius=RADIUS, cage_speed=0.0,
-    inner_speed=1000.0, outer_speed=0.0, pocket_clearance=2 * HALF_PLAY, ball_cage_stiffness=STIFFNESS,
-    race_damping=2000.0, ball_cage_friction=0.1,
-)  # fmt: skip
+MASS, STIFFNESS, HALF_PLAY = CAGE.mass, CAGE.ball_cage_stiffness, CAGE.half_play
 CROSSINGS = 250
 
 
@@ -44,11 +34,6 @@ def crossing(chi):
 def linear(eta):
     """Critical friction without clearance."""
     return linear_critical_friction(cage_at(CAGE, eta, 0.0))
-
-
-def share(eta, friction, chi, runs=64):
-    """P(whirl)."""
-    return whirl_probability(run_ensemble(cage_at(CAGE, eta, friction), settings(chi, runs)))[0]
 
 
 @pytest.mark.parametrize("chi", [0.0121, 0.215])
@@ -93,8 +78,12 @@ def test_weak_kicks_need_two_to_six_times_the_friction_of_the_linear_law(eta):
 
     38 % is one half less two standard errors of 64 runs.
     """
-    assert share(eta, 2.0 * linear(eta), 0.0121) < 0.5 - 0.12
-    assert share(eta, 6.0 * linear(eta), 0.0121) > 0.9
+    few, many = (
+        whirl_probability(run_ensemble(cage_at(CAGE, eta, times * linear(eta)), settings(0.0121)))[0]
+        for times in (2.0, 6.0)
+    )
+    assert few < 0.5 - 0.12
+    assert many > 0.9
 
 
 def energy_over_kick(eta, friction, chi):
@@ -103,18 +92,14 @@ def energy_over_kick(eta, friction, chi):
     return run_ensemble(cage, how).end_energy[0] / (0.5 * MASS * how.kicks[0] ** 2)
 
 
-@pytest.mark.parametrize("eta", [0.6, 0.3])
-def test_a_whirl_of_a_few_times_the_play_needs_less_friction_than_the_linear_law(eta):
-    """At chi of 12 harmonic balance has 0.88 of the limit: all shrink at 0.82, to a smaller whirl, or grow.
+@pytest.mark.parametrize(
+    ("chi", "eta", "dies", "grows"),
+    [(12.1, 0.6, 0.82, 0.97), (12.1, 0.3, 0.82, 0.97), (121.0, 0.8, 0.94, 1.05), (121.0, 0.3, 0.94, 1.05)],
+)
+def test_strong_kicks_meet_the_linear_law_from_below(chi, eta, dies, grows):
+    """Harmonic balance has 0.88 of the limit at chi of 12, 0.988 at 121: all shrink below it, all grow above.
 
-    The play takes a fifth of the pockets' stiffness, and the linear law goes with its root.
+    At 12 the play takes a fifth of the pockets' stiffness, and the linear law goes with its root.
     """
-    assert np.all(energy_over_kick(eta, 0.82 * linear(eta), 12.1) < 0.5)
-    assert np.all(energy_over_kick(eta, 0.97 * linear(eta), 12.1) > 2.0)
-
-
-@pytest.mark.parametrize("eta", [0.8, 0.3])
-def test_strong_kicks_meet_the_linear_law(eta):
-    """At chi of 121 harmonic balance is 1.2 % below the limit: all shrink at 0.94 of it, all grow at 1.05."""
-    assert np.all(energy_over_kick(eta, 0.94 * linear(eta), 121.0) < 0.5)
-    assert np.all(energy_over_kick(eta, 1.05 * linear(eta), 121.0) > 2.0)
+    assert np.all(energy_over_kick(eta, dies * linear(eta), chi) < 0.5)
+    assert np.all(energy_over_kick(eta, grows * linear(eta), chi) > 2.0)

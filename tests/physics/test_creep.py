@@ -4,21 +4,11 @@ from math import cos, radians
 
 import numpy as np
 import pytest
+from cages import BEARING
 
 from separatrix.chain.creep import Creep, contact_creep, deformed_radius
-from separatrix.study import BallBearing, Material, Race
+from separatrix.study import Race
 
-STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285)
-BEARING = BallBearing(
-    ball_diameter=0.0111125,
-    pitch_diameter=0.065,
-    ball_count=13,
-    contact_angle=radians(25.0),
-    inner_conformity=0.52,
-    outer_conformity=0.53,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
 ANGLE = radians(30.0)
 
 
@@ -60,3 +50,9 @@ def test_creep_adds_its_parts():
     """xi(y) = delta + s y + q y^2."""
     creep = Creep(spin=2.0, curvature=-3.0)
     assert creep.ratio(np.array([0.0, 1.0, 2.0]), 0.5) == pytest.approx([0.5, -0.5, -7.5], abs=1e-15)
+
+
+def test_the_pressed_surface_lies_between_ball_and_groove():
+    """Conformity 0.5 fits the ball; a flat groove doubles its radius."""
+    assert deformed_radius(0.01, 0.5) == pytest.approx(0.005, rel=1e-15)
+    assert deformed_radius(0.01, 1e9) == pytest.approx(0.01, rel=1e-8)

@@ -52,13 +52,9 @@ def test_the_probability_is_that_of_counting_over_the_distribution():
     kick, runs = central.stability.kicks[1], 256
     found = drawn_bearings(study, runs).judge(CASE, (kick,), Runner())
     middles = np.linspace(0.1, 0.3, 33)[1::2]  # of 16 equal parts
-    shares = [
-        run_ensemble(central.cage_with(f), central.stability, kicks=(kick,), runs=16, first_run=5000).count(
-            RunOutcome.SETTLES
-        )[0]
-        / 16
-        for f in middles
-    ]
+    how = {"kicks": (kick,), "runs": 16, "first_run": 5000}
+    others = [run_ensemble(central.cage_with(f), central.stability, **how) for f in middles]
+    shares = [one.count(RunOutcome.SETTLES)[0] / 16 for one in others]
     assert 0.2 < np.mean(shares) < 0.8
     # 256 runs each: standard deviations of at most 0.031, of their difference 0.044, 2.5 times that
     assert found.probability_stable == pytest.approx(np.mean(shares), abs=0.11)
@@ -68,9 +64,8 @@ def test_more_runs_are_those_before_and_more():
     """Draw n belongs to run n, however many there are."""
     study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=0.003))
     few, many = drawn_bearings(study, 4), drawn_bearings(study, 16)
-    assert [one["A"].cage_with(0.1) for one in few.solved] == [
-        one["A"].cage_with(0.1) for one in many.solved[:4]
-    ]
+    cages = [[one["A"].cage_with(0.1) for one in drawn.solved] for drawn in (few, many)]
+    assert cages[0] == cages[1][:4]
     assert np.array_equal(few.friction[CASE], many.friction[CASE][:4])
     masses = [one["A"].design.mass for one in many.solved]
     assert len(set(masses)) == 16

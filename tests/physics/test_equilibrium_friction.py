@@ -4,27 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from cages import BEARING_218 as BEARING
 from scipy.special import ellipe
 
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
 from separatrix.chain.equilibrium.problem import problem
-from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
+from separatrix.study import KinematicModel, Operation, Race
 from separatrix.units import Array
 
 RPM = 2.0 * math.pi / 60.0
-STEEL = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
-BEARING = BallBearing(
-    ball_diameter=22.23e-3,
-    pitch_diameter=125.26e-3,
-    ball_count=16,
-    contact_angle=math.radians(40.0),
-    inner_conformity=0.523167,
-    outer_conformity=0.523167,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
 
 
 def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells: int = 48) -> Array:
@@ -35,7 +25,7 @@ def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells
 
 
 @pytest.mark.parametrize("ratio", [1.0, 0.5, 0.12])
-def test_spin_moment_in_full_sliding(ratio: float) -> None:
+def test_spin_moment_in_full_sliding(ratio: float):
     """Pure spin: (3/8) a E(1 - b^2/a^2) per unit of friction and load."""
     a = 1e-3
     moment = resultants((1.0, 0.0, 0.0, 0.0), a, ratio * a, 1e-12)[0, 0]
@@ -43,7 +33,7 @@ def test_spin_moment_in_full_sliding(ratio: float) -> None:
     assert moment == pytest.approx(0.375 * a * ellipe(1.0 - ratio**2), rel=1e-3)
 
 
-def test_resultants_converge_with_the_strips() -> None:
+def test_resultants_converge_with_the_strips():
     """Rolling with Heathcote slip and a line of no slip anywhere: 48 strips are within 3e-3 of 960."""
     for offset in np.linspace(0.0, 3e-6, 7):
         c = (0.02, 1.0, -1e-2 + offset, 0.0)
@@ -53,14 +43,14 @@ def test_resultants_converge_with_the_strips() -> None:
         assert coarse[0, 0] == pytest.approx(fine[0, 0], abs=3e-3 * 1e-3)
 
 
-def test_sliding_without_spin_gives_the_whole_friction() -> None:
+def test_sliding_without_spin_gives_the_whole_friction():
     """Uniform slip: force 1 per unit, against which the slip is much larger than the smoothing."""
     out = resultants((0.0, 0.0, 1.0, 0.0), 1e-3, 2e-4, 1e-9)
     assert out[2, 0] == pytest.approx(1.0, rel=1e-12)
     assert out[0, 0] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_slopes_are_those_of_the_resultants() -> None:
+def test_slopes_are_those_of_the_resultants():
     """Central differences of every coefficient, with rolling, spin, lateral slip and curvature at once."""
     c = np.array((0.3, 0.02, -2.1e-4, 1.5e-3))
     out = resultants(tuple(c), 1.1e-3, 2e-4, 2e-5)
@@ -75,14 +65,13 @@ def test_slopes_are_those_of_the_resultants() -> None:
 
 def free(inner: float, outer: float = 0.0, friction: float = 0.15, **loads: float) -> Equilibrium:
     """The 218 bearing without race control."""
-    operation = Operation(
-        inner_speed=inner * RPM, outer_speed=outer * RPM, **({"axial_load": 22_250.0} | loads)
-    )
+    loads = {"axial_load": 22_250.0} | loads
+    operation = Operation(inner_speed=inner * RPM, outer_speed=outer * RPM, **loads)
     return equilibrium(BEARING, operation, KinematicModel.FREE, friction)
 
 
 @pytest.mark.parametrize("speeds", [(10_000.0, 0.0), (0.0, 6000.0), (8000.0, -3000.0)])
-def test_reversed_rotation_mirrors_the_state(speeds: tuple[float, float]) -> None:
+def test_reversed_rotation_mirrors_the_state(speeds):
     """Both speeds reversed: same loads and angles, speeds reversed, yaw the other way."""
     one, two = free(*speeds), free(-speeds[0], -speeds[1])
     same = {"rel": 1e-7, "abs": 1e-9}  # solver tolerance
@@ -94,7 +83,7 @@ def test_reversed_rotation_mirrors_the_state(speeds: tuple[float, float]) -> Non
     assert two.ball_spin[:, 2] == pytest.approx(one.ball_spin[:, 2], rel=1e-4, abs=1e-3)
 
 
-def test_balls_alike_are_solved_alike() -> None:
+def test_balls_alike_are_solved_alike():
     """One ball for all, and every ball on its own under a hair of radial load, agree."""
     one, many = free(10_000.0), free(10_000.0, radial_load=1e-3)
     assert many.load_inner == pytest.approx(one.load_inner, rel=1e-5)  # 1e-3 N over 16 balls of 1850 N
@@ -102,7 +91,7 @@ def test_balls_alike_are_solved_alike() -> None:
 
 
 @pytest.mark.parametrize("speeds", [(10_000.0, 0.0), (0.0, 6000.0), (-7000.0, 3000.0)])
-def test_power_of_the_rings_is_lost_in_sliding(speeds: tuple[float, float]) -> None:
+def test_power_of_the_rings_is_lost_in_sliding(speeds):
     """What both rings put into a ball equals friction times slip: steady inertia does no work."""
     result = free(*speeds)
     operation = Operation(inner_speed=speeds[0] * RPM, outer_speed=speeds[1] * RPM, axial_load=22_250.0)
@@ -128,7 +117,7 @@ def test_power_of_the_rings_is_lost_in_sliding(speeds: tuple[float, float]) -> N
     assert given == pytest.approx(lost, rel=1e-6)  # the balls balance to 1e-9 of their friction
 
 
-def test_friction_cannot_hold_what_it_has_not() -> None:
+def test_friction_cannot_hold_what_it_has_not():
     """The less friction, the less pitch: the gyroscopic moment J w_m w_R sin(beta) stays below 2 mu Q D/2."""
     pitches = []
     for friction in (0.2, 0.02, 0.005):
@@ -139,7 +128,7 @@ def test_friction_cannot_hold_what_it_has_not() -> None:
     assert pitches[0] > pitches[1] > pitches[2] > 0.0
 
 
-def test_much_friction_spins_least_at_the_better_held_race() -> None:
+def test_much_friction_spins_least_at_the_better_held_race():
     """Jones's criterion names the race where the free ball spins less."""
     result = free(10_000.0, friction=0.3)
     assert result.race_control[0].value == "outer"

@@ -22,6 +22,13 @@ def slope(spin=0.0, curvature=0.0, compliance=0.0, friction=MU, **more):
     return traction_slope(ELLIPSE, creep, race_friction=friction, film_compliance=compliance, **more)
 
 
+def curve(spin=0.0, curvature=0.0, *, increments=None, friction=MU, compliance=0.0, **more):
+    """Traction curve of the test ellipse."""
+    creep, at = Creep(spin=spin, curvature=curvature), None if increments is None else np.array(increments)
+    given = {"race_friction": friction, "film_compliance": compliance}
+    return traction_curve(ELLIPSE, creep, creep_increments=at, **given, **more)
+
+
 def film_slope(spin, compliance):
     """Film only: (8/3)(b^2 a/L) * (3/4)[1/k^2 + (1 - 1/k^2) atan(k)/k]/N, k = phi a b/(L mu p0)."""
     k = spin * A * B / (compliance * MU * P0)
@@ -70,48 +77,27 @@ def test_slope_of_a_film_alone(sigma):
 def test_whole_curve_in_pure_creep():
     """Bare, no spin: C_T/mu = 1 + 1.5 [s acos s - e + e^3/3], s = xi/xi_s, e = sqrt(1 - s^2)."""
     increments = XI_S * np.array([0.02, 0.1, 0.3, 0.6, 0.9, 0.99, 1.0, 2.0])
-    curve = traction_curve(
-        ELLIPSE, NO_CREEP, race_friction=MU, film_compliance=0.0, creep_increments=increments
-    )
+    found = curve(increments=increments)
     s = np.minimum(increments / XI_S, 1.0)
     exact = [1.0 + 1.5 * (x * acos(x) - sqrt(1 - x * x) + sqrt(1 - x * x) ** 3 / 3.0) for x in s]
-    assert curve.traction_coefficient / MU == pytest.approx(exact, abs=1e-4)  # interpolation; measured 4e-5
+    assert found.traction_coefficient / MU == pytest.approx(exact, abs=1e-4)  # interpolation; measured 4e-5
 
 
 def test_heathcote_alone_with_little_friction():
     """Slip changes sign at y = 0.347296 a; the slope there is 3.798 mu/(q a^2)."""
-    q, friction = 1000.0, 1e-9
-    curve = traction_curve(ELLIPSE, Creep(spin=0.0, curvature=q), race_friction=friction, film_compliance=0.0)
-    assert curve.free_rolling_offset == pytest.approx(
-        -q * (0.347296 * A) ** 2, rel=3e-6
-    )  # six digits, squared
-    assert curve.slope == pytest.approx(3.798 * friction / (q * A * A), rel=3e-4)  # four digits
-
-
-@pytest.mark.parametrize("spin", [0.0, 3.0, -40.0])
-@pytest.mark.parametrize("curvature", [-2e4, 2e4])
-def test_free_rolling_carries_no_traction(spin, curvature):
-    """With two zero-creep lines or one, the offset is where C_T = 0."""
-    curve = traction_curve(
-        ELLIPSE,
-        Creep(spin=spin, curvature=curvature),
-        race_friction=MU,
-        film_compliance=0.3 * B / E,
-        creep_increments=np.array([0.0]),
-    )
-    assert abs(curve.traction_coefficient[0]) < 1e-10 * MU  # Newton's last step
+    q, friction, zero = 1000.0, 1e-9, -1000.0 * (0.347296 * A) ** 2
+    found = curve(curvature=q, friction=friction)
+    assert found.free_rolling_offset == pytest.approx(zero, rel=3e-6)  # six digits, squared
+    assert found.slope == pytest.approx(3.798 * friction / (q * A * A), rel=3e-4)  # four digits
+    none = curve(curvature=q, friction=0.0, compliance=1e-15)  # the limit of little friction
+    assert none.free_rolling_offset == pytest.approx(zero, rel=3e-6)
+    assert (none.slope, none.slope_error, none.traction_coefficient.any()) == (0.0, 0.0, False)
 
 
 def test_no_zero_creep_line_is_full_slip():
     """An increment beyond every creep leaves no zero line: C_T = mu at each end."""
-    curve = traction_curve(
-        ELLIPSE,
-        Creep(spin=5.0, curvature=-2e4),
-        race_friction=0.01,
-        film_compliance=0.0,
-        creep_increments=np.array([-1.0, 1.0]),
-    )
-    assert curve.traction_coefficient == pytest.approx([-0.01, 0.01], rel=1e-9)  # six Gauss points a panel
+    found = curve(5.0, -2e4, friction=0.01, increments=[-1.0, 1.0])
+    assert found.traction_coefficient == pytest.approx([-0.01, 0.01], rel=1e-9)  # six Gauss points a panel
 
 
 @pytest.mark.parametrize(
@@ -120,34 +106,26 @@ def test_no_zero_creep_line_is_full_slip():
 )
 def test_strips_solved_one_by_one_agree(friction, lam, spin, curvature, shift):
     """Master curve against direct active sets of 100 and 200 elements, extrapolated: traction, slope."""
-    creep, case = (
-        Creep(spin=spin, curvature=curvature),
-        {"race_friction": friction, "film_compliance": lam * B / E},
-    )
-    delta = shift * 2.0 * friction * P0 / E
-    curve = traction_curve(ELLIPSE, creep, creep_increments=np.array([0.0, delta]), **case)
-    roads = [
-        [
-            direct_traction(ELLIPSE, creep, centre_creep=curve.free_rolling_offset + d, nodes=n, **case)
-            for d in (0, delta)
-        ]
-        for n in (100, 200)
-    ]
-    coarse, fine = np.array(roads)
-    direct = 2.0 * fine - coarse
-    assert curve.traction_coefficient == pytest.approx(direct[:, 0], abs=3e-4 * friction)  # measured 1e-4
+    creep, delta = Creep(spin=spin, curvature=curvature), shift * 2.0 * friction * P0 / E
+    found = curve(spin, curvature, friction=friction, compliance=lam * B / E, increments=[0.0, delta])
+
+    def directly(nodes):
+        how = {"race_friction": friction, "film_compliance": lam * B / E, "nodes": nodes}
+        at = (found.free_rolling_offset, found.free_rolling_offset + delta)
+        return np.array([direct_traction(ELLIPSE, creep, centre_creep=xi, **how) for xi in at])
+
+    direct = 2.0 * directly(200) - directly(100)
+    assert found.traction_coefficient == pytest.approx(direct[:, 0], abs=3e-4 * friction)  # measured 1e-4
     # the direct tangent jumps as elements change sides: 1/200 of it is the direct road's own noise
-    assert curve.slope == pytest.approx(direct[0, 1], rel=5e-3)
+    assert found.slope == pytest.approx(direct[0, 1], rel=5e-3)
 
 
 def test_the_slope_is_the_curves_difference_quotient():
     """Tangent of the active sets against a central difference of the curve."""
-    creep, d = Creep(spin=10.0, curvature=-2e4), 0.005 * XI_S
-    curve = traction_curve(
-        ELLIPSE, creep, race_friction=MU, film_compliance=0.3 * B / E, creep_increments=np.array([-d, d])
-    )
-    quotient = np.diff(curve.traction_coefficient)[0] / (2.0 * d)
-    assert curve.slope == pytest.approx(quotient, rel=1e-3)  # kinks of |c| at the zero lines: of order d/xi_s
+    d = 0.005 * XI_S
+    found = curve(10.0, -2e4, compliance=0.3 * B / E, increments=[-d, d])
+    quotient = np.diff(found.traction_coefficient)[0] / (2.0 * d)
+    assert found.slope == pytest.approx(quotient, rel=1e-3)  # kinks of |c| at the zero lines: of order d/xi_s
 
 
 @pytest.mark.parametrize("lam", [0.001, 0.02, 0.5, 5.0])
@@ -162,55 +140,42 @@ def test_the_error_bounds_the_next_refinement(lam):
 
 def test_a_tighter_tolerance_refines():
     """The default resolution is kept while the estimate allows it; the tightest takes 1600 elements."""
-    case = {"race_friction": MU, "film_compliance": 0.01 * B / E}
-    assert traction_curve(ELLIPSE, NO_CREEP, **case).nodes == 400
-    assert traction_curve(ELLIPSE, NO_CREEP, tolerance=1e-9, **case).nodes == 1600
+    assert curve(compliance=0.01 * B / E).nodes == 400
+    assert curve(compliance=0.01 * B / E, tolerance=1e-9).nodes == 1600
 
 
-def test_friction_zero_transmits_nothing():
-    """At f_BT = 0 curve, slope and error are exactly 0; the offset is the limit of little friction."""
-    creep = Creep(spin=0.0, curvature=1000.0)
-    curve = traction_curve(ELLIPSE, creep, race_friction=0.0, film_compliance=1e-15)
-    assert (curve.slope, curve.slope_error) == (0.0, 0.0)
-    assert not curve.traction_coefficient.any()
-    assert curve.free_rolling_offset == pytest.approx(
-        -1000.0 * (0.347296 * A) ** 2, rel=3e-6
-    )  # six digits, squared
-    assert slope(spin=3.0, friction=1e-7)[0] == pytest.approx(
-        1.5e-7 / (3.0 * A), rel=1e-3
-    )  # linear in friction
+def test_no_friction_or_no_load_transmits_nothing():
+    """At f_BT = 0 slope and error are exactly 0, just above it linear; no load has no slope."""
     assert slope(spin=3.0, friction=0.0) == (0.0, 0.0)
-
-
-def test_no_load_transmits_nothing():
-    """A ball that lost the race has no slope."""
+    assert slope(spin=3.0, friction=1e-7)[0] == pytest.approx(1.5e-7 / (3.0 * A), rel=1e-3)
     empty = contact_ellipse(0.0, 200.0, 20.0, 113e9)
-    curve = traction_curve(empty, NO_CREEP, race_friction=MU, film_compliance=1e-15)
-    assert curve.slope == 0.0
-    assert not curve.traction_coefficient.any()
+    found = traction_curve(empty, NO_CREEP, race_friction=MU, film_compliance=1e-15)
+    assert found.slope == 0.0
+    assert not found.traction_coefficient.any()
 
 
 def test_the_default_curve_spans_saturation():
     """41 increments, the middle one 0, whose ends carry more than 99 % of mu, bare, filmed or spinning."""
-    for creep in (NO_CREEP, Creep(spin=30.0, curvature=-2e4)):
+    for creep in ((0.0, 0.0), (30.0, -2e4)):
         for lam in (0.0, 1.0, 30.0):
-            curve = traction_curve(ELLIPSE, creep, race_friction=MU, film_compliance=lam * B / E)
-            assert curve.creep_increment.size == 41
-            assert curve.creep_increment[20] == 0.0
-            assert curve.traction_coefficient[-1] > 0.99 * MU
-            assert curve.traction_coefficient[0] < -0.99 * MU
+            found = curve(*creep, compliance=lam * B / E)
+            assert (found.creep_increment.size, found.creep_increment[20]) == (41, 0.0)
+            assert found.traction_coefficient[-1] > 0.99 * MU
+            assert found.traction_coefficient[0] < -0.99 * MU
 
 
 def test_the_field_adds_up_to_the_curve():
     """Shear over the ellipse, summed over elements and strips, is the curve's C_T."""
-    creep, case = Creep(spin=3.0, curvature=-2e4), {"race_friction": MU, "film_compliance": 0.3 * B / E}
-    delta = 0.2 * XI_S
-    curve = traction_curve(ELLIPSE, creep, creep_increments=np.array([delta]), **case)
-    field = shear_field(ELLIPSE, creep, creep_increment=delta, strips=81, nodes=200, **case)
+    delta, case = (
+        0.2 * XI_S,
+        {"race_friction": MU, "film_compliance": 0.3 * B / E, "strips": 81, "nodes": 200},
+    )
+    expected = curve(3.0, -2e4, compliance=0.3 * B / E, increments=[delta]).traction_coefficient[0]
+    field = shear_field(ELLIPSE, Creep(spin=3.0, curvature=-2e4), creep_increment=delta, **case)
     areas = np.abs(np.diff(field.along, axis=1))[:, :1] * (2.0 * A / 81)
     # strips of equal width: 1/81^1.5 at the ends of the ellipse; elements: half a percent at 200
     assert (field.pressure * areas).sum() / N == pytest.approx(1.0, abs=2e-3)
-    assert (field.shear * areas).sum() / N == pytest.approx(curve.traction_coefficient[0], rel=1e-2)
+    assert (field.shear * areas).sum() / N == pytest.approx(expected, rel=1e-2)
     assert np.all(np.abs(field.shear) <= MU * field.pressure * (1.0 + 1e-9))  # rounding
     stuck = field.slip == 0.0
     assert 0 < np.count_nonzero(stuck) < stuck.size

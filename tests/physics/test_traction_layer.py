@@ -56,9 +56,8 @@ def compliance_by_finite_elements(film, kh):
 def test_a_layer_of_the_same_steel_is_no_layer():
     """c(kh) is the half-plane's (1 - nu)/G at every wavenumber."""
     kh = np.array([1e-6, 1e-3, 0.1, 1.0, 5.0, 7.9, 9.0])
-    assert surface_compliance(layer(205e9, 0.285), kh) == pytest.approx(
-        BODY, rel=1e-9
-    )  # rounding, exp(16) of it
+    found = surface_compliance(layer(205e9, 0.285), kh)
+    assert found == pytest.approx(BODY, rel=1e-9)  # rounding, exp(16) of it
 
 
 @pytest.mark.parametrize("film_modulus", [1.5e9, 60e9, 300e9])
@@ -70,21 +69,19 @@ def test_finite_elements_give_the_same_response(film_modulus, kh):
     assert surface_compliance(film, kh)[0] == pytest.approx(compliance_by_finite_elements(film, kh), rel=1e-3)
 
 
-@pytest.mark.parametrize("film_modulus", [0.5e9, 1.5e9, 4e9, 20e9])
-def test_a_soft_film_in_series_holds_to_half_a_percent(film_modulus):
-    """Up to kh = 0.03: c + c_ball against half-planes plus kh/G."""
-    film, kh = layer(film_modulus), np.array([0.003, 0.01, 0.03])
-    series = 2.0 * BODY + kh / shear_modulus(film)
-    assert series == pytest.approx(surface_compliance(film, kh) + BODY, rel=5e-3)  # the claim itself
+def test_a_soft_film_in_series_holds_to_half_a_percent_and_a_stiff_one_does_not():
+    """C + c_ball against half-planes plus kh/G up to kh = 0.03: the claims of the docs.
 
+    Dense MoS2 (136 GPa) stiffens the race against stretching: 1.2 % at kh = 0.03.
+    """
+    kh = np.array([0.003, 0.01, 0.03])
 
-def test_a_stiff_film_in_series_is_worse():
-    """Dense MoS2 (136 GPa) stiffens the race against stretching: 1.2 % at kh = 0.03, a documented limit."""
-    film = layer(136e9, 0.3)
-    series = 2.0 * BODY + 0.03 / shear_modulus(film)
-    assert series / (surface_compliance(film, 0.03)[0] + BODY) - 1.0 == pytest.approx(
-        0.0116, abs=5e-4
-    )  # measured
+    def gap(film):
+        return (2.0 * BODY + kh / shear_modulus(film)) / (surface_compliance(film, kh) + BODY) - 1.0
+
+    for film_modulus in (0.5e9, 1.5e9, 4e9, 20e9):
+        assert np.abs(gap(layer(film_modulus))).max() < 5e-3  # the claim itself
+    assert gap(layer(136e9, 0.3))[-1] == pytest.approx(0.0116, abs=5e-4)  # measured
 
 
 def test_influences_are_the_inverse_transform():
@@ -92,9 +89,8 @@ def test_influences_are_the_inverse_transform():
     film, nodes, thickness = layer(20e9), 20, 0.2
     t = strip_layer(film, thickness, nodes)
     dx = 2.0 / nodes
-    k = (
-        np.arange(400_000) + 0.5
-    ) * 0.01  # up to 4000: the tail is below 1/(pi k dx) = 1e-3 of c/k, and oscillates
+    # up to 4000: the tail is below 1/(pi k dx) = 1e-3 of c/k, and oscillates
+    k = (np.arange(400_000) + 0.5) * 0.01
     kh = np.linspace(0.0, 9.0, 3000)
     response = (np.interp(k * thickness, kh, surface_compliance(film, kh)) + BODY) / BODY
     element = response / k * 2.0 * np.sin(0.5 * k * dx) / k * 0.01 / pi
@@ -126,13 +122,12 @@ def test_the_ellipse_takes_a_layer():
     """Thin layer: within 1 % of the film in series; same steel: the bare contact."""
     ellipse = contact_ellipse(500.0, 200.0, 20.0, 1.0 / BODY)
     creep, b = Creep(spin=5.0, curvature=-2e4), ellipse.semi_minor
-    bare = traction_slope(ellipse, creep, race_friction=0.1, film_compliance=0.0)[0]
-    same = layer(205e9, 0.285, thickness=0.1 * b)
-    value, error = traction_slope(ellipse, creep, race_friction=0.1, film_compliance=0.0, layer=same)
-    assert abs(value - bare) <= error
+
+    def slope(film=None, compliance=0.0):
+        return traction_slope(ellipse, creep, race_friction=0.1, film_compliance=compliance, layer=film)
+
+    value, error = slope(layer(205e9, 0.285, thickness=0.1 * b))
+    assert abs(value - slope()[0]) <= error
     soft = layer(1.5e9, thickness=0.003 * b)
-    series = traction_slope(
-        ellipse, creep, race_friction=0.1, film_compliance=soft.thickness / shear_modulus(soft)
-    )[0]
-    value = traction_slope(ellipse, creep, race_friction=0.1, film_compliance=0.0, layer=soft)[0]
-    assert value == pytest.approx(series, rel=1e-2)  # h/b = 0.003 at the middle, more at the ends
+    series, _ = slope(compliance=soft.thickness / shear_modulus(soft))
+    assert slope(soft)[0] == pytest.approx(series, rel=1e-2)  # h/b = 0.003 at the middle, more at the ends

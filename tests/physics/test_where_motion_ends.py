@@ -60,10 +60,8 @@ def ends(cage: PlanarCage, kicks: tuple[float, ...]) -> Ensemble:
 def judged(friction: float, kicks: tuple[float, ...]) -> Judgement:
     """Verdict on the momentum wheel from some of the kicks."""
     whole, rows = wheel_runs(friction), [KICKS.index(kick) for kick in kicks]
-    arrays = {
-        name: getattr(whole, name)[rows] for name in Ensemble.__slots__ if np.ndim(getattr(whole, name)) > 0
-    }
-    return judge(wheel(friction), replace(whole, **arrays))
+    arrays = (name for name in Ensemble.__slots__ if np.ndim(getattr(whole, name)) > 0)
+    return judge(wheel(friction), replace(whole, **{name: getattr(whole, name)[rows] for name in arrays}))
 
 
 def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
@@ -89,16 +87,6 @@ def test_the_list_of_kicks_does_not_change_the_verdict(kicks):
     assert (phenolic.verdict, phenolic.probability_stable) == (Verdict.UNSTABLE, 0.0)
     assert phenolic.cage_motion is CageMotion.WHIRLING
     assert len(phenolic.by_kick) == len(kicks)
-
-
-@pytest.mark.parametrize("kicks", [(0.5, 2.0), (4.0,)])
-def test_a_kick_from_which_all_settle_changes_no_verdict(kicks):
-    """Vespel, f 0.08, and a kick of 0.05 m/s: it is shown, and nothing else changes."""
-    with_it = judge(wheel(0.08), ends(wheel(0.08), (0.05, *kicks)))
-    without = judged(0.08, kicks)
-    assert with_it.by_kick[0].settles == RUNS
-    assert (with_it.verdict, with_it.probability_stable) == (without.verdict, without.probability_stable)
-    assert with_it.by_kick[1:] == without.by_kick
 
 
 def test_a_run_is_not_settled_before_it_touches_anything():
@@ -130,26 +118,14 @@ def test_a_settled_cage_that_rubs_its_land_says_how_hard():
     sliding = abs(cage.inner_speed - cage.cage_speed) * cage.pitch_radius
     assert found.rubbing_speed == pytest.approx(sliding, rel=0.05)  # the cage turns with its balls
     expected = cage.land_friction * found.rubbing_force * found.rubbing_speed
-    assert found.rubbing_power == pytest.approx(
-        expected, rel=0.02
-    )  # medians of products and products of medians
+    assert found.rubbing_power == pytest.approx(expected, rel=0.02)  # products of medians, not the medians
     assert found.pocket_power < 1e-3 * found.rubbing_power
     assert "rubs on its land" in found.reason
 
 
-def test_friction_on_the_land_alone_makes_a_whirl_or_a_drag():
-    """Without pocket friction: at land friction 0.6 the land keeps up a whirl, which decides nothing."""
-    cage = shipped("momentum-wheel", friction=0.0)
-    rough = replace(cage, land_friction=0.6)
-    whirling = ends(rough, (2.0,))
-    assert np.all(whirling.outcome == RunOutcome.SETTLES)
-    assert np.all(whirling.cause == Cause.LAND_FRICTION)
-    assert np.median(whirling.land_power) > 0.0
-    assert np.all(whirling.pocket_power == 0.0)
-    found = judge(rough, whirling)
-    assert (found.verdict, found.by_kick[0].kept_by_land) == (Verdict.UNDECIDED, RUNS)
-    assert "land_friction" in found.reason
-    dragged = ends(replace(cage, land_friction=0.1), (0.1, 2.0))
+def test_friction_on_the_land_may_only_drag():
+    """Without pocket friction, at land friction 0.1; what it may drive, too: test_cage_clearance."""
+    dragged = ends(replace(shipped("momentum-wheel", friction=0.0), land_friction=0.1), (0.1, 2.0))
     assert np.all(dragged.outcome == RunOutcome.SETTLES)
     assert np.all(dragged.cause == Cause.NONE)
 
@@ -170,43 +146,19 @@ def test_a_whirl_weaker_than_the_loads_is_plain_after_a_duration():
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
 
-INTO_THE_LAND = """
-[bearing]
-ball_diameter = "19.984807204593117 mm"
-pitch_diameter = "68.82774148021104 mm"
-ball_count = 7
-contact_angle = "0 deg"
-inner_conformity = 0.53
-outer_conformity = 0.51
-ball_material = "440C"
-ring_material = { elastic_modulus = "231.86 GPa", poisson_ratio = 0.0, density = "1262.8 kg/m3" }
-[operation]
-inner_speed = "50000.0 rpm"
-axial_load = "11.25 N"
-radial_load = "3.375 N"
-[film]
-race_friction = 0.01
-[cage]
-mass = "9.084 g"
-pocket_clearance = "4.9392 mm"
-ball_cage_stiffness = "323998 N/m"
-pocket_position_scatter = "0.815 mm"
-guidance = "outer"
-land_clearance = "1 mm"
-land_friction = 0.0
-land_stiffness = "1e7 N/m"
-land_restitution = 0.5
-moment_of_inertia = "10.758 kg mm2"
-"""
+INTO_THE_LAND = PlanarCage(
+    mass=9.084e-3, moment_of_inertia=1.0758e-5, ball_count=7, pitch_radius=0.0344139, cage_speed=1892.95,
+    inner_speed=5235.99, outer_speed=0.0, pocket_clearance=4.9392e-3, ball_cage_stiffness=323998.0,
+    race_damping=35.623, ball_cage_friction=0.01, guidance=Guidance.OUTER, land_clearance=1e-3,
+    land_friction=0.0, land_stiffness=1e7, land_restitution=0.5, pocket_position_scatter=8.15e-4,
+)  # fmt: skip
 
 
-def test_a_cage_driven_21_mm_into_its_land_is_not_stable(tmp_path):
+def test_a_cage_driven_21_mm_into_its_land_is_not_stable():
     """A kick of 1000 m/s goes through a clearance of 1 mm: whatever it ends as, no verdict is STABLE."""
-    (tmp_path / "study.toml").write_text(INTO_THE_LAND, encoding="utf-8")
-    cage = solve(read_study(tmp_path / "study.toml")).cage_with(0.01)
     settings = StabilitySettings(kicks=(1000.0,), runs=4, duration=1.7256639e-3, seed=0)
-    found = judge(cage, run_ensemble(cage, settings))
-    assert found.largest_offset > largest_room(cage)
+    found = judge(INTO_THE_LAND, run_ensemble(INTO_THE_LAND, settings))
+    assert found.largest_offset > largest_room(INTO_THE_LAND)
     assert found.verdict is not Verdict.STABLE
 
 

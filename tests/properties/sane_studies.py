@@ -27,69 +27,36 @@ MOST_DN = 2.5e6
 class Class:
     """Ranges of a class of bearings: a pair is (low, high), a tuple of names is a choice."""
 
-    ball_diameter: tuple[float, float]
-    """[mm]."""
-
-    contact_angle: tuple[float, float]
-    """[deg]."""
-
+    ball_diameter: tuple[float, float]  # [mm]
+    contact_angle: tuple[float, float]  # [deg]
     conformity: tuple[float, float]
-    dn: tuple[float, float]
-    """Bore times speed [mm rpm]."""
-
-    stribeck: tuple[float, float]
-    """Load of a ball over its diameter squared [N/mm2]; 1 is about 0.9 GPa, 8 about 1.8 GPa."""
-
-    materials: tuple[tuple[str, str], ...]
-    """Of balls and rings."""
-
+    dn: tuple[float, float]  # bore times speed [mm rpm]
+    stribeck: tuple[float, float]  # load of a ball over its diameter^2 [N/mm2]; 1: some 0.9 GPa, 8: 1.8 GPa
+    materials: tuple[tuple[str, str], ...]  # of balls and rings
     film: str
-    thickness: tuple[float, float]
-    """[um]."""
-
+    thickness: tuple[float, float]  # [um]
     race_friction: tuple[float, float]
-    environment: str
-    """Lines of [operation]."""
+    environment: str  # lines of [operation]
 
 
 CLASSES = {
     "turbopump": Class(
-        ball_diameter=(6.0, 14.0),
-        contact_angle=(15.0, 30.0),
-        conformity=(0.515, 0.535),
-        dn=(0.3e6, 2.0e6),
-        stribeck=(2.0, 8.0),
-        materials=(("440C", "440C"), ("Si3N4", "440C")),
-        film="PTFE transfer film",
-        thickness=(0.1, 1.0),
-        race_friction=(0.05, 0.2),
+        ball_diameter=(6.0, 14.0), contact_angle=(15.0, 30.0), conformity=(0.515, 0.535), dn=(0.3e6, 2.0e6),
+        stribeck=(2.0, 8.0), materials=(("440C", "440C"), ("Si3N4", "440C")), film="PTFE transfer film",
+        thickness=(0.1, 1.0), race_friction=(0.05, 0.2),
         environment='temperature = "77 K"\nfluid = "liquid nitrogen"',
     ),
     "wheel": Class(
-        ball_diameter=(3.0, 8.0),
-        contact_angle=(12.0, 20.0),
-        conformity=(0.52, 0.57),
-        dn=(0.03e6, 0.25e6),
-        stribeck=(0.2, 1.5),
-        materials=(("52100", "52100"), ("440C", "440C")),
-        film="MoS2 sputtered dense",
-        thickness=(0.3, 1.5),
-        race_friction=(0.02, 0.1),
-        environment='temperature = "20 degC"',
+        ball_diameter=(3.0, 8.0), contact_angle=(12.0, 20.0), conformity=(0.52, 0.57), dn=(0.03e6, 0.25e6),
+        stribeck=(0.2, 1.5), materials=(("52100", "52100"), ("440C", "440C")), film="MoS2 sputtered dense",
+        thickness=(0.3, 1.5), race_friction=(0.02, 0.1), environment='temperature = "20 degC"',
     ),
     "gyro": Class(
-        ball_diameter=(1.0, 3.2),
-        contact_angle=(18.0, 35.0),
-        conformity=(0.515, 0.56),
-        dn=(0.05e6, 0.3e6),
-        stribeck=(0.5, 3.0),
-        materials=(("52100", "52100"), ("440C", "440C")),
-        film="MoS2 sputtered dense",
-        thickness=(0.3, 1.0),
-        race_friction=(0.02, 0.1),
-        environment='temperature = "60 degC"',
+        ball_diameter=(1.0, 3.2), contact_angle=(18.0, 35.0), conformity=(0.515, 0.56), dn=(0.05e6, 0.3e6),
+        stribeck=(0.5, 3.0), materials=(("52100", "52100"), ("440C", "440C")), film="MoS2 sputtered dense",
+        thickness=(0.3, 1.0), race_friction=(0.02, 0.1), environment='temperature = "60 degC"',
     ),
-}
+}  # fmt: skip
 
 
 def sane_study(seed: int, folder: Path, *, duration: str = "", runs: int = 0, name: str = "") -> Study:

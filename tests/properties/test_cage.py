@@ -5,19 +5,11 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from cages import followed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import (
-    Ensemble,
-    History,
-    PlanarCage,
-    ensemble,
-    follow,
-    run_ensemble,
-    simulate,
-    wilson_interval,
-)
+from separatrix.cage import Ensemble, History, PlanarCage, ensemble, run_ensemble, simulate, wilson_interval
 from separatrix.cage.run import Books, books_for
 from separatrix.study import Guidance, PocketShape, StabilitySettings
 
@@ -101,7 +93,7 @@ def drawn_cages(draw: st.DrawFn) -> PlanarCage:
 
 def short(cage: PlanarCage, direction: float, lead: np.ndarray) -> History:
     """Run of a few impacts, so that rounding has no time to grow."""
-    return follow(cage, kick=1.0, direction=direction, ball_lead=lead, duration=2e-3, until=2e-3, samples=2)
+    return followed(cage, 2e-3, kick=1.0, direction=direction, lead=lead, samples=2)
 
 
 def leads(cage: PlanarCage, seed: int) -> np.ndarray:
@@ -152,9 +144,8 @@ def in_units(cage: PlanarCage, L: float, M: float, T: float) -> PlanarCage:
         (L, ("pitch_radius", "pocket_clearance", "pocket_axial_clearance", "pocket_axial_offset")),
         (L, ("land_clearance", "land_out_of_round", "ball_diameter_scatter", "pocket_position_scatter")),
     ]
-    return replace(
-        cage, **{name: times(getattr(cage, name), size) for size, names in sizes for name in names}
-    )
+    scaled = {name: times(getattr(cage, name), size) for size, names in sizes for name in names}
+    return replace(cage, **scaled)
 
 
 def times(value: object, size: float) -> object:
@@ -221,15 +212,8 @@ def test_other_units_change_nothing_of_hertz_contacts(cage, coefficient, length,
     L, M, T = 4.0**length, 4.0**mass, 4.0**time
     lead = leads(cage, 1)
     one = short(cage, 0.4, lead)
-    scaled = {
-        "kick": L / T,
-        "direction": 0.4,
-        "ball_lead": lead * L,
-        "duration": 2e-3 * T,
-        "until": 2e-3 * T,
-        "samples": 2,
-    }
-    other = follow(in_units(cage, L, M, T), **scaled)
+    scaled = {"kick": L / T, "direction": 0.4, "lead": lead * L, "samples": 2}
+    other = followed(in_units(cage, L, M, T), 2e-3 * T, **scaled)
     np.testing.assert_allclose(other.velocity[-1] * T / L, one.velocity[-1], atol=1e-6)
     np.testing.assert_allclose(other.position[-1] / L, one.position[-1], atol=1e-9)
 
@@ -243,9 +227,8 @@ def test_workers_and_order_of_runs_change_no_bit(cage, kicks, split):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "CHUNK_RADIANS", 500.0)  # a run or a few at a time
         same(run_ensemble(cage, how, jobs=3), whole)
-    parts = [
-        run_ensemble(cage, how, runs=n, first_run=first) for first, n in ((0, split), (split, 6 - split))
-    ]
+    parts = (0, split), (split, 6 - split)
+    parts = [run_ensemble(cage, how, runs=n, first_run=first) for first, n in parts]
     shuffled = run_ensemble(cage, how, kicks=kicks)
     for field in fields(Ensemble):
         value = getattr(whole, field.name)
@@ -292,10 +275,14 @@ def test_a_history_is_the_run_of_the_ensemble(cage, run, samples):
 @few
 @given(drawn_cages(), st.integers(0, 9))
 def test_without_friction_a_landless_cage_at_rest_only_loses_energy(cage, seed):
-    """No friction, no turning, no land, no weight: the energy at the end is below the kick's."""
+    """No friction, no turning, no land, no weight: springs and dampers in series only take."""
     calm = replace(without_direction(cage), ball_cage_friction=0.0, cage_speed=0.0, guidance=Guidance.BALL)
-    runs = run_ensemble(calm, StabilitySettings(kicks=(1.0,), runs=2, duration=0.02, seed=seed))
-    assert np.all(runs.end_energy <= 0.5 * calm.mass)
+    for run in range(2):
+        seen = simulate(calm, kick=1.0, run=run, seed=seed, duration=0.02, until=0.02, samples=4000)
+        energy = seen.kinetic_energy + seen.spring_energy
+        # rounding; with Hertz contacts, whose force is a series, what the ledger is asked to close to
+        assert np.diff(energy).max() < (1e-12 if calm.hertz_coefficient is None else 1e-9) * energy[0]
+        assert energy[-1] < energy[0]
 
 
 @few
@@ -344,9 +331,11 @@ def test_the_ledger_closes_where_steps_are_long(cage, kick):
 @few
 @given(st.integers(0, 200), st.integers(1, 200))
 def test_wilson_interval_holds_its_share(successes, count):
-    """The interval lies in 0..1, holds the share, and mirrors with it."""
+    """Its ends are the roots of Wilson's quadratic in 0..1, (p - x)^2 = z^2 x (1 - x)/n, about the share."""
     successes = min(successes, count)
     low, high = wilson_interval(successes, count)
     assert 0.0 <= low <= successes / count <= high + 1e-15
-    mirrored = wilson_interval(count - successes, count)
-    np.testing.assert_allclose((low, high), (1 - mirrored[1], 1 - mirrored[0]), atol=1e-12)
+    p, z = successes / count, 1.959963984540054
+    for x in (low, high):
+        assert (p - x) ** 2 == pytest.approx(z * z * x * (1.0 - x) / count, rel=1e-9, abs=1e-12)  # rounding
+    assert wilson_interval(0, 0) == (0.0, 1.0)

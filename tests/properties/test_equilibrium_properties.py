@@ -5,13 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from cages import STEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
-
-STEEL = Material(name="steel", elastic_modulus=205e9, poisson_ratio=0.285, density=7650.0)
+from separatrix.study import BallBearing, KinematicModel, Operation
 
 bearings = st.builds(
     BallBearing,
@@ -43,9 +42,7 @@ def numbers(result: Equilibrium) -> dict[str, np.ndarray]:
 
 @some
 @given(bearing=bearings, operation=operations, model=models, friction=st.floats(0.02, 0.4))
-def test_the_ring_is_carried_and_nothing_is_nan(
-    bearing: BallBearing, operation: Operation, model: KinematicModel, friction: float
-) -> None:
+def test_the_ring_is_carried_and_nothing_is_nan(bearing, operation, model, friction):
     """Axial load: sum of Q sin(alpha), but for friction across the grooves, at most mu Q a ball."""
     result = equilibrium(bearing, operation, model, friction)
     assert all(np.isfinite(values).all() for values in numbers(result).values())
@@ -59,15 +56,10 @@ def test_the_ring_is_carried_and_nothing_is_nan(
 
 @some
 @given(bearing=bearings, operation=operations, model=models, length=st.sampled_from([1e-2, 1e2]))
-def test_similar_bearings_are_solved_alike(
-    bearing: BallBearing, operation: Operation, model: KinematicModel, length: float
-) -> None:
+def test_similar_bearings_are_solved_alike(bearing, operation, model, length):
     """Lengths by L, loads by L^2, speeds by 1/L: same angles and ratios, so no unit hides in the solver."""
-    large = dataclasses.replace(
-        bearing,
-        ball_diameter=bearing.ball_diameter * length,
-        pitch_diameter=bearing.pitch_diameter * length,
-    )
+    sizes = {name: getattr(bearing, name) * length for name in ("ball_diameter", "pitch_diameter")}
+    large = dataclasses.replace(bearing, **sizes)
     scaled = Operation(
         inner_speed=operation.inner_speed / length,
         outer_speed=operation.outer_speed / length,
@@ -83,9 +75,7 @@ def test_similar_bearings_are_solved_alike(
 
 @some
 @given(bearing=bearings, operation=operations, model=st.sampled_from(list(KinematicModel)[1:]))
-def test_balls_left_and_right_of_the_load_are_alike(
-    bearing: BallBearing, operation: Operation, model: KinematicModel
-) -> None:
+def test_balls_left_and_right_of_the_load_are_alike(bearing, operation, model):
     """Relabelling: under race control ball j and ball Z - j mirror each other."""
     result = equilibrium(bearing, operation, model, 0.15)
     for name in ("load_inner", "load_outer", "contact_angle_inner", "orbital_speed"):

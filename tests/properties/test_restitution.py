@@ -31,6 +31,7 @@ def test_free_spin_never_damps_more_than_the_sum(inner, outer):
     """4ab/(a+b) <= a+b, equal at a = b, and swapping the races changes nothing."""
     assert race_damping_free_spin(inner, outer) <= race_damping(inner, outer) * (1 + 1e-15)
     assert race_damping_free_spin(inner, outer) == race_damping_free_spin(outer, inner)
+    assert race_damping_free_spin(inner, inner) == pytest.approx(race_damping(inner, inner), rel=1e-15)
 
 
 @settings(derandomize=True, max_examples=50, deadline=None)

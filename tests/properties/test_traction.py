@@ -35,30 +35,16 @@ def slope(parts, mu, lam):
 
 def curve(parts, mu, lam, increments):
     """C_T at some increments."""
-    found = traction_curve(
-        ELLIPSE,
-        parts,
-        race_friction=mu,
-        film_compliance=lam * B / E,
-        creep_increments=np.asarray(increments),
-    )
-    return found.traction_coefficient
-
-
-@quick
-@given(friction, film, rise, size)
-def test_more_friction_never_lowers_the_slope_under_spin(mu, lam, factor, spin):
-    """f_BT up, slope up: pure spin; the paper says the opposite (docs/deviations.md)."""
-    assert slope(creep(spin), mu * factor, lam) >= slope(creep(spin), mu, lam) * (1.0 - NOISE)
+    how = {"race_friction": mu, "film_compliance": lam * B / E, "creep_increments": np.asarray(increments)}
+    return traction_curve(ELLIPSE, parts, **how).traction_coefficient
 
 
 @quick
 @given(friction, film, rise)
 def test_friction_leaves_the_slope_of_pure_creep_alone(mu, lam, factor):
     """Without spin and Heathcote the origin sticks: any friction gives one slope."""
-    assert slope(creep(0.0), mu * factor, lam) == pytest.approx(
-        slope(creep(0.0), mu, lam), rel=1e-9
-    )  # rounding
+    expected = slope(creep(0.0), mu, lam)
+    assert slope(creep(0.0), mu * factor, lam) == pytest.approx(expected, rel=1e-9)  # rounding
 
 
 @quick
@@ -68,10 +54,13 @@ def test_a_softer_film_never_raises_the_slope(mu, lam, factor, spin):
     assert slope(creep(spin), mu, lam * factor) <= slope(creep(spin), mu, lam) * (1.0 + NOISE)
 
 
-@quick
-@given(friction, film, rise, size, signed)
+@settings(quick, max_examples=80)
+@given(friction, film, rise, size, st.one_of(st.just(0.0), signed))
 def test_with_heathcote_the_trends_hold_within_three_percent(mu, lam, factor, spin, heathcote):
-    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it."""
+    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it.
+
+    That f_BT up is slope up holds for pure spin, too; the paper says the opposite (docs/deviations.md).
+    """
     parts = creep(spin, heathcote)
     assert slope(parts, mu, lam * factor) <= slope(parts, mu, lam) * 1.03
     assert slope(parts, mu * factor, lam) >= slope(parts, mu, lam) * (1.0 - NOISE)
@@ -112,7 +101,7 @@ def test_the_curve_rises_between_plus_and_minus_friction(mu, lam, spin, heathcot
     found = traction_curve(ELLIPSE, parts, race_friction=mu, film_compliance=lam * B / E)
     assert np.all(np.diff(found.traction_coefficient) >= -1e-8 * mu)  # rounding where it is flat
     assert np.all(np.abs(found.traction_coefficient) <= mu)
-    assert abs(found.traction_coefficient[20]) < 1e-6 * mu
+    assert abs(found.traction_coefficient[20]) < 1e-10 * mu  # Newton's last step
     assert found.slope_error <= 0.005 * found.slope
 
 

@@ -1,23 +1,18 @@
 """Verdict, probability and worst kick of counts nobody thought of."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
+from cages import ON_A_LAND, ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import Cause, Ensemble, PlanarCage, RunOutcome, Verdict, judge
-from separatrix.study import Guidance
+from separatrix.cage import Ensemble, RunOutcome, Verdict, judge
 
 quick = settings(derandomize=True, max_examples=150, deadline=None)
 
-CAGE = PlanarCage(
-    mass=0.025, moment_of_inertia=26.4e-6, ball_count=3, pitch_radius=0.0325, cage_speed=670.0,
-    inner_speed=1570.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=600.0,
-    ball_cage_friction=0.1, guidance=Guidance.OUTER, land_clearance=1e-3,
-)  # fmt: skip
+CAGE = replace(ON_A_LAND, ball_count=3)
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
-WHOLE = ("outcome", "cause", "whirl_direction", "land_impacts")
 
 
 @st.composite
@@ -30,28 +25,14 @@ def ensembles(draw: st.DrawFn) -> Ensemble:
         usual, few = draw(any_end), draw(st.integers(0, runs))
         others = draw(st.lists(any_end, min_size=few, max_size=few))
         rows.append(others + [usual] * (runs - few))
-    return made(np.array(rows), rubbing=draw(st.sampled_from([0.0, 3.0])))
-
-
-def made(outcome: np.ndarray, rubbing: float = 0.0) -> Ensemble:
-    """Ensemble with these outcomes and plain evidence."""
-    evidence = {f.name: np.zeros(outcome.shape) for f in fields(Ensemble)}
-    evidence |= {name: np.zeros(outcome.shape, dtype=np.int64) for name in WHOLE}
-    evidence |= {
-        "outcome": outcome,
-        "cause": np.where(outcome == RunOutcome.UNRESOLVED, int(Cause.FALLING), 0),
-        "kicks": 0.1 * np.arange(1, outcome.shape[0] + 1),
-        "pocket_impacts": np.zeros((*outcome.shape, CAGE.ball_count), dtype=np.int64),
-        "rubbing_force": np.where(outcome == SETTLES, rubbing, 0.0),
-        "duration": 0.3,
-    }
-    return Ensemble(**evidence)
+    rubbing = np.where(np.array(rows) == SETTLES, draw(st.sampled_from([0.0, 3.0])), 0.0)
+    return ensemble(rows, CAGE.ball_count, rubbing_force=rubbing)
 
 
 def with_kick(runs: Ensemble, at: int, end: int) -> Ensemble:
     """The ensemble with a kick more, from which all runs end alike."""
-    rows = np.insert(runs.outcome, at, end, axis=0)
-    return replace(made(rows), rubbing_force=np.insert(runs.rubbing_force, at, 0.0, axis=0))
+    rubbing = np.insert(runs.rubbing_force, at, 0.0, axis=0)
+    return ensemble(np.insert(runs.outcome, at, end, axis=0), CAGE.ball_count, rubbing_force=rubbing)
 
 
 @quick

@@ -79,25 +79,24 @@ def test_the_environment_is_found_by_identity(tmp_path, fluid, environment):
     assert required_environment(study, study.ranking) == environment
 
 
+LOX = '[operation]\nfluid = "LOX"\n'
+
+
 def test_an_environment_that_nothing_matches_must_be_said(tmp_path):
     """Liquid oxygen is not liquid nitrogen; the refusal lists what there is, and a given one serves."""
-    study = extended(tmp_path, '[operation]\nfluid = "LOX"\n[cage]\nmaterial = "Armalon"\n')
+    study = extended(tmp_path, LOX + '[cage]\nmaterial = "Armalon"\n')
     with pytest.raises(InputError, match=r'environment is missing.*or "liquid nitrogen, 440C"'):
         required_environment(study, study.ranking)
     with pytest.raises(InputError, match="environment is missing"):
         require_friction(study)
-    given = '[operation]\nfluid = "LOX"\n[ranking]\nenvironment = "Liquid Nitrogen, 440c"\n'
+    given = LOX + '[ranking]\nenvironment = "Liquid Nitrogen, 440c"\n'
     assert extended(tmp_path, given).ranking.environment == "liquid nitrogen, 440C"
-
-
-def test_an_unknown_environment_is_refused(tmp_path):
-    """With those that there are."""
     with pytest.raises(InputError, match=r"\[ranking\] environment must be one .*liquid nitrogen, 440C"):
         extended(tmp_path, '[ranking]\nenvironment = "vacuum"\n')
 
 
 def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
-    """The refusal lists the candidates; it comes only from a verb that needs the friction."""
+    """The refusal lists the candidates, and for a name that nobody has the library; one candidate serves."""
     study = case(tmp_path, 'material = "Vespel SP 211"')
     with pytest.raises(InputError, match=r'"Vespel SP 211" is not a candidate.*My compound, Other'):
         require_friction(study)
@@ -109,13 +108,8 @@ def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
     alone = replace(nameless, ranking=replace(study.ranking, candidates=study.ranking.candidates[1:]))
     require_friction(alone)
     assert solve(alone).friction.mean == 0.1
-
-
-def test_a_name_that_nobody_has_is_refused(tmp_path):
-    """With the library's names and the candidates'."""
-    with pytest.raises(
-        InputError, match=r"is not a cage material of the library.*Candidates are My compound"
-    ):
+    unknown = r"is not a cage material of the library.*Candidates are My compound"
+    with pytest.raises(InputError, match=unknown):
         case(tmp_path, 'material = "Unobtainium"')
 
 

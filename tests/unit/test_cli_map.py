@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import json
 import signal
-import sqlite3
 import subprocess
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from commands import COMMAND, document, pieces, refused
 
 from separatrix import present
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.axes import read_axis
-from separatrix.ledger import NAME
 from separatrix.study_file import read_study
 
 SMALL = """
@@ -53,16 +51,7 @@ def _elsewhere(tmp_path, monkeypatch):
 
 def mapped(capsys, *options: str) -> dict:
     """Return the document of a small map."""
-    assert main(["map", "small.toml", "--json", *options]) == 0
-    return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
-
-
-def refused(capsys, *options: str) -> str:
-    """Return the line with which a map is refused; nothing is written."""
-    assert main(["map", "small.toml", *options]) == 2
-    out, err = capsys.readouterr()
-    assert (out, err.count("\n"), [path.name for path in Path().iterdir()]) == ("", 1, ["small.toml"])
-    return err
+    return document(capsys, "map", "small.toml", *options)
 
 
 @pytest.mark.parametrize(
@@ -81,15 +70,11 @@ def refused(capsys, *options: str) -> str:
     ],
 )
 def test_an_axis_is_read_as_it_is_written(text, unit, values):
-    """Units hold for both ends, values are exact at the ends, whole numbers stay whole."""
+    """Units hold for both ends, values are exact at the ends, whole numbers stay whole; one name each."""
     axis = read_axis(text, "--x", 5)
+    assert axis.parameter == text.partition("=")[0].replace("cage.ball_cage_friction", "ball_cage_friction")
     assert (axis.unit, axis.values) == (unit, values)
     assert all(type(a) is type(b) for a, b in zip(axis.values, values, strict=True))
-
-
-def test_a_parameter_has_one_name():
-    """The friction of the pockets, by its section or without, is the same parameter."""
-    assert read_axis("cage.ball_cage_friction=0..1", "--x", 2).parameter == "ball_cage_friction"
 
 
 @pytest.mark.parametrize(
@@ -143,17 +128,15 @@ def test_a_wrong_axis_is_refused(text, said):
 )
 def test_wrong_options_are_refused_in_one_line(options, said, capsys):
     """One line, status 2, nothing written."""
-    assert said in refused(capsys, *options)
+    assert said in refused(capsys, "map", "small.toml", *options)
 
 
 def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
     """Axes with their unit and the study's own value, every point, the rule with its error rate."""
     found = mapped(capsys, *QUICK)
     assert set(KEYS.split()) <= set(found)
-    assert [(found[a]["parameter"], found[a]["unit"]) for a in "xy"] == [
-        ("restitution_factor", "-"),
-        ("ball_cage_friction", "-"),
-    ]
+    assert [found[a]["parameter"] for a in "xy"] == ["restitution_factor", "ball_cage_friction"]
+    assert [found[a]["unit"] for a in "xy"] == ["-", "-"]
     assert found["y"]["here"] == 0.1
     assert found["x"]["here"] == found["chain"]["restitution_factor"]
     assert len(found["points"]) == 16
@@ -211,60 +194,31 @@ def test_the_dataset_stands_on_x_and_y(capsys):
 
 
 def test_a_second_call_takes_finished_runs_and_says_so(capsys):
-    """The same document; a line on standard error."""
+    """The same document, and a line on standard error; a finer grid, too, goes on from 9 of its 25 points."""
     first = mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
-    assert main(["map", "small.toml", "--json", "--points", "3", "--runs", "2", "--out", "m"]) == 0
-    out, err = capsys.readouterr()
-    assert json.loads(out) == first
-    assert err.startswith("separatrix: 18 runs were taken from m/finished-runs.sqlite")
-
-
-def test_a_finer_grid_goes_on_from_a_coarser_one(capsys):
-    """Runs are found by what they depend on: those of 9 of 25 points are known."""
-    mapped(capsys, "--points", "3", "--runs", "2", "--out", "m")
-    assert main(["map", "small.toml", "--json", "--points", "5", "--runs", "2", "--out", "m"]) == 0
-    assert capsys.readouterr().err.startswith("separatrix: 18 runs were taken")
+    for points in ("3", "5"):
+        assert main(["map", "small.toml", "--json", "--points", points, "--runs", "2", "--out", "m"]) == 0
+        out, err = capsys.readouterr()
+        assert err.startswith("separatrix: 18 runs were taken from m/finished-runs.sqlite")
+        assert (json.loads(out) == first) == (points == "3")
 
 
 SLOW = ["map", "slow.toml", "--points", "16", "--jobs", "1", "--json"]
 
 
-def command(*options: str) -> list[str]:
-    """Return the real command, as a process is started with."""
-    return [sys.executable, "-m", "separatrix", *SLOW, *options]
-
-
-def kept(folder: str) -> int:
-    """Return how many points are in the ledger of a folder that another process may write."""
-    path = Path(folder) / NAME
-    try:
-        connection = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
-        with connection:
-            return connection.execute("SELECT count(*) FROM piece").fetchone()[0]
-    except sqlite3.OperationalError:
-        return 0
-
-
-def started(sent: int) -> tuple[int, str, str]:
-    """Start a map, send a signal once points are kept, and return status and texts."""
-    Path("slow.toml").write_text(SMALL.replace('"2 ms"', '"0.3 s"'))
-    process = subprocess.Popen(
-        command("--out", "m"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    for _ in range(6000):  # five minutes: a new machine compiles first
-        if kept("m") > 0:
-            break
-        time.sleep(0.05)
-    process.send_signal(sent)
-    out, err = process.communicate(timeout=300)
-    return process.returncode, out, err
-
-
 def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     """Ctrl-C: what is finished is answered, status 130; going on gives the map of an uninterrupted call."""
-    status, out, err = started(signal.SIGINT)
+    Path("slow.toml").write_text(SMALL.replace('"2 ms"', '"0.3 s"'))
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen([*COMMAND, *SLOW, "--out", "m"], **pipes)
+    for _ in range(6000):  # five minutes: a new machine compiles first
+        if pieces(Path("m")) > 0:
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=300)
     part = json.loads(out)
-    assert (status, part["complete"]) == (130, False)
+    assert (process.returncode, part["complete"]) == (130, False)
     assert err.endswith("Run the same command to resume.\n")
     left = [point for point in part["points"] if not point["runs"]]
     assert {point["reason"] for point in left} == {"not run: interrupted"}
@@ -274,10 +228,3 @@ def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     assert "runs were taken from" in said
     assert main(SLOW) == 0
     assert json.loads(whole) == json.loads(capsys.readouterr().out)
-
-
-def test_a_killed_map_keeps_its_points():
-    """SIGKILL: the points that were handed over are in the ledger."""
-    status, out, _ = started(signal.SIGKILL)
-    assert (status, out) == (-signal.SIGKILL, "")
-    assert kept("m") > 0

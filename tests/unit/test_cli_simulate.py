@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import document, refused
 
 from separatrix import figures, present
 from separatrix.cli import main
@@ -46,16 +47,7 @@ def _elsewhere(tmp_path, monkeypatch):
 
 def simulated(folder: Path, capsys, *options: str) -> dict:
     """Return the document of one run of the small study."""
-    assert main(["simulate", str(folder / "small.toml"), "--json", *options]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
-def refused(capsys, *arguments: str) -> str:
-    """Return the line with which a command is refused; nothing is written."""
-    assert main(list(arguments)) == 2
-    out, err = capsys.readouterr()
-    assert (out, err.count("\n"), list(Path().iterdir())) == ("", 1, [])
-    return err
+    return document(capsys, "simulate", str(folder / "small.toml"), *options)
 
 
 def test_kick_and_run_are_those_asked_for(folder, capsys):
@@ -67,9 +59,9 @@ def test_kick_and_run_are_those_asked_for(folder, capsys):
     assert other["velocity"][0] != usual["velocity"][0]
     harder = simulated(folder, capsys, "--kick", "200 cm/s")
     assert harder["kick"] == 2.0
-    assert harder["kinetic_energy"][0] == pytest.approx(  # to rounding
-        (2.0 / 0.502) ** 2 * usual["kinetic_energy"][0], rel=1e-12
-    )  # the same direction: energy goes as the square of the kick
+    # the same direction: energy goes as the square of the kick, to rounding
+    expected = (2.0 / 0.502) ** 2 * usual["kinetic_energy"][0]
+    assert harder["kinetic_energy"][0] == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -126,23 +118,19 @@ def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch)
 
 def test_two_runs_are_compared(folder, capsys):
     """The numbers of both, the inputs that differ, and a figure."""
-    assert (
-        main(["compare", str(folder / "small"), str(folder / "heavy" / "simulate.nc"), "--out", "both"]) == 0
-    )
+    pair = [str(folder / "small"), str(folder / "heavy" / "simulate.nc")]
+    assert main(["compare", *pair, "--out", "both"]) == 0
     text = capsys.readouterr().out
     assert "cage.mass" in text
     found = json.loads(Path("both/compare.json").read_text())
     assert [run["title"] for run in found["runs"]] == ["A small run", "A heavy cage"]
     mass = {"key": "cage.mass", "first": 0.025, "second": 0.05, "unit": "kg"}
     assert found["differences"] == [mass]
-    offsets = [
-        float(present.load(folder / name / "simulate.nc")["largest_offset"]) for name in ("small", "heavy")
-    ]
-    assert [run["largest_offset"] for run in found["runs"]] == offsets
+    saved = [present.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
+    assert [run["largest_offset"] for run in found["runs"]] == [float(one["largest_offset"]) for one in saved]
     names = {path.name for path in Path("both").iterdir()}
     assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
     assert Path("both/compare.txt").read_text(encoding="ascii") == text
-    saved = [present.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
     ((_, figure),) = figures.draw("compare", *saved)
     figures.save(figure, Path("again.svg"))
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
@@ -155,8 +143,8 @@ def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys
     options = ["--kick", "1 m/s", "--run", "1", "--out", str(folder / "other"), "--quiet"]
     assert main(["simulate", str(folder / "other.toml"), *options]) == 0
     capsys.readouterr()
-    assert main(["compare", str(folder / "small"), str(folder / "other"), "--json"]) == 0
-    found, small = json.loads(capsys.readouterr().out), present.load(folder / "small" / "simulate.nc")
+    found = document(capsys, "compare", str(folder / "small"), str(folder / "other"))
+    small = present.load(folder / "small" / "simulate.nc")
     assert {one["key"]: (one["first"], one["second"]) for one in found["differences"]} == {
         "cage.ball_cage_friction": (0.1, 0.2),
         "stability.seed": (1, 2),
@@ -172,8 +160,7 @@ def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
     (folder / "candidate.toml").write_text(own)
     assert main(["simulate", str(folder / "candidate.toml"), "--out", str(folder / "own"), "--quiet"]) == 0
     capsys.readouterr()
-    assert main(["compare", str(folder / "small"), str(folder / "own"), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["differences"]
+    found = document(capsys, "compare", str(folder / "small"), str(folder / "own"))["differences"]
     taken = float(present.load(folder / "own" / "simulate.nc")["cage_ball_cage_friction"])
     assert found == [{"key": "cage.ball_cage_friction", "first": 0.1, "second": taken, "unit": "-"}]
 
@@ -190,21 +177,18 @@ def test_a_saved_run_of_numbers_that_cannot_be_drawn_is_refused(value, folder, c
 
 def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
     """`--json` without `--out`: the document alone."""
-    assert main(["compare", str(folder / "small"), str(folder / "small"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["differences"] == []
+    assert document(capsys, "compare", str(folder / "small"), str(folder / "small"))["differences"] == []
     assert list(Path().iterdir()) == []
 
 
 def test_what_is_no_simulation_is_not_compared(folder, capsys):
     """Nothing there, another verb's answer, a file that is no dataset."""
-    assert "does not contain a saved simulation" in refused(
-        capsys, "compare", "nowhere", str(folder / "small")
-    )
-    assert main(["bearing", str(folder / "small.toml"), "--out", str(folder / "bearing")]) == 0
+    small, toml = str(folder / "small"), str(folder / "small.toml")
+    assert main(["bearing", toml, "--out", str(folder / "bearing")]) == 0
     capsys.readouterr()
-    other = str(folder / "bearing" / "bearing.nc")
-    assert "must be an answer of simulate or rank; got bearing" in refused(
-        capsys, "compare", str(folder / "small"), other
-    )
-    toml = str(folder / "small.toml")
-    assert "is not a readable netCDF" in refused(capsys, "compare", toml, str(folder / "small"))
+    for other, said in (
+        ("nowhere", "does not contain a saved simulation"),
+        (str(folder / "bearing" / "bearing.nc"), "must be an answer of simulate or rank; got bearing"),
+        (toml, "is not a readable netCDF"),
+    ):
+        assert said in refused(capsys, "compare", other, small)

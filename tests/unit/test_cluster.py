@@ -37,14 +37,22 @@ def test_a_cluster_gives_the_same_curve(two):
     assert far == stability_curve(WHEEL.cage_with(0.0), SETTINGS)
 
 
+def refused(address):
+    """Return the line with which an address is refused: with the option, and the address."""
+    with pytest.raises(InputError) as refusal, cluster(address):
+        pass
+    text = str(refusal.value)
+    assert text.startswith("--cluster ")
+    assert "\n" not in text
+    return text
+
+
 def test_workers_of_another_version_are_refused(two, monkeypatch):
     """Their runs would be another engine's; the worker is named."""
     monkeypatch.setattr(clusters, "program", lambda: str(os.getpid()).encode())
-    with (
-        pytest.raises(InputError, match=r"--cluster has workers with another version.*tcp://"),
-        cluster(two.scheduler_address),
-    ):
-        pass
+    text = refused(two.scheduler_address)
+    assert "has workers with another version" in text
+    assert "tcp://" in text
 
 
 WRONG = {
@@ -60,20 +68,14 @@ WRONG = {
 def test_a_wrong_address_is_refused_in_one_line(address, words, monkeypatch):
     """With the option, the rule and what was given."""
     monkeypatch.setattr(clusters, "PATIENCE", 0.5)
-    with pytest.raises(InputError) as refusal, cluster(address):
-        pass
-    text = str(refusal.value)
-    assert text.startswith("--cluster ")
+    text = refused(address)
     assert words in text
     assert f'"{address}"' in text
-    assert "\n" not in text
 
 
 def test_without_the_extra_the_refusal_names_it(monkeypatch):
     """dask[distributed] is not among the requirements."""
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with (
-        pytest.raises(InputError, match=r"needs the extra cluster.*separatrix\[cluster\]"),
-        cluster("local:1"),
-    ):
-        pass
+    text = refused("local:1")
+    assert "needs the extra cluster" in text
+    assert "separatrix[cluster]" in text

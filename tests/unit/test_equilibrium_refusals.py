@@ -5,22 +5,15 @@ import math
 
 import numpy as np
 import pytest
+from cages import BEARING as TURBOPUMP
+from cages import STEEL_218
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.study import KinematicModel, Operation
 
-STEEL = Material(name="steel", elastic_modulus=206e9, poisson_ratio=0.3, density=7800.0)
-BEARING = BallBearing(
-    ball_diameter=11.1125e-3,
-    pitch_diameter=65e-3,
-    ball_count=13,
-    contact_angle=math.radians(25.0),
-    inner_conformity=0.52,
-    outer_conformity=0.52,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
+STEEL = dataclasses.replace(STEEL_218, elastic_modulus=206e9)
+BEARING = dataclasses.replace(TURBOPUMP, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL)
 OPERATION = Operation(inner_speed=1500.0, axial_load=3000.0)
 
 
@@ -75,15 +68,9 @@ def test_balls_that_touch_nothing_have_nominal_angles() -> None:
 
     The groove was a full circle: such a ball reported an inner angle of 180 deg.
     """
-    bearing = dataclasses.replace(
-        BEARING,
-        ball_diameter=1.0906e-3,
-        pitch_diameter=61.72e-3,
-        ball_count=160,
-        contact_angle=math.radians(79.0),
-        inner_conformity=0.6,
-        outer_conformity=0.51,
-    )
+    sizes = {"ball_diameter": 1.0906e-3, "pitch_diameter": 61.72e-3, "ball_count": 160}
+    grooves = {"contact_angle": math.radians(79.0), "inner_conformity": 0.6, "outer_conformity": 0.51}
+    bearing = dataclasses.replace(BEARING, **sizes, **grooves)
     operation = Operation(inner_speed=0.0, outer_speed=10472.0, axial_load=0.0, radial_load=500.0)
     result = equilibrium(bearing, operation, KinematicModel.OUTER_RACE_CONTROL, 2.0)
     assert not result.inner_contact.all()

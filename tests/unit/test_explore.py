@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import expit, ndtr
 
-from separatrix.cage import KickCount, RunOutcome, Verdict
+from separatrix.cage import KickCount, RunOutcome, Verdict, wilson_interval
+from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.distribution import LogNormal, Normal
 from separatrix.draws import UncertainInput
 from separatrix.explore import counting
@@ -16,7 +17,6 @@ from separatrix.explore.next_test import next_tests, reducible_shares
 from separatrix.explore.shares import sobol_shares
 from separatrix.ranking.drawn import Case
 from separatrix.study import Candidate, Friction
-from separatrix.study_file import read_study
 
 CASE = Case("A", "air")
 NAMES = ["x", "y", "z"]
@@ -62,10 +62,8 @@ def test_an_interval_holds_the_true_share_about_as_often_as_it_says():
     true = 2.25 / (2.25 + 0.49 + np.pi**2 / 3.0)
     inside = 0
     for seed in range(100):
-        (share,) = [
-            one for one in drivers(CASE, NAMES, *simulated((0.0, 1.5, 0.7, 0.0), 512, seed)).shares
-            if one.name == "x"
-        ]  # fmt: skip
+        shares = drivers(CASE, NAMES, *simulated((0.0, 1.5, 0.7, 0.0), 512, seed)).shares
+        (share,) = [one for one in shares if one.name == "x"]
         inside += share.share_low <= true <= share.share_high
     assert inside >= 85
 
@@ -117,15 +115,11 @@ def test_a_test_that_removes_nothing_or_an_idle_input_settles_nothing():
 
 def test_of_a_friction_only_the_error_of_its_mean_can_be_learned():
     """After n tests with a known scatter 1/(n + 1) of the variance of a new cage's friction."""
-    study = read_study("cryogenic-turbopump")
     friction = Friction(mean=0.1, standard_deviation=0.02, count=4)
     candidate = Candidate(name="A", friction={"air": friction})
     asked = SimpleNamespace(ranking=SimpleNamespace(candidates=(candidate,), friction_scatter=0.09))
-    assert study.ranking is not None
-    one = UncertainInput(
-        key="ranking.A.air", unit="-", distribution=Normal(mean=0.1, standard_deviation=0.022),
-        central=0.1, source="measured",
-    )  # fmt: skip
+    law = Normal(mean=0.1, standard_deviation=0.022)
+    one = UncertainInput(key="ranking.A.air", unit="-", distribution=law, central=0.1, source="measured")
     assert reducible_shares(asked, [one]) == {"ranking.A.air": pytest.approx(1.0 / 5.0)}
 
 
@@ -147,20 +141,13 @@ def test_sobol_indices_of_a_product_are_the_closed_form():
         assert all(one.share_low <= one.share <= one.share_high for one in found)
 
 
-def counts(*settles, runs=64):
-    """Counts by kick, the rest whirling."""
-    return tuple(
-        KickCount(
-            kick=0.1 * (1 + i), settles=n, whirls=runs - n, drifts=0, unresolved=0, kept_by_land=0,
-            probability_stable=n / runs, probability_low=0.0, probability_high=1.0,
-        )
-        for i, n in enumerate(settles)
-    )  # fmt: skip
-
-
 def judged(verdict, *settles, runs=64):
-    """As a judgement: its verdict, counts and worst kick."""
-    found = counts(*settles, runs=runs)
+    """As a judgement: its verdict, counts by kick (the rest whirling) and worst kick."""
+    known = {"drifts": 0, "unresolved": 0, "kept_by_land": 0, "probability_low": 0.0, "probability_high": 1.0}
+    found = tuple(
+        KickCount(kick=0.1 * (1 + i), settles=n, whirls=runs - n, probability_stable=n / runs, **known)
+        for i, n in enumerate(settles)
+    )
     worst = min(found, key=lambda one: one.settles)
     return SimpleNamespace(verdict=verdict, by_kick=found, worst_kick=worst.kick)
 
@@ -175,9 +162,7 @@ def judged(verdict, *settles, runs=64):
         (Verdict.UNDECIDED, (45,), 64, False),
     ],
 )
-def test_a_case_ends_early_only_where_all_bearings_would_hardly_decide_otherwise(
-    verdict, settles, runs, plain
-):
+def test_a_case_ends_early_only_where_more_would_hardly_decide_otherwise(verdict, settles, runs, plain):
     """By Wilson's interval at the risk of 1e-3."""
     assert is_plain(judged(verdict, *settles, runs=runs)) is plain
 
@@ -189,7 +174,7 @@ def test_a_kick_that_plainly_settles_more_is_not_run_further():
     assert [settles_more(one, near) for one in near.by_kick] == [False, False]
 
 
-def test_early_ends_decide_as_all_bearings_would(monkeypatch):
+def test_early_ends_decide_as_all_bearings_would():
     """1000 cases of random true shares: a stopped one has the verdict of its 512 runs, all but a few."""
     random = np.random.default_rng(7)
     other = 0
@@ -203,9 +188,6 @@ def test_early_ends_decide_as_all_bearings_would(monkeypatch):
 
 def _verdict(settled, runs):
     """Verdict of a count from one kick, and whether it is plain."""
-    from separatrix.cage import wilson_interval
-    from separatrix.cage.verdict import CLEAR, FEW
-
     low = wilson_interval(settled, runs)[0]
     verdict = Verdict.UNDECIDED
     if wilson_interval(runs - settled, runs)[0] > FEW:

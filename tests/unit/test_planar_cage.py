@@ -5,24 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import SMALL
 
-from separatrix.cage.planar import PlanarCage, turned_forward
+from separatrix.cage.planar import turned_forward
 from separatrix.errors import InputError
 from separatrix.study import Guidance, PocketShape
 
-CAGE = PlanarCage(
-    mass=0.05,
-    moment_of_inertia=0.05 * 0.03**2,
-    ball_count=5,
-    pitch_radius=0.03,
-    cage_speed=400.0,
-    inner_speed=1000.0,
-    outer_speed=0.0,
-    pocket_clearance=6e-4,
-    ball_cage_stiffness=3e6,
-    race_damping=800.0,
-    ball_cage_friction=0.1,
-)
+CAGE = replace(SMALL, ball_count=5, cage_speed=400.0, race_damping=800.0)
 ANGLES = (0.2, 1.4, 2.5, 4.0, 5.0)
 
 WRONG = [
@@ -49,7 +38,16 @@ WRONG = [
         {"guidance": Guidance.INNER, "land_clearance": 4e-4, "land_out_of_round": 6e-5},
         "land_out_of_round must be smaller than half the land's clearance over the square of",
     ),
-    ({"guidance": Guidance.INNER}, "land_clearance is missing"),
+    (
+        {"guidance": Guidance.INNER},
+        'land_clearance is missing; got None. Give the diametral clearance, or guidance = "ball"',
+    ),
+    *[({"mass": value}, "mass") for value in (0.0, math.nan)],
+    *[({"race_damping": value}, "race_damping") for value in (0.0, math.nan)],
+    *[({name: -1e-6}, name) for name in ("moment_of_inertia", "pocket_clearance", "ball_cage_friction")],
+    *[({name: 0}, name) for name in ("ball_count", "pitch_radius", "ball_cage_stiffness")],
+    *[({"cage_speed": math.inf}, "cage_speed"), ({"land_restitution": 1.1}, "land_restitution")],
+    ({"gravity": -9.8}, "gravity"),
 ]
 
 
@@ -62,18 +60,13 @@ def test_a_cage_that_cannot_be_is_refused(changes, words):
 
 
 def test_the_half_play_is_that_of_shape_and_offset():
-    """What the kernels use: 0.3, 0.4, 0.5 triangle in a bore of 0.5 mm half play."""
-    bore = replace(
-        CAGE, pocket_clearance=1e-3, pocket_shape=PocketShape.CYLINDRICAL, pocket_axial_offset=3e-4
-    )
-    assert bore.half_play == pytest.approx(4e-4, rel=1e-12)  # rounding
-    assert bore.pocket_tilt == pytest.approx((0.8, 0.6), rel=1e-12)  # rounding
+    """What the kernels use: 0.3, 0.4, 0.5 triangle in a bore of 0.5 mm half play; without play, no tilt."""
+    bore = replace(CAGE, pocket_clearance=1e-3, pocket_shape=PocketShape.CYLINDRICAL)
+    offset = replace(bore, pocket_axial_offset=3e-4)
+    assert offset.half_play == pytest.approx(4e-4, rel=1e-12)  # rounding
+    assert offset.pocket_tilt == pytest.approx((0.8, 0.6), rel=1e-12)  # rounding
     assert (CAGE.half_play, CAGE.pocket_tilt) == (3e-4, (1.0, 0.0))
-
-
-def test_a_pocket_without_play_grips_in_any_round_shape():
-    """No play, no offset: nothing to divide by."""
-    gripped = replace(CAGE, pocket_clearance=0.0, pocket_shape=PocketShape.CYLINDRICAL)
+    gripped = replace(bore, pocket_clearance=0.0)
     assert (gripped.half_play, gripped.pocket_tilt) == (0.0, (1.0, 0.0))
 
 

@@ -9,6 +9,7 @@ import pytest
 from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
+from separatrix.ranking.plausible import Moved, beyond_motion, pocket_pressure, transmitted_force
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study
 from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
@@ -31,16 +32,14 @@ def notes(study: Study) -> list[str]:
     return [str(one.message) for one in caught]
 
 
-def test_a_plausible_study_draws_no_note() -> None:
-    """The shipped bearing is one."""
-    assert list(beyond_bearings(SHIPPED)) == []
-    assert notes(SHIPPED) == []
-
-
 STATIC = {
     "DN": (
         operated(inner_speed=400_000 * math.pi / 30.0),
         "DN 20 million (bore in mm times speed in rpm) exceeds 3 million",
+    ),
+    "DN without a bore": (
+        replace(operated(inner_speed=8000.0), bearing=replace(SHIPPED.bearing, bore=None)),
+        "DN 4.97 million (pitch diameter in mm times speed in rpm)",
     ),
     "race friction": (
         replace(SHIPPED, film=replace(SHIPPED.film, race_friction=1.9)),
@@ -56,21 +55,15 @@ STATIC = {
 
 
 @pytest.mark.parametrize("case", STATIC)
-def test_a_number_beyond_real_bearings_draws_one_note(case: str) -> None:
-    """With the number and its limit."""
+def test_a_number_beyond_real_bearings_draws_one_note(case: str):
+    """With the number and its limit; the shipped bearing draws none."""
     study, words = STATIC[case]
     (note,) = beyond_bearings(study)
     assert words in note
+    assert list(beyond_bearings(SHIPPED)) == notes(SHIPPED) == []
 
 
-def test_without_a_bore_the_pitch_diameter_stands_for_it() -> None:
-    """A study need not give its bore."""
-    bare = replace(operated(inner_speed=8000.0), bearing=replace(SHIPPED.bearing, bore=None))
-    (note,) = beyond_bearings(bare)
-    assert "DN 4.97 million (pitch diameter in mm times speed in rpm)" in note
-
-
-def test_the_range_of_cage_masses_holds_real_ones() -> None:
+def test_the_range_of_cage_masses_holds_real_ones():
     """A ring of half a ball's height and 1.7 balls' width of a polymer lies inside it."""
     low, high = plausible_cage_masses(SHIPPED)
     bearing: BallBearing = SHIPPED.bearing
@@ -79,14 +72,14 @@ def test_the_range_of_cage_masses_holds_real_ones() -> None:
     assert 2.0 * low < 1400.0 * volume < 0.7 * high
 
 
-def test_a_pressure_beyond_the_static_limit_and_a_contact_over_the_shoulder() -> None:
+def test_a_pressure_beyond_the_static_limit_and_a_contact_over_the_shoulder():
     """100 kN on the shipped bearing."""
     pressure, shoulder = notes(operated(axial_load=1e5))
     assert "GPa at the inner race exceeds 4.2 GPa, the static limit of ISO 76" in pressure
     assert "beyond a shoulder at 52 deg (assumed height: 0.2 of the ball diameter)" in shoulder
 
 
-def test_balls_that_the_inner_race_hardly_touches_skid() -> None:
+def test_balls_that_the_inner_race_hardly_touches_skid():
     """0.1 N at 15 000 rpm; at standstill nothing skids."""
     (note,) = notes(operated(axial_load=0.1))
     assert note.startswith("13 of 13 balls are almost unloaded: the inner race carries as little as 0.01")
@@ -95,7 +88,7 @@ def test_balls_that_the_inner_race_hardly_touches_skid() -> None:
     assert notes(replace(SHIPPED, operation=still)) == []
 
 
-def test_an_overdamped_impact_is_called_so() -> None:
+def test_an_overdamped_impact_is_called_so():
     """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
     with pytest.warns(ValidityWarning, match=r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every"):
@@ -104,3 +97,56 @@ def test_an_overdamped_impact_is_called_so() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert verbs.restitution(SHIPPED).solution.restitution.restitution_factor > 0.0
+
+
+SOFT = replace(SHIPPED.ranking.candidates[0].material, compressive_strength=100e6)
+FIRM = replace(SOFT, compressive_strength=None)
+ROW = Moved("A", largest_contact_force=50.0, largest_offset=501e-6)
+
+
+STATE = solve(SHIPPED)
+
+
+def test_races_transmit_friction_times_both_loads():
+    """The shipped bearing: f_BT (Q_i + Q_o) = 95.7 N, as another program has it."""
+    assert transmitted_force(STATE) == pytest.approx(95.7, abs=0.05)  # its last digit
+
+
+def test_a_force_beyond_the_races_or_an_offset_beyond_the_land_is_noted():
+    """The largest force of all rows; materials from 20 % beyond the gap of 0.5 mm. Nothing within."""
+    assert list(beyond_motion(STATE, [ROW])) == list(beyond_motion(STATE, [])) == []
+    (note,) = beyond_motion(STATE, [ROW, ROW._replace(name="B", largest_contact_force=275.0)])
+    assert "275 N" in note
+    assert "95.7 N" in note
+    rows = [ROW._replace(largest_offset=599e-6), ROW._replace(name="B", largest_offset=852e-6)]
+    (note,) = beyond_motion(STATE, rows)
+    assert note.startswith("B: the cage centre reaches 852 um, beyond the land at 500 um")
+
+
+def made_of(**walls):
+    """The shipped study with candidates of these names and materials."""
+    one = SHIPPED.ranking.candidates[0]
+    candidates = tuple(replace(one, name=name, material=wall) for name, wall in walls.items())
+    return replace(SHIPPED, ranking=replace(SHIPPED.ranking, candidates=candidates))
+
+
+def test_pressure_in_a_pocket_is_hertz_of_a_ball_on_a_flat():
+    r"""By the other form of the law, :math:`p_0^3 = 6 F E^{*2} / (\pi^3 R^2)`."""
+    bearing, force = SHIPPED.bearing, 60.0
+    ball = bearing.ball_material
+    each = [(1 - one.poisson_ratio**2) / one.elastic_modulus for one in (ball, SOFT)]
+    cubed = 6 * force / sum(each) ** 2 / (math.pi**3 * (bearing.ball_diameter / 2) ** 2)
+    # the same law in another form: rounding of two roots
+    assert pocket_pressure(bearing, SOFT, force) == pytest.approx(cubed ** (1 / 3), rel=1e-12)
+
+
+def test_a_pocket_that_yields_is_noted_if_its_strength_is_known():
+    """From 1.6 times the strength on; the other candidate states none."""
+    study, rows = made_of(soft=SOFT, firm=FIRM), [ROW._replace(name="soft"), ROW._replace(name="firm")]
+    pressure = pocket_pressure(study.bearing, SOFT, 50.0)
+    for share, notes in ((1.59, 0), (1.61, 1)):
+        wall = replace(SOFT, compressive_strength=pressure / share)
+        assert len(list(beyond_motion(replace(STATE, study=made_of(soft=wall, firm=FIRM)), rows))) == notes
+    (note,) = beyond_motion(replace(STATE, study=study), rows)
+    assert f"soft {float(f'{pressure:.2g}') / 1e6:.0f} MPa against 160 MPa" in note
+    assert "firm" not in note

@@ -2,12 +2,16 @@
 
 import math
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from separatrix.cage import Judgement, Verdict, judge
+from separatrix.cage import CageMotion, Judgement, Verdict, judge
 from separatrix.chain.solution import solve
+from separatrix.draws import Case
 from separatrix.errors import InputError
+from separatrix.ledger import NAME, Ledger
 from separatrix.limits import RestitutionThreshold
 from separatrix.ranking import rank, ranks
 from separatrix.ranking.lowest import (
@@ -20,6 +24,7 @@ from separatrix.ranking.lowest import (
     with_scatter,
 )
 from separatrix.ranking.order import margin_interval, same_rank
+from separatrix.ranking.rank import _row
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
 from separatrix.runner import Interrupted, Runner
@@ -42,46 +47,37 @@ def asked(*candidates, environments=("air",)):
     )
 
 
-def judgement(verdict):
-    """A verdict with evidence that the sentences do not use."""
-    evidence = dict.fromkeys((f.name for f in fields(Judgement)), 0.0)
-    return Judgement(**{**evidence, "verdict": verdict, "reason": "So it is."})
+def judgement(**given):
+    """A verdict whose evidence is 0 where it is not given, without the checks of a real one."""
+    one = object.__new__(Judgement)
+    values = dict.fromkeys((f.name for f in fields(Judgement)), 0.0)
+    values |= {"verdict": Verdict.STABLE, "cage_motion": next(iter(CageMotion)), "reason": "So it is."}
+    for name, value in (values | {"pocket_impact_shares": (0.0,) * 3} | given).items():
+        object.__setattr__(one, name, value)
+    return one
 
 
 def ranked(name, stiffness, eta, threshold, half):
     """A candidate with this threshold and the half width of its interval."""
-    return Ranked(
-        name=name,
-        friction=0.1,
-        friction_error=None,
-        friction_deviation=None,
-        friction_scatter_assumed=False,
-        extrapolation=(),
-        ball_cage_stiffness=stiffness,
-        restitution_factor=eta,
-        restitution_threshold=threshold,
-        restitution_threshold_low=threshold - half,
-        restitution_threshold_high=threshold + half,
-        margin=threshold - eta,
-        within_reach=True,
-        judgement=judgement(Verdict.STABLE),
-        reason="",
-    )
+    values = dict.fromkeys((f.name for f in fields(Ranked)), None) | {"extrapolation": (), "reason": ""}
+    ends = {"restitution_threshold_low": threshold - half, "restitution_threshold_high": threshold + half}
+    values |= {"name": name, "ball_cage_stiffness": stiffness, "restitution_factor": eta, **ends}
+    values |= {"restitution_threshold": threshold, "margin": threshold - eta, "judgement": judgement()}
+    return Ranked(**values)
 
 
-def test_ties_share_the_lowest_rank():
-    """Two overlap, the third does not."""
-    assert ranks([(0.8, 0.7, 0.9), (0.75, 0.65, 0.85), (0.3, 0.2, 0.4)]) == [1, 1, 3]
-
-
-def test_a_chain_of_small_steps_does_not_tie_the_first_with_the_last():
-    """Each overlaps its neighbour; the third does not reach the first and leads its own group."""
-    assert ranks([(0.80, 0.7, 0.9), (0.65, 0.55, 0.75), (0.5, 0.4, 0.6)]) == [1, 1, 3]
-
-
-def test_equal_thresholds_without_scatter_tie():
-    """Intervals that touch are enough."""
-    assert ranks([(0.5, 0.5, 0.5), (0.5, 0.5, 0.5), (0.4, 0.4, 0.4)]) == [1, 1, 3]
+@pytest.mark.parametrize(
+    "thresholds",
+    [
+        [(0.8, 0.7, 0.9), (0.75, 0.65, 0.85), (0.3, 0.2, 0.4)],
+        [(0.80, 0.7, 0.9), (0.65, 0.55, 0.75), (0.5, 0.4, 0.6)],
+        [(0.5, 0.5, 0.5), (0.5, 0.5, 0.5), (0.4, 0.4, 0.4)],
+    ],
+    ids=["overlap", "a chain of small steps does not tie first and last", "touch"],
+)
+def test_ties_share_the_lowest_rank(thresholds):
+    """Two overlap; the third does not reach the first and leads its own group."""
+    assert ranks(thresholds) == [1, 1, 3]
 
 
 def test_on_one_curve_frictions_tell_who_issame_rank():
@@ -99,10 +95,8 @@ def test_where_eta_differs_the_margin_ranks():
     given = (("A", 1e6, 0.5, 0.9), ("B", 3e6, 0.1, 0.8), ("C", 2e6, 0.3, 0.9))
     rows = [ranked(name, stiffness, eta, t, 0.02) for name, stiffness, eta, t in given]
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
-    places = ranks(
-        [margin_interval(row) for row in rows], lambda i, leader: same_rank(rows[i], rows[leader], known)
-    )
-    assert places == [3, 1, 2]
+    margins = [margin_interval(row) for row in rows]
+    assert ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known)) == [3, 1, 2]
 
 
 def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
@@ -113,24 +107,20 @@ def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
     assert not may_be_lower(MeanFriction(at * 1.0001, at * 0.01), leader)
 
 
-def test_the_mean_takes_the_measured_environments_only():
-    """A blank of the table is absent, never 0."""
+def test_a_mean_over_environments_is_of_the_measured_ones():
+    """A blank of the table is absent, never 0; its error is half the root of the sum of squares of two."""
     assert overall([None, Friction(mean=0.2), Friction(mean=0.4)]).mean == pytest.approx(0.3)
     assert overall([None, None]) is None
-
-
-def test_the_error_of_a_mean_over_environments_falls_with_their_number():
-    """Half the root of the sum of squares of two; rounding."""
     both = [Friction(mean=0.2, standard_deviation=0.03, count=9), Friction(mean=0.4, standard_error=0.04)]
-    assert overall(both).error == pytest.approx(math.hypot(0.01, 0.04) / 2, rel=1e-12)
+    assert overall(both).error == pytest.approx(math.hypot(0.01, 0.04) / 2, rel=1e-12)  # rounding
 
 
 def test_scatter_of_the_friction_becomes_a_standard_error():
     """Standard deviation over the root of the count; without a count the deviation itself."""
-    assert measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).error == pytest.approx(0.01)
     assert measured(Friction(mean=0.12, standard_deviation=0.02)).error == pytest.approx(0.02)
-    low, high = measured(Friction(mean=0.12, standard_deviation=0.02, count=4)).interval()
-    assert (low, high) == pytest.approx((0.12 - 0.0196, 0.12 + 0.0196))
+    found = measured(Friction(mean=0.12, standard_deviation=0.02, count=4))
+    assert found.error == pytest.approx(0.01)
+    assert found.interval() == pytest.approx((0.12 - 0.0196, 0.12 + 0.0196))
 
 
 def test_outside_the_tests_a_mean_is_known_less_well():
@@ -150,24 +140,23 @@ def test_the_papers_word_is_printed_where_it_differs():
     """Stable below 0.6, or unstable above it: the paper says the opposite of the verdict."""
     assert disagreement(0.5, Verdict.STABLE) == "By the paper's limit (eta < 0.6) it would be rejected."
     assert disagreement(0.7, Verdict.UNSTABLE) == "By the paper's limit (eta < 0.6) it would be kept."
-    assert disagreement(0.7, Verdict.STABLE) == ""
-    assert disagreement(0.5, Verdict.UNSTABLE) == ""
-    assert disagreement(0.5, Verdict.UNDECIDED) == ""
+    for eta, verdict in ((0.7, Verdict.STABLE), (0.5, Verdict.UNSTABLE), (0.5, Verdict.UNDECIDED)):
+        assert disagreement(eta, verdict) == ""
 
 
-def test_candidates_of_one_verdict_have_one_reason():
-    """The numbers stand in the columns beside it; two frictions with the same course of runs read alike."""
-    some = [RestitutionThreshold(value=at, low=0.1, high=0.9) for at in (0.65, 0.7)]
-    assert [reason(one, judgement(Verdict.STABLE)) for one in some] == ["So it is."] * 2
-
-
-def test_a_reason_without_a_threshold_says_so():
-    """Stable at no restitution factor, or at any."""
-    nowhere = RestitutionThreshold(value=0.0, low=0.0, high=0.0)
-    said = reason(nowhere, judgement(Verdict.UNSTABLE))
-    assert said == "Stable at no restitution factor above 0. So it is."
-    anywhere = RestitutionThreshold(value=1.0, low=1.0, high=1.0)
-    assert reason(anywhere, judgement(Verdict.STABLE)) == "Stable at any restitution factor. So it is."
+@pytest.mark.parametrize(
+    ("threshold", "verdict", "said"),
+    [
+        ((0.65, 0.1, 0.9), Verdict.STABLE, "So it is."),
+        ((0.7, 0.1, 0.9), Verdict.STABLE, "So it is."),
+        ((0.0, 0.0, 0.0), Verdict.UNSTABLE, "Stable at no restitution factor above 0. So it is."),
+        ((1.0, 1.0, 1.0), Verdict.STABLE, "Stable at any restitution factor. So it is."),
+    ],
+)
+def test_a_reason_without_a_threshold_says_so(threshold, verdict, said):
+    """The numbers stand in the columns beside it: candidates of one verdict read alike."""
+    found = RestitutionThreshold(**dict(zip(("value", "low", "high"), threshold, strict=True)))
+    assert reason(found, judgement(verdict=verdict)) == said
 
 
 def test_a_missing_measurement_is_shown_as_missing():
@@ -230,8 +219,8 @@ def test_the_number_of_threads_changes_nothing():
     assert rank(study, runner=Runner(jobs=1)) == rank(study, runner=Runner(jobs=2))
 
 
-def test_an_interrupt_leaves_a_ranking_that_says_so():
-    """A verdict that was finished stays, what was not has that reason, and complete is False."""
+def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):
+    """What was finished stays, what was not has that reason; with its ledger the rest gives the whole."""
 
     def stop(done, total):
         if done == 1:
@@ -239,8 +228,9 @@ def test_an_interrupt_leaves_a_ranking_that_says_so():
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
     long = replace(QUICK, runs=512)  # the second verdict is under way when the first is told
+    study, ledger = quick_study(ranking=two, stability=long), Ledger(tmp_path / NAME)
     with pytest.raises(Interrupted) as caught:
-        rank(quick_study(ranking=two, stability=long), runner=Runner(progress=stop))
+        rank(study, runner=Runner(progress=stop, ledger=ledger))
     found = caught.value.finished
     assert not found.complete
     a, b = sorted(found.overall, key=lambda row: row.name)
@@ -249,6 +239,9 @@ def test_an_interrupt_leaves_a_ranking_that_says_so():
     assert a.judgement is not None
     assert a.reason.endswith("Its threshold: interrupted before this was computed.")
     assert (b.friction, b.judgement, b.reason) == (0.2, None, "interrupted before this was computed")
+    assert repr(rank(study, runner=Runner(ledger=ledger))) == repr(rank(study))
+    assert ledger.taken > 0
+    ledger.close()
 
 
 def test_each_candidate_has_the_stiffness_of_its_own_pocket():
@@ -284,3 +277,18 @@ def test_a_study_without_candidates_is_refused():
     """One line with the section that is missing."""
     with pytest.raises(InputError, match=r"lacks the section \[ranking\]"):
         rank(quick_study(ranking=None))
+
+
+@pytest.mark.parametrize("bad", [np.inf, np.nan])
+def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
+    """Every number of it is absent, so that the answer can be written."""
+    eta = SimpleNamespace(restitution_factor=0.3)
+    question = SimpleNamespace(stiffness={"A": 1e6}, cages={1e6: SimpleNamespace(restitution=eta)})
+    evidence = judgement(largest_contact_force=float(bad))
+    found = SimpleNamespace(judgements={(1e6, 0.1): evidence}, points={})
+    row = _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01), None)
+    assert isinstance(row, NotFinished)
+    assert row.judgement is None
+    assert row.reason == (
+        f"no verdict: largest contact force is {float(bad)}. The inputs are far from those of a bearing"
+    )

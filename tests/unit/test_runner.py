@@ -7,7 +7,6 @@ import os
 import signal
 import sqlite3
 import subprocess
-import sys
 import threading
 import time
 import zlib
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import COMMAND, pieces
 
 from separatrix.cage import Ensemble, run_ensemble
 from separatrix.chain.solution import solve
@@ -23,7 +23,6 @@ from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
 from separatrix.limits import stability_curve
-from separatrix.ranking import NotFinished, rank
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study_file import read_study
 
@@ -155,29 +154,20 @@ def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("settings", "cage", "how"),
     [
-        {"settings": {"seed": 5}},
-        {"settings": {"duration": 0.02}},
-        {"settings": {"ball_scatter": 0.5}},
-        {"cage": {"mass": CAGE.mass * (1.0 + 1e-15)}},
-        {"cage": {"ball_cage_friction": 0.3}},
-        {"asked": {"kicks": (0.7,)}},
-        {"asked": {"runs": 3}},
-        {"asked": {"first_run": 1}},
+        *[(change, {}, {}) for change in ({"seed": 5}, {"duration": 0.02}, {"ball_scatter": 0.5})],
+        *[({}, change, {}) for change in ({"mass": CAGE.mass * (1.0 + 1e-15)}, {"ball_cage_friction": 0.3})],
+        *[({}, {}, change) for change in ({"kicks": (0.7,)}, {"runs": 3}, {"first_run": 1})],
     ],
     ids=str,
 )
-def test_runs_are_taken_only_for_the_same_question(tmp_path, change):
+def test_runs_are_taken_only_for_the_same_question(tmp_path, settings, cage, how):
     """A change of anything that a run depends on: nothing is taken."""
     ledger = Ledger(tmp_path / NAME)
     asked = {"kicks": (0.5,), "runs": 2, "first_run": 0}
     Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
-    cage, settings = (
-        replace(CAGE, **change.get("cage", {})),
-        replace(QUICK, **change.get("settings", {})),
-    )
-    Runner(ledger=ledger).ensemble(cage, settings, **asked | change.get("asked", {}))
+    Runner(ledger=ledger).ensemble(replace(CAGE, **cage), replace(QUICK, **settings), **asked | how)
     assert ledger.taken == 0
     Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     assert ledger.taken == 2
@@ -228,26 +218,6 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path):
     assert path.read_text() == "mine" * 1000
 
 
-def test_an_interrupted_ranking_says_what_is_missing(tmp_path):
-    """What was finished is in the rows, the rest says so; going on gives the whole ranking."""
-    study = read_study("momentum-wheel")
-    study = replace(study, stability=replace(study.stability, runs=64, duration=0.01))
-    ledger = Ledger(tmp_path / NAME)
-
-    def interrupt(done, total):
-        raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as caught:
-        rank(study, runner=Runner(progress=interrupt, ledger=ledger))
-    part = caught.value.finished
-    assert part.complete is False
-    assert any(isinstance(row, NotFinished) for row in part.overall)
-    whole = rank(study, runner=Runner(ledger=ledger))
-    assert ledger.taken > 0
-    assert repr(whole) == repr(rank(study))
-    ledger.close()
-
-
 STUDY = """
 extends = "momentum-wheel"
 [stability]
@@ -265,28 +235,15 @@ LONG_VERBS = {
 }
 
 
-def finished(folder: Path) -> int:
-    """Return how many pieces are in the ledger of a folder that another process may write."""
-    try:
-        with sqlite3.connect(f"file:{folder / NAME}?mode=ro", uri=True) as connection:
-            found: int = connection.execute("SELECT count(*) FROM piece").fetchone()[0]
-        return found
-    except sqlite3.OperationalError:
-        return 0
-
-
 @pytest.mark.parametrize("verb", LONG_VERBS)
 def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
     """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(STUDY)
     call = [verb, "s.toml", *LONG_VERBS[verb], "--json", "--jobs", "1"]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "separatrix", *call, "--out", "k"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
-    while finished(tmp_path / "k") < 3 and process.poll() is None:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    process = subprocess.Popen([*COMMAND, *call, "--out", "k"], **pipes)
+    while pieces(tmp_path / "k") < 3 and process.poll() is None:
         time.sleep(0.02)
     process.kill()
     process.communicate()

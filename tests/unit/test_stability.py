@@ -18,7 +18,6 @@ from separatrix.limits import (
     Response,
     Side,
     cage_at,
-    closed_hard_limit,
     critical_friction,
     limits,
     restitution_threshold,
@@ -31,6 +30,8 @@ from separatrix.present.text.stability import curve
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
+
+SHIPPED = solve(read_study("cryogenic-turbopump"))
 
 
 def response(probability, runs=64):
@@ -96,12 +97,10 @@ def known_counter(cage, settings, seed):
 
 def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
     """Where algebra says: the mean of 16, each good to 6 %, lies within 4 %; a fifth would be 10 % off."""
-    cage = solve(read_study("cryogenic-turbopump")).cage
+    cage = SHIPPED.cage
     settings = StabilitySettings(kicks=(0.5,), runs=256)
-    found = [
-        critical_friction(cage, 0.5, settings, counter=known_counter(cage, settings, seed))
-        for seed in range(16)
-    ]
+    counters = [known_counter(cage, settings, seed) for seed in range(16)]
+    found = [critical_friction(cage, 0.5, settings, counter=one) for one in counters]
     for end, at in (("_low", 0.12 / 9 ** (1 / 8)), ("", 0.12), ("_high", 0.12 * 9 ** (1 / 8))):
         mean = np.mean([getattr(point, f"critical_friction{end}") for point in found])
         assert mean == pytest.approx(at, rel=0.04)
@@ -109,7 +108,7 @@ def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
 
 def at_three_kicks(*probabilities):
     """Critical friction where the probability of each kick is known: 0.2, 0.5 and 1 m/s."""
-    cage, kicks = solve(read_study("cryogenic-turbopump")).cage, (0.2, 0.5, 1.0)
+    cage, kicks = SHIPPED.cage, (0.2, 0.5, 1.0)
     settings = StabilitySettings(kicks=kicks, reference_kick=0.5, runs=256)
     counter, looks = GrowthCounter(cage, settings), [response(known) for known in probabilities]
     counter.count = lambda _, f, kick, *, first_run, runs: looks[kicks.index(kick)]._look(f, first_run, runs)
@@ -121,36 +120,37 @@ def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
     point = at_three_kicks(*(logistic(middle, 8.0) for middle in (0.24, 0.12, 0.06)))
     assert point.low_scatter_low < 0.06 / 9 ** (1 / 8) < point.low_scatter_high
     assert point.high_scatter_low < 0.24 * 9 ** (1 / 8) < point.high_scatter_high
-    lower, upper = (
-        point.low_scatter_high / point.low_scatter_low,
-        point.high_scatter_high / point.high_scatter_low,
-    )
+    lower = point.low_scatter_high / point.low_scatter_low
+    upper = point.high_scatter_high / point.high_scatter_low
     # A ladder step of 10 % is 0.8 of P's width, 1/8: where the runs fall on it makes 21 % here. A third of
     # the runs, those of the first look, would make an interval 70 % wider.
     assert math.log(upper) == pytest.approx(math.log(lower), rel=0.3)
     assert point.kick_critical_friction[1] == point.critical_friction
 
 
-def test_one_kick_that_grows_without_friction_leaves_the_band_without_a_lower_end():
-    """There is no friction below which nine in ten runs die from every kick, whatever the others do."""
-    usual = logistic(0.12, 8.0)
-    point = at_three_kicks(usual, usual, lambda f: max(0.3, usual(f)))
-    assert point.critical_friction is not None
-    assert (point.critical_friction_low, point.low_scatter_low, point.low_scatter_high) == (None, None, None)
-    assert point.reason == "10% of the runs from 1 m/s whirl even at zero pocket friction"
+USUAL = logistic(0.12, 8.0)
 
 
-def test_one_kick_that_never_grows_leaves_the_band_without_an_upper_end():
-    """There is no friction above which nine in ten runs whirl from every kick, whatever the others do."""
-    usual = logistic(0.12, 8.0)
-    point = at_three_kicks(lambda f: min(0.7, usual(f)), usual, usual)
+@pytest.mark.parametrize(
+    ("kicks", "end", "reason"),
+    [
+        (
+            (USUAL, USUAL, lambda f: max(0.3, USUAL(f))),
+            *("low", "10% of the runs from 1 m/s whirl even at zero pocket friction"),
+        ),
+        (
+            (lambda f: min(0.7, USUAL(f)), USUAL, USUAL),
+            *("high", "under 90% of the runs from 0.2 m/s whirl below friction 1"),
+        ),
+    ],
+)
+def test_one_kick_without_a_tenth_or_nine_leaves_the_band_without_that_end(kicks, end, reason):
+    """It grows without friction, or never: whatever the others do, the band has no lower, or upper, end."""
+    point = at_three_kicks(*kicks)
     assert point.critical_friction is not None
-    assert (point.critical_friction_high, point.high_scatter_low, point.high_scatter_high) == (
-        None,
-        None,
-        None,
-    )
-    assert point.reason == "under 90% of the runs from 0.2 m/s whirl below friction 1"
+    names = (f"critical_friction_{end}", f"{end}_scatter_low", f"{end}_scatter_high")
+    assert [getattr(point, name) for name in names] == [None] * 3
+    assert point.reason == reason
 
 
 def test_an_end_of_the_ladder_that_is_not_clear_is_looked_at_again():
@@ -172,65 +172,59 @@ def test_a_crossing_far_from_every_count_is_counted_at():
     assert sum(spent) < 300  # both ends of the ladder, the bracket, and the 96 that were asked for
 
 
-def test_a_crossing_next_to_no_friction_at_all_is_found_where_it_is():
-    """P rises at 0.005, above the least friction of the ladder, and the guess lies far above both."""
-    found = response(lambda f: float(f > 0.005)).crossing(0.5, 96, 0.04)
-    assert 0.004 < found.low <= 0.005 <= found.high < 0.006
-
-
-def test_no_interval_ends_beyond_the_friction_that_is_searched():
-    """A crossing near friction 1 has its upper end there: nothing was counted beyond."""
-    found = response(logistic(0.95, 5.0)).crossing(0.5, 16, 0.5)
-    assert found.low < 0.95 < found.high == 1.0
-
-
-@pytest.mark.parametrize(("share", "side"), [(0.8, Side.ABOVE), (0.2, Side.BELOW)])
-def test_without_a_crossing_the_side_is_told(share, side):
-    """P that never meets one half lies above or below it; nothing is extrapolated."""
-    assert response(lambda _: share).crossing(0.5, 96, 0.1) is side
-
-
-def test_what_falls_again_is_not_inverted_blindly():
-    """P that is above one half without friction is ABOVE, though it falls below further up."""
-    assert response(lambda f: 0.9 - 0.8 * f).crossing(0.5, 96, 0.9) is Side.ABOVE
-
-
-def test_a_jump_inside_a_cell_leaves_the_whole_cell():
-    """P that steps from 0 to 1 between two places is somewhere between them, and no more is known."""
-    found = response(lambda f: float(f > 0.105)).crossing(0.5, 96, 0.1)
-    assert (found.low, found.high) == (LADDER[cell_of(0.1)], LADDER[cell_of(0.11)])
+@pytest.mark.parametrize(
+    ("probability", "runs", "guess", "low", "high"),
+    [
+        # a rise above the least friction of the ladder, and the guess far above both
+        (lambda f: float(f > 0.005), 96, 0.04, (0.004, 0.005), (0.005, 0.006)),
+        # nothing was counted beyond friction 1
+        (logistic(0.95, 5.0), 16, 0.5, (0.0, 0.95), (1.0, 1.0)),
+        # a step between two places is somewhere between them, and no more is known
+        (lambda f: float(f > 0.105), 96, 0.1, (LADDER[cell_of(0.1)],) * 2, (LADDER[cell_of(0.11)],) * 2),
+        # between nothing and the first step of the ladder
+        (lambda f: float(f > 0.0), 96, 0.1, (0.0, 0.0), (LADDER[1],) * 2),
+    ],
+    ids=["far from the guess", "up to 1", "a jump in a cell", "below the ladder"],
+)
+def test_an_interval_ends_where_runs_were_counted(probability, runs, guess, low, high):
+    """A crossing whose interval is bounded by the places at which P is known."""
+    found = response(probability).crossing(0.5, runs, guess)
+    assert low[0] <= found.low <= low[1]
+    assert high[0] <= found.high <= high[1]
     assert found.low < found.value < found.high
 
 
-def test_below_the_ladder_is_between_nothing_and_its_first_step():
-    """P that is above one half at the smallest friction but not at none: between the two."""
-    found = response(lambda f: float(f > 0.0)).crossing(0.5, 96, 0.1)
-    assert (found.low, found.high) == (0.0, LADDER[1])
+@pytest.mark.parametrize(
+    ("probability", "guess", "side"),
+    [
+        (lambda _: 0.8, 0.1, Side.ABOVE),
+        (lambda _: 0.2, 0.1, Side.BELOW),
+        (lambda f: 0.9 - 0.8 * f, 0.9, Side.ABOVE),
+    ],
+    ids=["above", "below", "falls again"],
+)
+def test_without_a_crossing_the_side_is_told(probability, guess, side):
+    """P that never rises through one half lies above or below it; nothing is extrapolated or inverted."""
+    assert response(probability).crossing(0.5, 96, guess) is side
 
 
-def test_few_runs_are_wasted_far_from_the_crossing():
-    """96 runs near it; 8 at each end, and fewer looks than the ladder has places from a far guess."""
-    found = response(logistic(0.1, 8.0))
-    found.crossing(0.5, 96, 0.9)
-    assert 96 <= sum(count.runs for count in found.counts.values()) <= 96 + 8 * 9
-
-
-def test_runs_are_numbered_one_after_the_other():
-    """No run is counted twice, so that the counts are independent."""
+def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_crossing():
+    """No run is counted twice, so counts are independent: 96 near the crossing, 8 at each end, few looks."""
     asked = []
 
     def look(friction, first_run, runs):
         asked.append((first_run, runs))
         return Count(round(runs * logistic(0.1, 8.0)(friction)) if friction else 0, runs)
 
-    Response(look, 64).crossing(0.5, 96, 0.1)
+    Response(look, 64).crossing(0.5, 96, 0.9)
     ends = [0, *accumulate(runs for _, runs in asked)]
     assert [first for first, _ in asked] == ends[:-1]
+    assert 96 <= ends[-1] <= 96 + 8 * 9
 
 
 def test_unresolved_runs_are_told(monkeypatch):
     """They count as not whirling, and a warning says how many, but for those whose motion falls."""
-    cage = solve(read_study("cryogenic-turbopump")).cage
+    cage = SHIPPED.cage
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 3)
     found.cause[0] = (Cause.NONE, Cause.IMPACTS, Cause.NO_CONTACT, Cause.FALLING)
@@ -240,11 +234,10 @@ def test_unresolved_runs_are_told(monkeypatch):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
 
 
-@pytest.mark.parametrize("eta", [0.05, 0.5, 0.95, 1.0])
+@pytest.mark.parametrize("eta", [0.0, 0.05, 0.5, 0.95, 1.0])
 def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
     """The damping that is set for a factor is read back as that factor; rounding only."""
-    cage = solve(read_study("cryogenic-turbopump")).cage
-    assert own_restitution_factor(cage_at(cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9)
+    assert own_restitution_factor(cage_at(SHIPPED.cage, eta, 0.1)) == pytest.approx(eta, rel=1e-9, abs=1e-12)
 
 
 def test_24_that_agree_are_unanimous():
@@ -255,13 +248,6 @@ def test_24_that_agree_are_unanimous():
     assert Count(0, 8).unanimous(0.5)
     assert not Count(1, 24).unanimous(0.5)
     assert not Count(0, 0).unanimous(0.5)
-
-
-@pytest.mark.parametrize(("balls", "limit"), [(11, 0.1438), (12, 0.2679)])
-def test_hard_dead_impacts_have_a_closed_limit(balls, limit):
-    """tan(pi/22) and tan(pi/12), four digits given; two balls leave the cage a way out."""
-    assert closed_hard_limit(balls) == pytest.approx(limit, abs=5e-5)
-    assert closed_hard_limit(2) is None
 
 
 def traced(height, spread=0.002):
@@ -276,9 +262,18 @@ def traced(height, spread=0.002):
     return {node[0]: one for node, one in found.items()}
 
 
-def test_a_straight_curve_has_the_first_points_only():
-    """Nothing bends, nothing is halved."""
-    assert sorted(traced(lambda eta: 0.3 - 0.2 * eta)) == list(COARSE)
+@pytest.mark.parametrize(
+    ("height", "spread"),
+    [
+        (lambda eta: 0.3 - 0.2 * eta, 0.002),
+        (lambda eta: 0.2 + 0.01 * math.sin(40.0 * eta), 0.02),
+        (lambda _: None, 0.002),
+    ],
+    ids=["straight", "bends by less than its scatter", "no boundary"],
+)
+def test_a_curve_that_does_not_bend_has_the_first_points_only(height, spread):
+    """Nothing is halved."""
+    assert sorted(traced(height, spread)) == list(COARSE)
 
 
 def test_points_stand_where_the_curve_bends():
@@ -304,16 +299,6 @@ def test_the_followed_curve_is_nowhere_far_from_the_true_one(height, spread):
     for eta in np.linspace(0.0, 1.0, 1001):
         line = np.interp(eta, etas, [found[at].critical_friction for at in etas])
         assert abs(line - height(eta)) < 2.0 * spread
-
-
-def test_scatter_alone_adds_no_points():
-    """What bends by less than its interval is not followed."""
-    assert sorted(traced(lambda eta: 0.2 + 0.01 * math.sin(40.0 * eta), spread=0.02)) == list(COARSE)
-
-
-def test_where_there_is_no_boundary_no_points_are_added():
-    """Unstable without friction at every restitution factor: the first points say so."""
-    assert sorted(traced(lambda _: None)) == list(COARSE)
 
 
 def test_an_end_of_the_boundary_is_followed():
@@ -347,40 +332,31 @@ def point(eta, f, spread=0.01, side=Side.ABOVE):
 
 
 POINTS = [point(0.0, 0.4), point(0.5, 0.2), point(1.0, 0.1)]
+WAVERS = [point(0.0, 0.4), point(0.3, 0.2), point(0.6, 0.3), point(1.0, 0.1)]
+GROWS = [point(0.0, 0.4), point(0.5, None, side=Side.ABOVE), point(1.0, None, side=Side.ABOVE)]
+NEVER = [point(0.0, None, side=Side.BELOW), point(1.0, None, side=Side.BELOW)]
 
 
 @pytest.mark.parametrize(
-    ("friction", "eta"),
-    [(0.5, 0.0), (0.4, 0.0), (0.3, 0.25), (0.2, 0.5), (0.15, 0.75), (0.1, 1.0), (0.05, 1.0)],
+    ("points", "friction", "eta"),
+    [
+        *((POINTS, 0.5, 0.0), (POINTS, 0.4, 0.0), (POINTS, 0.3, 0.25), (POINTS, 0.2, 0.5)),
+        *((POINTS, 0.15, 0.75), (POINTS, 0.1, 1.0), (POINTS, 0.05, 1.0)),
+        (WAVERS, 0.25, 0.225),  # the end of the stable stretch that starts at 0
+        (GROWS, 0.2, 0.25),  # above one half without friction the critical one counts as 0
+        (GROWS, 0.0, 0.5),
+        (NEVER, 0.9, 1.0),  # below one half throughout it counts as the top of the search
+    ],
 )
-def test_a_threshold_is_where_the_curve_has_the_friction(friction, eta):
+def test_a_threshold_is_where_the_curve_first_has_the_friction(points, friction, eta):
     """Straight lines between points; 0 if never stable, 1 if stable even on gripped balls; rounding."""
-    assert restitution_threshold(POINTS, friction).value == pytest.approx(eta, abs=1e-12)
+    assert restitution_threshold(points, friction).value == pytest.approx(eta, abs=1e-12)
 
 
 def test_the_interval_of_a_threshold_comes_from_that_of_the_curve():
     """A band of 0.01 in friction is 0.025 in eta on the first line, which falls 0.4 a unit; rounding."""
     found = restitution_threshold(POINTS, 0.3)
     assert (found.low, found.high) == pytest.approx((0.225, 0.275), abs=1e-12)
-
-
-def test_where_the_curve_wavers_the_first_fall_counts():
-    """The threshold is the end of the stable stretch that starts at 0."""
-    points = [point(0.0, 0.4), point(0.3, 0.2), point(0.6, 0.3), point(1.0, 0.1)]
-    assert restitution_threshold(points, 0.25).value == pytest.approx(0.225)
-
-
-def test_a_cage_that_grows_without_friction_is_stable_nowhere_beyond():
-    """Where P is above one half at no friction the critical friction counts as 0, and none is below it."""
-    points = [point(0.0, 0.4), point(0.5, None, side=Side.ABOVE), point(1.0, None, side=Side.ABOVE)]
-    assert restitution_threshold(points, 0.2).value == pytest.approx(0.25)
-    assert restitution_threshold(points, 0.0).value == pytest.approx(0.5)
-
-
-def test_a_cage_that_never_grows_is_stable_throughout():
-    """Where P stays below one half the critical friction counts as the top of the search."""
-    points = [point(0.0, None, side=Side.BELOW), point(1.0, None, side=Side.BELOW)]
-    assert restitution_threshold(points, 0.9).value == 1.0
 
 
 def test_thresholds_are_solved_over_all_of_zero_to_one():
@@ -392,12 +368,8 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
 
 def test_the_report_says_between_which_frictions_the_kick_decides():
     """The band at the bearing's own restitution factor in words; what is missing has its reason."""
-    here = CriticalFriction(
-        restitution_factor=0.27,
-        critical_friction_high=0.258,
-        kick_critical_friction=(0.19, None),
-        reason="so",
-    )
+    kicks = {"kick_critical_friction": (0.19, None), "reason": "so"}
+    here = CriticalFriction(restitution_factor=0.27, critical_friction_high=0.258, **kicks)
     point = CriticalFriction(restitution_factor=0.5, critical_friction_low=0.1, critical_friction_high=0.2)
     limit = SimpleNamespace(restitution_factor=0.5, critical_friction=0.07)
     found = SimpleNamespace(
@@ -417,7 +389,7 @@ def test_the_hard_limit_does_not_depend_on_the_kick(kick, monkeypatch):
 
     So a reference kick that would take a minute to cross a pocket has a limit too.
     """
-    cage = solve(read_study("cryogenic-turbopump")).cage_with(0.1)
+    cage = SHIPPED.cage_with(0.1)
     usual = limits.hard_limit(cage, 0.3, StabilitySettings(reference_kick=1e-5, runs=8))
     monkeypatch.setattr(limits, "ANY_KICK", kick)
     assert usual.critical_friction is not None
@@ -434,7 +406,7 @@ def test_the_hard_limit_takes_runs_of_its_own_seed(monkeypatch):
         return SimpleNamespace(count=lambda _: [whirling])
 
     monkeypatch.setattr(limits, "run_hard_ensemble", count)
-    cage = solve(read_study("cryogenic-turbopump")).cage_with(0.1)
+    cage = SHIPPED.cage_with(0.1)
     limits.hard_limit(cage, 0.5, StabilitySettings(seed=7, runs=64))
     assert {seed for seed, *_ in taken} == {7}
     numbers = [(friction, run) for _, friction, runs in taken for run in runs]

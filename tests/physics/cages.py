@@ -1,0 +1,104 @@
+"""Cages, bearings and ensembles from which the tests of several files start; short ways to run a cage."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from separatrix.cage import Cause, Ensemble, History, PlanarCage, RunOutcome, follow
+from separatrix.study import BallBearing, Guidance, Material, PocketShape
+
+AT_REST = PlanarCage(
+    mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,
+    inner_speed=1500.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=2000.0,
+    ball_cage_friction=0.1,
+)  # fmt: skip
+"""A thin ring in a ball set at rest, without a land."""
+
+SMALL = replace(AT_REST, moment_of_inertia=0.05 * 0.03**2, pitch_radius=0.03, inner_speed=1000.0)
+"""The same in a smaller bearing."""
+
+TURNING = PlanarCage(
+    mass=0.025, moment_of_inertia=0.025 * 0.0325**2, ball_count=13, pitch_radius=0.0325, cage_speed=670.0,
+    inner_speed=1570.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=800.0,
+    ball_cage_friction=0.12,
+)  # fmt: skip
+"""A thin ring of 25 g in a turbopump's ball set, without a land."""
+
+ON_A_LAND = replace(TURNING, guidance=Guidance.OUTER, land_clearance=1e-3)
+
+UNEVEN = tuple(2 * math.pi * (j + 0.15 * math.sin(5 * j)) / 13 for j in range(13))
+WAVES = {"orbital_cosines": (0.3, 0.1), "orbital_sines": (-0.1, 0.2)}
+RAMP = {"ramp_time": 5e-4, "ramp_start": 0.2}
+EVERYTHING = replace(
+    ON_A_LAND, cage_speed=669.0, inner_speed=1570.8, land_clearance=4e-4, land_restitution=0.5,
+    land_out_of_round=2e-5, land_lobes=3, land_count=2, unbalance=1e-6, gravity=9.81, hertz_coefficient=3e8,
+    pocket_shape=PocketShape.CYLINDRICAL, pocket_axial_offset=1e-4, pocket_angles=UNEVEN, **WAVES, **RAMP,
+)  # fmt: skip
+"""Every input of the planar cage at once."""
+
+STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285, density=7650.0)
+BEARING = BallBearing(
+    ball_diameter=11.1125e-3, pitch_diameter=65e-3, ball_count=13, contact_angle=math.radians(25.0),
+    inner_conformity=0.52, outer_conformity=0.53, ball_material=STEEL, ring_material=STEEL,
+)  # fmt: skip
+"""A turbopump's bearing."""
+
+STEEL_218 = Material(name="steel", elastic_modulus=206.84e9, poisson_ratio=0.3, density=7800.0)
+BEARING_218 = BallBearing(
+    ball_diameter=22.23e-3, pitch_diameter=125.26e-3, ball_count=16, contact_angle=math.radians(40.0),
+    inner_conformity=0.523167, outer_conformity=0.523167, ball_material=STEEL_218, ring_material=STEEL_218,
+)  # fmt: skip
+"""The bearing of the rolling-bearing books."""
+
+
+def damping_of(eta: float) -> float:
+    """C_mu at which `AT_REST` has this nominal restitution factor (physics of Eq. 17 as modelled)."""
+    zeta = -math.log(eta) / math.hypot(math.pi, math.log(eta))
+    return math.sqrt(AT_REST.ball_cage_stiffness * AT_REST.mass) / (2 * zeta)
+
+
+def followed(
+    cage: PlanarCage,
+    duration: float,
+    *,
+    kick: float = 0.5,
+    direction: float = 0.0,
+    lead=None,
+    samples: int = 9,
+) -> History:
+    """Follow a run to its whole duration, its balls in the middle of their pockets unless they lead."""
+    lead = np.zeros(cage.ball_count) if lead is None else lead
+    whole = {"duration": duration, "until": duration, "samples": samples}
+    return follow(cage, kick=kick, direction=direction, ball_lead=lead, **whole)
+
+
+NOTHING = (
+    *("largest_offset", "mean_offset", "offset_spread", "orbit_speed", "drift_rate", "end_energy"),
+    *("whirl_frequency", "largest_land_force", "energy_imbalance", "pocket_power", "land_power"),
+    *("rubbing_force", "rubbing_speed"),
+)
+KICKS = np.array([0.1, 0.5, 2.0, 4.0, 8.0])
+
+
+def ensemble(rows: object, balls: int = AT_REST.ball_count, **evidence: object) -> Ensemble:
+    """Ensemble made of these outcomes, a row for each kick; evidence is spread over all runs."""
+    outcome = np.array(rows, dtype=np.int64)
+    floats = dict.fromkeys(NOTHING, 0.0) | {
+        "growth_rate": np.where(outcome == RunOutcome.WHIRLS, 9.0, -25.0),
+        "largest_contact_force": 1.0,
+        "followed": 0.3,
+        "judged_from": 0.24,
+    }
+    cause = np.where(
+        outcome == RunOutcome.UNRESOLVED, int(evidence.pop("cause", Cause.FALLING)), int(Cause.NONE)
+    )
+    whole = {"whirl_direction": 0, "land_impacts": 0, "cause": cause}
+    changed = {name: evidence.pop(name) for name in list(evidence) if name in floats | whole}
+    spread = {
+        name: np.broadcast_to(np.asarray(value, dtype=float if name in floats else int), outcome.shape).copy()
+        for name, value in (floats | whole | changed).items()
+    }
+    impacts = np.zeros((*outcome.shape, balls), dtype=np.int64)
+    given = {"kicks": KICKS[: len(outcome)], "pocket_impacts": impacts, "duration": 0.3}
+    return Ensemble(outcome=outcome, **{**spread, **given, **evidence})

@@ -1,0 +1,40 @@
+"""The command line as the tests call it: its document, its refusal in one line, what a job has kept."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import sys
+from pathlib import Path
+
+import pytest
+
+from separatrix.cli import main
+from separatrix.ledger import NAME
+
+COMMAND = [sys.executable, "-m", "separatrix"]
+"""The real command, as a process is started with."""
+
+
+def document(capsys, *arguments: str, status: int = 0) -> dict:
+    """Return the document of a command, which has no NaN in it."""
+    assert main([*arguments, "--json"]) == status
+    return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+
+
+def refused(capsys, *arguments: str) -> str:
+    """Return the line with which a command is refused; nothing is written."""
+    before = sorted(Path().iterdir())
+    assert main(list(arguments)) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n"), len(err) < 600, sorted(Path().iterdir())) == ("", 1, True, before), err
+    return err
+
+
+def pieces(folder: Path) -> int:
+    """Return how many pieces are in the ledger of a folder that another process may write."""
+    try:
+        with sqlite3.connect(f"file:{folder / NAME}?mode=ro", uri=True) as connection:
+            return int(connection.execute("SELECT count(*) FROM piece").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
