@@ -176,4 +176,4 @@ def test_refused_not_run_and_agreed_points_are_distinct():
 def test_the_kick_of_a_map_is_named_unless_it_is_an_axis(x, words):
     """In the title."""
     axes = maps.stability_map(drawn.plane([[0.0]], x_parameter=x)).axes[0]
-    assert axes.get_title().endswith(f"kick {words}")
+    assert f"whirl, kick {words}, at most 16 runs" in axes.get_title()

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from separatrix.present.arrays import dataset, load, save, to_dataframe, to_xarray
     from separatrix.present.json import NotFiniteError, document, plain
-    from separatrix.present.text import report, whereabouts
+    from separatrix.present.text.report import report, whereabouts
 
 _HOME = {
     "json": "NotFiniteError document plain",
     "arrays": "dataset load save to_dataframe to_xarray",
-    "text": "report whereabouts",
+    "text.report": "report whereabouts",
 }
 """Module -> its public names."""
 
