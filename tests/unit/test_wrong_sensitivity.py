@@ -56,7 +56,7 @@ STUDIES = {
     "no count": ("count = 4", "count = 0", "count"),
     "half a count": ("count = 4", "count = 4.5", "count"),
     "an unknown key of a friction": ("count = 4", "counts = 4", "counts"),
-    "a candidate without friction": ("friction = {", "frictions = {", "friction"),
+    "a candidate without friction": ("friction = {", "# friction = {", "lacks: friction"),
     "a film between turned bounds": ('"0.5 um +- 20 %"', '{ between = ["1 um", "0.2 um"] }', "thickness"),
     "a film between one bound": ('"0.5 um +- 20 %"', '{ between = ["1 um"] }', "thickness"),
     "a film of no spread": ('"0.5 um +- 20 %"', '"0.5 um +- 0 %"', "thickness"),
