@@ -14,7 +14,7 @@ JOBS = 2
 
 
 def question(points: int, *, adaptive: bool = False) -> MapQuestion:
-    """The default map of the verb, with so many points along each axis."""
+    """The default map of the verb, with this number of points along each axis."""
     steps = range(points)
     return MapQuestion(
         study=read_study("cryogenic-turbopump"),

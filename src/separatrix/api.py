@@ -214,7 +214,7 @@ def sensitivity(
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[SensitivityAnswer]:
-    """Verdicts over the uncertain inputs, with so many bearings drawn; other parameters as of `stability`."""
+    """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
         needs = "cage", "ranking"
         return _answer(

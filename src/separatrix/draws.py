@@ -108,7 +108,7 @@ class Draws:
         return self.values[:, self.names.index(key)]
 
     def first(self, samples: int) -> Draws:
-        """Return the first so many samples: those that a smaller question would have drawn."""
+        """Return the first samples: those that a smaller question would have drawn."""
         part = slice(samples)
         return replace(self, values=self.values[part], probabilities=self.probabilities[part])
 

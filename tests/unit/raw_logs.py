@@ -151,5 +151,5 @@ def encoded(lines: Sequence[str], encoding: str, newline: str) -> bytes:
 
 
 def as_written(values: np.ndarray, digits: int = 6) -> np.ndarray:
-    """The numbers that a reader must give back for values written with so many decimals."""
+    """The numbers that a reader must give back for values written with this number of decimals."""
     return np.array([float(f"{value:.{digits}f}") for value in np.asarray(values, float).tolist()])

@@ -97,7 +97,7 @@ def simulate(
     kick, run, seed, duration, ball_scatter
         As in the ensemble: speed of the kick [m/s], number of the run, seed, length [s], scatter [-].
     samples : int
-        At most so many rows, evenly spaced; the memory is bounded by it.
+        Largest number of rows, evenly spaced; the memory is bounded by it.
     until : float, optional
         Time of the last row [s]; by default the duration, or the time up to which the run is judged.
 

@@ -131,9 +131,9 @@ class Terms(Generic[Value]):
 class Series(Terms[Array]):
     """All powers: `w[n].x` is a coefficient, `w.x` the series of one quantity."""
 
-    def __getitem__(self, n: int) -> Terms[float]:
-        """Coefficients of one power of time."""
-        raise NotImplementedError
+    if TYPE_CHECKING:  # numba reads both from the structured array
+
+        def __getitem__(self, n: int) -> Terms[float]: ...
 
 
 class Balls(NamedTuple):
@@ -318,7 +318,7 @@ def samples_for(rows: int, balls: int) -> Samples:
 
 
 def room_for(balls: int, lobes: int) -> Room:
-    """Room for the steps of a cage with so many balls, and lobes of its land."""
+    """Room for the steps of a cage with this number of balls, and of lobes of its land."""
     return Room(
         sums=records(Sums, 1)[0],
         c=np.zeros(ORDER + 1),

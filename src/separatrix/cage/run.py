@@ -65,7 +65,7 @@ class Books(NamedTuple):
 
 
 def books_for(balls: int, lobes: int, runs: int, most: int) -> Books:
-    """Books of so many runs of at most so many looks each."""
+    """Books of a number of runs with at most `most` looks each."""
     return Books(
         state=records(State, runs),
         ledger=records(Ledger, runs),

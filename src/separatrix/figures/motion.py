@@ -20,7 +20,7 @@ BEYOND = 2.0
 """Half the play over the land's gap from which the pockets are left out of the picture."""
 
 NEVER = 1e3
-"""A boundary so many times the play away, along the radius of a single ball, does not exist."""
+"""A boundary farther away than this multiple of the play, along the radius of one ball, does not exist."""
 
 LAND: Look = {"color": VERMILION, "lw": 3.5, "alpha": 0.45, "zorder": 1.5}
 POCKETS: Look = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5)), "zorder": 1.5}

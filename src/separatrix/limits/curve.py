@@ -62,7 +62,7 @@ ETA = "restitution_factor"
 FLAT: Ratio = 0.002
 """Friction by which a line may miss a point however well that is known."""
 
-HERE = -1.0
+OWN_DAMPING = -1.0
 """Stands in the row of work for the cage's own race damping, beside restitution factors from 0 to 1."""
 
 
@@ -147,15 +147,15 @@ def stability_curve(
     tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
 
     def curve(found: dict[Node, CriticalFriction]) -> StabilityCurve:
-        here = found.pop((HERE, None), None)
+        here = found.pop((OWN_DAMPING, None), None)
         complete = here is not None and tracer.complete(found)
         return curve_of_points(cage, settings, list(found.values()), here=here, complete=complete)
 
-    return runner.work_out(tracer.point, [*tracer.first, (HERE, None)], into=curve, more=tracer.more)
+    return runner.work_out(tracer.point, [*tracer.first, (OWN_DAMPING, None)], into=curve, more=tracer.more)
 
 
 Node = tuple[Ratio, Ratio | None]
-"""A restitution factor (or `HERE`), and a guess of its critical friction."""
+"""A restitution factor (or `OWN_DAMPING`), and a guess of its critical friction."""
 
 
 class Tracer:
@@ -192,15 +192,15 @@ class Tracer:
 
     def point(self, node: Node) -> CriticalFriction:
         """Critical friction at a node; at the cage's own race damping always with its band."""
-        counts, band = self.counter, self.band or node[0] == HERE
-        eta = None if node[0] == HERE else node[0]
+        counts, band = self.counter, self.band or node[0] == OWN_DAMPING
+        eta = None if node[0] == OWN_DAMPING else node[0]
         return critical_friction(counts.cage, eta, counts.settings, counter=counts, band=band, guess=node[1])
 
     def more(self, node: Node, found: Mapping[Node, CriticalFriction]) -> list[Node]:
         """Nodes that are wanted once this one is known."""
-        if self.given or node[0] == HERE:
+        if self.given or node[0] == OWN_DAMPING:
             return []
-        known = {at: point for (at, _), point in found.items() if at != HERE}
+        known = {at: point for (at, _), point in found.items() if at != OWN_DAMPING}
         spans = [(known[low], known[high]) for low, high in finer(node[0], known, bends)]
         return [_between(*span) for span in spans if self._matters(*span)]
 

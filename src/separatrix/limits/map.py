@@ -290,7 +290,7 @@ def _kind(point: MapPoint) -> str:
 
 
 def stopping(runs: int) -> Stopping:
-    """Rule by which points of so many runs are ended early."""
+    """Rule by which points of this number of runs are ended early."""
     agreeing = first_look(runs)
     return Stopping(
         most_runs=runs,

@@ -58,7 +58,7 @@ def _around(at: int, marks: list[int]) -> list[int]:
 
 
 CHECK_EVERY = 20
-"""One in so many of the points that an adaptive map does not want is run nevertheless, as a check."""
+"""Of the points that an adaptive map does not want, one in this number is run nevertheless, as a check."""
 
 At = tuple[float, float]
 

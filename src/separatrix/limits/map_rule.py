@@ -12,7 +12,7 @@ from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.units import Ratio
 
 AGREEING = 6
-"""A point is decided once at least so many runs agree, from the first on; otherwise when it is settled."""
+"""A point is decided once this number of runs agree from the first on; otherwise when it is settled."""
 
 LOOK_AFTER = 2
 """Runs after which a point is looked at again, whose first runs did not agree; more for a very long one."""

@@ -24,7 +24,7 @@ from separatrix.limits import (
     restitution_threshold,
     threshold_factors,
 )
-from separatrix.limits.curve import HERE, Node, height
+from separatrix.limits.curve import OWN_DAMPING, Node, height
 from separatrix.limits.threshold import rising
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, measured, overall
@@ -214,7 +214,7 @@ def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findi
 
     def ranked(results: Mapping[Piece, CriticalFriction | Judgement]) -> Ranking:
         points = {k: _points_of(results, k) for k in question.cages}
-        here = points[question.reference].pop((HERE, None), None)
+        here = points[question.reference].pop((OWN_DAMPING, None), None)
         judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
         drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
@@ -232,7 +232,7 @@ def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findi
 
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
-        [*verdicts, *cases, (question.reference, (HERE, None)), *nodes],
+        [*verdicts, *cases, (question.reference, (OWN_DAMPING, None)), *nodes],
         into=ranked,
         more=lambda piece, results: _more(question, piece, results),
     )

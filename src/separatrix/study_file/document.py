@@ -27,7 +27,7 @@ MOST_NAMED = 20
 WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
 WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 MOST_PROBLEMS = 100
-"""After so many mistakes a file is read no further."""
+"""After this number of mistakes a file is read no further."""
 
 ALTERNATIVES = {
     "bearing": (("radial_clearance",), ("contact_angle",)),

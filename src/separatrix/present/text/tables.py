@@ -68,17 +68,17 @@ def grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Return a pure number with so many decimals, or a dash if it is absent."""
+    """Return a pure number with this number of decimals, or a dash if it is absent."""
     return ABSENT if value is None else f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def significant(value: float | None, digits: int = 4) -> str:
-    """Return a pure number with so many significant digits, or a dash if it is absent."""
+    """Return a pure number with this number of significant digits, or a dash if it is absent."""
     return ABSENT if value is None else f"{float(f'{value:.{digits}g}'):g}"
 
 
 def quantity(value: float | None, unit: str, digits: int | None = None) -> str:
-    """Return a value in a unit a reader likes, rounded to so many digits; a dash if it is absent."""
+    """Return a value in a unit a reader likes, rounded to significant digits; a dash if it is absent."""
     if value is not None and digits is not None:
         value = float(f"{value:.{digits}g}")
     return ABSENT if value is None else format_quantity(value, unit)
