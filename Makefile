@@ -15,6 +15,7 @@ check: .venv/ready docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/mypy --config-file benchmarks/mypy.ini benchmarks
 	$(BIN)/lint-imports
 	$(TESTS)
 

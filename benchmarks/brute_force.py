@@ -74,7 +74,7 @@ def once_each(drawn: DrawnBearings, case: Case, friction: float) -> Ensemble:
 def often(drawn: DrawnBearings, case: Case, friction: float) -> list[Ensemble]:
     """Run each bearing `RUNS` times from each kick of the central one."""
     found = []
-    for states in drawn.states:
+    for states in drawn.solved:
         state = states[case.candidate]
         cage = replace(state.cage, ball_cage_friction=friction)
         settings = replace(state.stability, seed=SEED)

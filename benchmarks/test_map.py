@@ -8,6 +8,7 @@ import pytest
 
 from separatrix.limits.map import stability_map
 from separatrix.limits.map_records import MapAxis, MapQuestion
+from separatrix.runner import Runner
 from separatrix.study_file import read_study
 
 JOBS = 2
@@ -33,7 +34,9 @@ def test_map(benchmark, points, adaptive):
     """The whole map; every kernel compiled before."""
     stability_map(question(2))
     asked = question(points, adaptive=adaptive)
-    found = benchmark.pedantic(stability_map, args=(asked,), kwargs={"jobs": JOBS}, rounds=1, warmup_rounds=0)
+    found = benchmark.pedantic(
+        lambda: stability_map(asked, runner=Runner(jobs=JOBS)), rounds=1, warmup_rounds=0
+    )
     benchmark.extra_info["runs_a_point"] = sum(p.runs for p in found.points) / len(found.points)
     benchmark.extra_info["inferred"] = found.counts["inferred"]
     assert found.complete

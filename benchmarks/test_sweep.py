@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from separatrix import chain
+from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.errors import ValidityWarning
 from separatrix.explore.sweep import Sweep, sweep
 from separatrix.runner import Runner
@@ -24,8 +24,8 @@ def test_sweep_of_the_chain(benchmark: BenchmarkFixture) -> None:
     sweep(study, cases[:2])  # every kernel compiled before
 
     def whole() -> Sweep:
-        chain._bearing.cache_clear()
-        chain._traction.cache_clear()
+        bearing_state.cache_clear()
+        race_traction.cache_clear()
         return sweep(study, cases, runner=Runner(jobs=2))
 
     found = benchmark.pedantic(whole, rounds=3)

@@ -62,10 +62,10 @@ def main() -> None:
     total, spent = 0, [0.0, 0.0]
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         for seed in range(asked.first, asked.first + asked.studies):
-            state = solve(sane_study(seed, Path(folder)), friction=0.1)
+            state = solve(sane_study(seed, Path(folder)))
             streams = [np.random.default_rng((29, seed, k)) for k in range(asked.runs)]
             begun = time.perf_counter()
-            pairs = list(pool.map(lambda rng, s=state: pair(s.cage, s.stability, rng), streams))
+            pairs = list(pool.map(lambda rng, s=state: pair(s.cage_with(0.1), s.stability, rng), streams))
             counts = Counter((short.name, long.name) for short, long, _, _ in pairs)
             changes += counts
             total += len(pairs)

@@ -1,4 +1,4 @@
-"""Time to read raw logs of a million rows, one line per format: ``python benchmarks/raw_logs.py [ROWS]``.
+"""Time to read raw logs of a million rows, one line per format: ``python benchmarks/reading_logs.py [ROWS]``.
 
 Processor seconds of one process, the better of two, from the file on disk to the log in memory.
 """
