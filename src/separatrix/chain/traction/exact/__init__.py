@@ -1,0 +1,1 @@
+"""Rolling contact of two layered half-spaces in three dimensions, with partial slip."""
