@@ -79,21 +79,26 @@ def elliptic_pressure(grid: Grid, *, semi_minor: Metre, semi_major: Metre, max_p
     return np.asarray(mean * (2.0 / 3.0 * math.pi * a * b * p0 / (mean.sum() * grid.cell_area)))
 
 
-def pressed_grid(x: Array, y: Array, pressure: Array) -> tuple[Grid, Array]:
+def pressed_grid(x: Array, y: Array, pressure: Array, refined: int = 1) -> tuple[Grid, Array]:
     """Grid of any one patch of contact, cropped to it, with its pressure, shape (row, column) [Pa].
 
-    A row ends where the straight line through p^2 of its last two whole cells vanishes, as p goes with the
-    root of the distance from the end. Rows of fewer than four cells keep them whole.
+    Each cell is made of `refined` x `refined` cells of the pressure. Towards the end of a row of these the
+    pressure falls with the root of the distance, under a thin soft film with the distance itself: the end is
+    between where the straight lines through the last p^2 and through the last p vanish, by how well each
+    meets the next cell. Rows of fewer than six cells keep them whole.
     """
-    pressed = pressure > 0.0
-    rows, columns = np.flatnonzero(pressed.any(axis=1)), np.flatnonzero(pressed.any(axis=0))
+    n, fine = refined, float(x[1] - x[0])
+    ends = np.array([_row_ends(x, row, fine) for row in pressure])
+    blocks = pressure.reshape(y.size // n, n, x.size // n, n)
+    x, y, p = x.reshape(-1, n).mean(axis=1), y.reshape(-1, n).mean(axis=1), blocks.mean(axis=(1, 3))
+    shares = _inside(x, n * fine, ends[:, 0], ends[:, 1]).reshape(y.size, n, x.size).mean(axis=1)
+    fraction = np.where((p > 0.0) & (shares > SMALLEST_FRACTION), shares, 0.0)
+    rows, columns = (np.flatnonzero((fraction > 0.0).any(axis=axis)) for axis in (1, 0))
     window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     dx, dy = float(x[1] - x[0]), float(y[1] - y[0])
-    x, y, p = x[window[1]], y[window[0]], pressure[window]
-    ends = np.array([_row_ends(x, row, dx) for row in p])
-    fraction = np.where(p > 0.0, _inside(x, dx, ends[:, 0], ends[:, 1]), 0.0)
-    kept = np.where(fraction > 0.0, p, 0.0)
-    return Grid(x=x, y=y, dx=dx, dy=dy, fraction=fraction), kept * (p.sum() / kept.sum())
+    kept = np.where(fraction > 0.0, p, 0.0)[window]
+    grid = Grid(x=x[window[1]], y=y[window[0]], dx=dx, dy=dy, fraction=fraction[window])
+    return grid, kept * (p.sum() / kept.sum())
 
 
 def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
@@ -102,15 +107,23 @@ def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
     if inside.size == 0:
         return 0.0, 0.0
     first, last = inside[0], inside[-1]
-    if inside.size < 4:
+    if inside.size < 6:
         return float(x[first] - 0.5 * dx), float(x[last] + 0.5 * dx)
-    q = pressure * pressure
+    p = pressure
     return (
-        float(x[first + 1] - dx * _steps_to_zero(q[first + 1], q[first + 2])),
-        float(x[last - 1] + dx * _steps_to_zero(q[last - 1], q[last - 2])),
+        float(x[first + 1] - dx * _steps_to_zero(p[first + 1], p[first + 2], p[first + 3])),
+        float(x[last - 1] + dx * _steps_to_zero(p[last - 1], p[last - 2], p[last - 3])),
     )
 
 
-def _steps_to_zero(outer: float, inner: float) -> float:
-    """Cells from the outer one to where the line through both vanishes: at most the end of the next cell."""
-    return min(outer / (inner - outer), 1.5) if inner > outer else 1.5
+def _steps_to_zero(outer: float, middle: float, inner: float) -> float:
+    """Cells from the outer one to the end: at least to its own edge, at most to that of the next cell."""
+    if middle <= outer:
+        return 1.5
+    root, line = outer**2 / (middle**2 - outer**2), outer / (middle - outer)
+    by_root, by_line = (
+        np.sqrt(2.0 * middle**2 - outer**2),
+        2.0 * middle - outer,
+    )  # what they expect further in
+    share = np.clip((inner - by_root) / (by_line - by_root), 0.0, 1.0)
+    return float(np.clip(root + share * (line - root), 0.5, 1.5))
