@@ -19,27 +19,28 @@ from separatrix.chain.traction.exact.flexibility import Body, flexibility
 from separatrix.chain.traction.exact.grid import Grid
 from separatrix.units import Array
 
-BOX = 4.0  # side of the periodic square over the longer side of the contact
-FINE = 500  # points of it over the length of the contact along rolling, and half as many across
-LARGEST_COUNT = 8192
+BOX = 4.0  # sides of the periodic box over those of the contact
+FINE = 500, 128  # points of it over the contact along rolling and across
+LARGEST_COUNT = 4096  # of points along a side
 
 
 def pressure_slip(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Array:
     """W_c at the cell centres, shape (2, row, column) [-]."""
-    sides = np.array([grid.dy * grid.y.size, grid.dx * grid.x.size])
-    side = BOX * sides.max()
-    wanted = side / sides * np.array([FINE // 2, FINE])
-    ny, nx = (fft.next_fast_len(int(min(n, LARGEST_COUNT)), real=True) for n in wanted)
-    y, x = side * (np.arange(ny) / ny - 0.5), side * (np.arange(nx) / nx - 0.5)
+    contact = np.array([grid.dx * grid.x.size, grid.dy * grid.y.size])
+    far = float(_difference(np.zeros(1), bodies)[0])
+    # between unlike bases the field of a dipole reaches far: a square box, else one of the contact's shape
+    sides = BOX * (np.full(2, contact.max()) if far != 0.0 else contact)
+    nx, ny = (fft.next_fast_len(int(min(n, LARGEST_COUNT)), real=True) for n in sides / contact * FINE)
+    dx, dy = sides / (nx, ny)
+    x, y = dx * (np.arange(nx) - 0.5 * nx) + grid.x.mean(), dy * (np.arange(ny) - 0.5 * ny) + grid.y.mean()
     p = _smooth_pressure(grid, pressure, x, y)
-    ky, kx = 2.0 * np.pi * fft.fftfreq(ny, side / ny)[:, None], 2.0 * np.pi * fft.rfftfreq(nx, side / nx)
+    kx, ky = 2.0 * np.pi * fft.rfftfreq(nx, dx), 2.0 * np.pi * fft.fftfreq(ny, dy)[:, None]
     k2 = kx * kx + ky * ky
     k2[0, 0] = 1.0
     waves = fft.rfft2(p, workers=1) * _difference(np.sqrt(k2), bodies) * kx / k2
     along, across = waves * kx, waves * ky
-    # the mean of a dipole's field over a square around it is half of what it encloses
-    along[0, 0] = 0.5 * p.sum() * _difference(np.zeros(1), bodies)[0]
-    places = np.meshgrid((grid.y - y[0]) * ny / side, (grid.x - x[0]) * nx / side, indexing="ij")
+    along[0, 0] = 0.5 * p.sum() * far  # the mean of a dipole's field over a square around it
+    places = np.meshgrid((grid.y - y[0]) / dy, (grid.x - x[0]) / dx, indexing="ij")
     fields = [fft.irfft2(wave, s=(ny, nx), workers=1) for wave in (along, across)]
     return np.array([ndimage.map_coordinates(f, places, order=1) for f in fields])
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from separatrix.units import Array, Metre, Pascal
 
+MEAN_SHAPE = 0.72  # mean over largest pressure of a row, between pi/4 of Hertz and 2/3 of a thin soft film
 SMALLEST_FRACTION = 1e-3  # of a cell's length; cells with less inside are left out
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -85,7 +86,8 @@ def pressed_grid(x: Array, y: Array, pressure: Array, refined: int = 1) -> tuple
     Each cell is made of `refined` x `refined` cells of the pressure. Towards the end of a row of these the
     pressure falls with the root of the distance, under a thin soft film with the distance itself: the end is
     between where the straight lines through the last p^2 and through the last p vanish, by how well each
-    meets the next cell. Rows of fewer than six cells keep them whole.
+    meets the next cell. Rows of fewer than six cells have the length that their mean
+    pressure gives.
     """
     n, fine = refined, float(x[1] - x[0])
     ends = np.array([_row_ends(x, row, fine) for row in pressure])
@@ -107,9 +109,10 @@ def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
     if inside.size == 0:
         return 0.0, 0.0
     first, last = inside[0], inside[-1]
-    if inside.size < 6:
-        return float(x[first] - 0.5 * dx), float(x[last] + 0.5 * dx)
     p = pressure
+    if inside.size < 6:
+        half, middle = dx * p.sum() / (2.0 * MEAN_SHAPE * p.max()), float((x * p).sum() / p.sum())
+        return max(middle - half, x[first] - 0.5 * dx), min(middle + half, x[last] + 0.5 * dx)
     return (
         float(x[first + 1] - dx * _steps_to_zero(p[first + 1], p[first + 2], p[first + 3])),
         float(x[last - 1] + dx * _steps_to_zero(p[last - 1], p[last - 2], p[last - 3])),

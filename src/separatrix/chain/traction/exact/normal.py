@@ -16,7 +16,7 @@ from separatrix.chain.traction.exact.flexibility import Body
 from separatrix.chain.traction.exact.grid import Grid, pressed_grid
 from separatrix.chain.traction.exact.images import Images, influence, pair_images
 from separatrix.chain.traction.exact.operator import SHIFT, spectrum
-from separatrix.errors import ConvergenceError
+from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array, Metre, Newton, Ratio
 
 TOLERANCE = 1e-8  # change of the pressures in one iteration over the load
@@ -41,9 +41,13 @@ def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton
 
     Raises
     ------
+    InputError
+        A gap that is not finite.
     ConvergenceError
         The pressures still change by more than 1e-8 of the load after 1000 iterations.
     """
+    if not np.isfinite(gap).all():
+        raise InputError("press: gap", "must be finite [m]", "nan or inf")
     rows, columns = gap.shape
     padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
     waves = spectrum(influence(gap.shape, spacing, images, SHIFT)[3:4], padded)[0]

@@ -149,7 +149,7 @@ class Curve:
         middle = self.at(offset)
         tangent = self.tangent(middle)
         e = self._row_pitch(offset)
-        if e * tangent < SHORTEST_CHORD * self.sliding:
+        if e * tangent <= SHORTEST_CHORD * self.sliding:
             return tangent, 0.0
         chord = self._chord(offset, e)
         if self.creep.curvature == 0.0:
