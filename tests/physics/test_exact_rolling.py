@@ -284,7 +284,7 @@ def test_inputs_that_are_refused():
         kalker(made, xi=math.nan)
     with pytest.raises(InputError, match=r"solve: slip must have the shape"):
         solve(made, np.zeros((2, 3, 3)))
-    with pytest.raises(InputError, match=r"columns must lie from 4 to 1024"):
+    with pytest.raises(InputError, match=r"columns must lie from 4 to 256"):
         contact(0.3, columns=2)
     with pytest.raises(InputError, match=r"must be finite and > 0; got nan"):
         contact(math.nan)

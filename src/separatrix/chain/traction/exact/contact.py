@@ -35,7 +35,7 @@ from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre
 LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling
 LARGEST_STRAIN = 1.0
 DOUBTFUL_STRAIN = 0.1
-SMALLEST_SIDE, LARGEST_SIDE = 4, 1024  # cells along one side of a grid
+SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

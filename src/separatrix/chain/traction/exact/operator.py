@@ -23,7 +23,7 @@ from separatrix.chain.traction.exact.grid import Grid
 from separatrix.chain.traction.exact.images import influence, pair_images
 from separatrix.chain.traction.exact.precondition import leading_inverses
 from separatrix.compiled import kernel
-from separatrix.units import Array, Metre
+from separatrix.units import Array, Metre, Ratio
 
 Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
@@ -33,7 +33,8 @@ ROLLING = ((0, 3.0), (1, -4.0), (2, 1.0))  # pairs of shift in dx/2 and factor
 SHIFT = ((0, 1.0),)
 CUT_ROLLING = 2.5  # makes the sticking slope of a plane strip independent of the cut (measured in the tests)
 CUT_SHIFT = 1.0
-THIN = 0.1  # thickness over cell width at which half of a film's compliance acts as if in series (as above)
+THIN = 0.1  # thickness over cell width at which half of a film's compliance acts as if in series
+LARGEST_KINDS = 8  # of rows, for which the preconditioner keeps inverses
 WHOLE = 0.6  # share of a cell inside from which the preconditioner takes it as whole
 NEIGHBOUR = 0.4  # weight of the next row in the preconditioner's rows; its square of the one after, and so on
 
@@ -62,26 +63,22 @@ class Operator:
 
 def rolling_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None = None) -> Operator:
     """Operator of steady rolling; `compliance` is L of a film in series, shape (row, column) [m/Pa]."""
-    return _operator(grid, bodies, compliance, ROLLING, CUT_ROLLING)
+    return _operator(grid, bodies, compliance, rolls=True)
 
 
 def shift_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None = None) -> Operator:
     """Operator of the displacement itself, of a shift: `local` has the film, `upstream` is 0."""
-    return _operator(grid, bodies, compliance, SHIFT, CUT_SHIFT)
+    return _operator(grid, bodies, compliance, rolls=False)
 
 
-def _operator(
-    grid: Grid,
-    bodies: tuple[Body, Body],
-    compliance: Array | None,
-    stencil: tuple[tuple[int, float], ...],
-    cut: float,
-) -> Operator:
+def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *, rolls: bool) -> Operator:
+    stencil, cut = (ROLLING, CUT_ROLLING) if rolls else (SHIFT, CUT_SHIFT)
     rows, columns = grid.shape
     padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
     table = influence(grid.shape, (grid.dy, grid.dx), pair_images(*bodies), stencil)[:3]
-    rolls, f, own = stencil is ROLLING, grid.fraction, table[:2, 0, columns - 1]
-    thin = sum(_unresolved_compliance(body, grid.dx) for body in bodies) if rolls else 0.0
+    f, own = grid.fraction, table[:2, 0, columns - 1]
+    films = [unresolved_film(body, grid.dx) for body in bodies]
+    thin = sum(L * share for L, share in films) if rolls else 0.0
     L = np.zeros(grid.shape) if compliance is None else compliance
     film, upstream = rolling_film(f, L, thin) if rolls else (_inverse(f) * L, np.zeros(grid.shape))
     local = (cut * (own - thin))[:, None, None] * np.where(f > 0.0, _inverse(f) - 1.0, 0.0) + film
@@ -122,18 +119,18 @@ def rolling_film(fraction: Array, compliance: Array, thin: float) -> tuple[Array
     return diagonal, upstream
 
 
-def _unresolved_compliance(body: Body, dx: Metre) -> float:
-    """Share of a body's film compliance that the cells see as a film in series [m/Pa].
+def unresolved_film(body: Body, dx: Metre) -> tuple[float, Ratio]:
+    """Compliance of a body's films [m/Pa] and the share that the cells see as a film in series.
 
     Films thinner than a cell respond as one does, and need its rules at the row ends: without them the
-    sticking slope is up to 0.8 cells too high, with them 0.1 (measured in the tests).
+    sticking slope is up to 0.8 cells too high, with them 0.2 (measured in the tests).
     """
     h = sum(layer.thickness for layer in body.layers)
     if h == 0.0:
-        return 0.0
+        return 0.0, 0.0
     k = 1e-4 / h
     excess = (flexibility(body, np.array([k])) - half_space_flexibility(body.base)[:, None])[[0, 3], 0] / k
-    return float(max(excess.min(), 0.0) / (1.0 + (h / (THIN * dx)) ** 2))
+    return float(max(excess.min(), 0.0)), 1.0 / (1.0 + (h / (THIN * dx)) ** 2)
 
 
 def spectrum(table: Array, padded: tuple[int, int]) -> Complex:
@@ -169,11 +166,13 @@ def series_film(fraction: Array, compliance: Array) -> tuple[Array, Array]:
 
 
 def _row_compliance(compliance: Array, fraction: Array) -> Array:
-    """Mean compliance of each row, rounded to steps of 20 %: it serves the preconditioner only."""
+    """Mean compliance of each row, rounded to a few values: it serves the preconditioner only."""
     weight = np.maximum(fraction.sum(axis=1), 1e-300)
     mean = (compliance * fraction).sum(axis=1) / weight
-    rounded = np.exp(0.2 * np.round(5.0 * np.log(np.maximum(mean, 1e-300))))
-    return np.asarray(np.where(mean > 0.0, rounded, 0.0))
+    logarithm, step = np.log(np.maximum(mean, 1e-300)), 0.2
+    while np.unique(np.round(logarithm / step)).size > LARGEST_KINDS:
+        step *= 2.0
+    return np.asarray(np.where(mean > 0.0, np.exp(step * np.round(logarithm / step)), 0.0))
 
 
 def product(op: Operator, traction: Array) -> Array:

@@ -9,7 +9,7 @@ curvature (4 chord(e) - chord(2 e))/3.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -28,8 +28,9 @@ from separatrix.chain.traction.exact.contact import (
 )
 from separatrix.chain.traction.exact.krylov import right_side, solve_step
 from separatrix.chain.traction.exact.newton import Settled
+from separatrix.chain.traction.exact.operator import unresolved_film
 from separatrix.errors import ConvergenceError
-from separatrix.units import Array, Ratio
+from separatrix.units import Array, Newton, Ratio
 
 TOLERANCE = 1e-6  # of the tractions
 LINEAR = 1e-4  # relative tolerance of a tangent
@@ -38,6 +39,8 @@ ROWS = 64
 SHORTEST_CHORD = 2e-3  # of the creep that saturates a tangent; below it the tangent itself is taken
 BALANCED = 1e-5  # force of free rolling over the force of sliding
 LARGEST_STEPS = 40
+SAMPLING = 1e-3  # relative error of a chord by the places of rows and columns (measured in the tests)
+UNRESOLVED = 0.01  # largest error of the rules for thin films (measured in the tests)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +64,7 @@ def traction_slope(
 
     The error falls with the first power of the columns. A tangent is extrapolated to none; a chord, in which
     stick and slip change cell by cell, is not. `slope_error` adds that step, what the extrapolation of the
-    chord changed and the solver's tolerance.
+    chord changed, and the errors of sampling and of thin films.
 
     Raises
     ------
@@ -72,15 +75,22 @@ def traction_slope(
     coarse, fine = (rolling_contact(problem, columns=n, rows=rows) for n in columns)
     curve = Curve(fine, creep)
     offset = curve.free_rolling()
-    slope, chord_error = curve.slope(offset)
-    rough, _ = Curve(coarse, creep).slope(offset)
+    slope, chord_error, smooth = curve.slope(offset)
+    rough, _, _ = Curve(coarse, creep).slope(offset)
     step = (slope - rough) * columns[0] / (columns[1] - columns[0])
     return RaceSlope(
-        slope=slope + step if chord_error == 0.0 else slope,
-        slope_error=chord_error + abs(step) + TOLERANCE * slope,
+        slope=slope + step if smooth else slope,
+        slope_error=chord_error + abs(step) + (SAMPLING + _film_error(fine)) * slope,
         free_rolling_offset=offset,
         solution=solution_of(fine, curve.at(offset)),
     )
+
+
+def _film_error(contact: RollingContact) -> Ratio:
+    """Relative error of films that are neither much thinner than a cell nor resolved: 1 % in the middle."""
+    films = [unresolved_film(body, contact.grid.dx) for body in contact.problem.bodies]
+    own = float(contact.operator.diagonal[0][contact.grid.fraction > 0.0].min())
+    return UNRESOLVED * sum(min(L / own, 1.0) * 4.0 * share * (1.0 - share) for L, share in films)
 
 
 def _aligned(problem: ContactProblem, rows: int) -> int:
@@ -95,21 +105,30 @@ def _aligned(problem: ContactProblem, rows: int) -> int:
     return min(edges, key=lambda n: float(np.abs(edges[n] - np.round(edges[n])).max()))
 
 
+@dataclass(frozen=True, slots=True)
 class Curve:
     """Traction curve of one contact; keeps the last two solutions, from which the next one starts."""
 
-    def __init__(self, contact: RollingContact, creep: Creep) -> None:
-        self.contact, self.creep = contact, creep
-        self.load = float(contact.pressure.sum() * contact.grid.cell_area)
-        self.sliding = float(contact.bound.sum() * contact.grid.cell_area) / self.load
-        self._known: list[tuple[Array, Array]] = []
+    contact: RollingContact
+    creep: Creep
+    known: list[tuple[Array, Array]] = field(default_factory=list, repr=False)
+
+    @property
+    def load(self) -> Newton:
+        """Sum of the pressure."""
+        return float(self.contact.pressure.sum()) * self.contact.grid.cell_area
+
+    @property
+    def sliding(self) -> Ratio:
+        """Traction coefficient in full sliding."""
+        return float(self.contact.bound.sum() / self.contact.pressure.sum())
 
     def at(self, offset: Ratio) -> Settled:
         """Solution at an offset of the longitudinal creep."""
         creep, grid = self.creep, self.contact.grid
         slip = rigid_slip(grid, longitudinal=offset, spin=creep.spin, curvature=creep.curvature)
-        found = settled(self.contact, slip, start=secant(self._known, slip), tolerance=TOLERANCE)
-        self._known = [*self._known[-1:], (slip, found.traction)]
+        found = settled(self.contact, slip, start=secant(self.known, slip), tolerance=TOLERANCE)
+        self.known[:] = [*self.known[-1:], (slip, found.traction)]
         return found
 
     def traction(self, found: Settled) -> Ratio:
@@ -144,18 +163,18 @@ class Curve:
             abs(C_T),
         )
 
-    def slope(self, offset: Ratio) -> tuple[Ratio, Ratio]:
-        """Slope at an offset, and what its extrapolation changed [-]."""
+    def slope(self, offset: Ratio) -> tuple[Ratio, Ratio, bool]:
+        """Slope at an offset and what its extrapolation changed [-]; whether it is a tangent."""
         middle = self.at(offset)
         tangent = self.tangent(middle)
         e = self._row_pitch(offset)
         if e * tangent <= SHORTEST_CHORD * self.sliding:
-            return tangent, 0.0
+            return tangent, 0.0, True
         chord = self._chord(offset, e)
         if self.creep.curvature == 0.0:
-            return chord, 0.0
+            return chord, 0.0, False
         better = (4.0 * chord - self._chord(offset, 2.0 * e)) / 3.0
-        return better, abs(better - chord)
+        return better, abs(better - chord), False
 
     def _chord(self, offset: Ratio, e: Ratio) -> Ratio:
         ahead, behind = (self.traction(self.at(offset + side * e)) for side in (1.0, -1.0))
