@@ -62,9 +62,9 @@ def traction_slope(
 ) -> RaceSlope:
     """Slope of the traction curve at free rolling on two numbers of columns, of the finer one.
 
-    The error falls with the first power of the columns. A tangent is extrapolated to none; a chord, in which
-    stick and slip change cell by cell, is not. `slope_error` adds that step, what the extrapolation of the
-    chord changed, and the errors of sampling and of thin films.
+    The error falls with the first power of the columns. A tangent of bare bodies is extrapolated to none; a
+    chord, in which stick and slip change cell by cell, is not. `slope_error` adds that step, what the
+    extrapolation of the chord changed, and the errors of sampling and of thin films.
 
     Raises
     ------
@@ -78,9 +78,10 @@ def traction_slope(
     slope, chord_error, smooth = curve.slope(offset)
     rough, _, _ = Curve(coarse, creep).slope(offset)
     step = (slope - rough) * columns[0] / (columns[1] - columns[0])
+    film = _film_error(fine)
     return RaceSlope(
-        slope=slope + step if smooth else slope,
-        slope_error=chord_error + abs(step) + (SAMPLING + _film_error(fine)) * slope,
+        slope=slope + step if smooth and film == 0.0 else slope,
+        slope_error=chord_error + abs(step) + (SAMPLING + film) * slope,
         free_rolling_offset=offset,
         solution=solution_of(fine, curve.at(offset)),
     )
