@@ -111,16 +111,17 @@ def test_slopes_of_thin_films_do_not_depend_on_the_columns():
 
 @pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
 def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
-    """3 um of 0.5 GPa: pressure down to 1000 MPa, slope of the outer race from 6.4 to 8.4 and more.
+    """3 um of 0.5 GPa: pressure down to 1060 MPa, slope of the outer race from 6.3 to 8.9.
 
-    3 % on 6.39, whose stencil is of first order; a lower bound on the other.
+    8.87 is the slope on twice the cells and pressures on 200 x 480 cells; 0.5 %. With the row ends by the
+    root law alone, which a soft film does not follow, it is 5 % lower.
     """
     film = Layer(thickness=3e-6, solid=solid(0.5e9, 0.46))
     hertz = traction_slope(problem(OUTER[0], film=film), OUTER[1])
     own = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
-    assert hertz.slope == pytest.approx(6.39, rel=0.03)
-    assert own.slope == pytest.approx(8.41, rel=0.06)
-    assert own.solution.max_pressure < 1150e6
+    assert hertz.slope == pytest.approx(6.25, rel=0.01)
+    assert own.slope == pytest.approx(8.87, rel=5e-3)
+    assert own.solution.max_pressure == pytest.approx(1064e6, rel=5e-3)
     bodies = BARE, Body(base=STEEL, layers=(film,))
     assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
 
@@ -148,9 +149,9 @@ WORN = [(0.0, 3.64, 10.8), (0.1, 10.04, 21.1), (0.2, 11.07, 26.6), (0.5, 11.01, 
 
 @pytest.mark.parametrize(("share", "inner", "outer"), WORN)
 def test_worn_track(share, inner, outer):
-    """Film of 3 um and 1.5 GPa at mu 0.1, worn off a band to steel at 0.3: slopes to 3 %.
+    """Film of 3 um and 1.5 GPa at mu 0.1, worn off a band to steel at 0.3: slopes to 1.2 %.
 
-    The numbers were computed with 32 rows across the band's half or fewer, the edges between rows.
+    0.8 % is what rows that meet the edges of the band leave against rows twice as fine.
     """
     L = 3e-6 / solid(1.5e9, 0.4).shear_modulus
     for (ellipse, creep), expected in ((INNER, inner), (OUTER, outer)):
@@ -158,7 +159,7 @@ def test_worn_track(share, inner, outer):
         friction = worn_band(w, worn=0.3, film=0.1)
         compliance = worn_band(w, worn=0.0, film=L)
         found = traction_slope(problem(ellipse, friction, film_compliance=compliance), creep)
-        assert found.slope == pytest.approx(expected, rel=0.03)
+        assert found.slope == pytest.approx(expected, rel=0.012)
 
 
 def test_profiles():
