@@ -1,0 +1,36 @@
+"""Rolling contact of two layered half-spaces in three dimensions, with partial slip."""
+
+from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, worn_band
+from separatrix.chain.traction.exact.contact import (
+    ContactProblem,
+    ContactSolution,
+    RollingContact,
+    rigid_slip,
+    rolling_contact,
+    solve,
+    solve_each,
+)
+from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
+from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
+from separatrix.chain.traction.exact.transient import shift, transient
+
+__all__ = [
+    "Body",
+    "ContactProblem",
+    "ContactSolution",
+    "FrictionLaw",
+    "Layer",
+    "Profile",
+    "RaceSlope",
+    "RollingContact",
+    "Solid",
+    "rigid_slip",
+    "rolling_contact",
+    "shift",
+    "solid",
+    "solve",
+    "solve_each",
+    "traction_slope",
+    "transient",
+    "worn_band",
+]

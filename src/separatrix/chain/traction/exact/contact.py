@@ -1,0 +1,286 @@
+r"""Steady rolling of two layered bodies with partial slip: from the problem to tractions, slip and forces.
+
+Body 1 is the ball, body 2 the race; tractions and forces act on the ball. Along rolling lies x, with
+particles entering at the largest x, across the groove y. Per rolling speed the ball slips over the race by
+
+    s = W - dU/dx,   W = (xi + s y + q y^2, eta - s x),
+
+xi being the longitudinal creep ratio, eta the lateral one, s the spin and q Heathcote's curvature, as in
+`Creep` (Kalker's spin is phi = -s). Where it sticks s = 0 and |tau| <= g, where it slips tau = -g s/|s|
+(Kalker 1990). The half-space has no bending: the contact is small beside the radii.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, over_cells
+from separatrix.chain.traction.exact.coupling import pressure_slip
+from separatrix.chain.traction.exact.flexibility import Body
+from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure
+from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
+from separatrix.chain.traction.exact.normal import film_strain, pressed_contact
+from separatrix.chain.traction.exact.operator import Operator, rolling_operator
+from separatrix.chain.traction.exact.precondition import SLIP
+from separatrix.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
+
+LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling
+LARGEST_STRAIN = 1.0
+DOUBTFUL_STRAIN = 0.1
+SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactProblem:
+    """What rolls on what.
+
+    ellipse : Hertz contact of the bodies without films; bodies : ball and race; film_compliance : L = h/G of
+    a film in series, beside the layers of the bodies [m/Pa]; own_pressure : solve the pressure of the layered
+    bodies instead of Hertz's; coupled : add the slip that the pressure causes between unlike bodies.
+    """
+
+    ellipse: ContactEllipse
+    bodies: tuple[Body, Body]
+    friction: FrictionLaw
+    film_compliance: float | Profile = 0.0
+    own_pressure: bool = False
+    coupled: bool = False
+
+    def __post_init__(self) -> None:
+        ellipse = self.ellipse
+        for name in ("load", "semi_minor", "semi_major", "max_pressure"):
+            if not 0.0 < getattr(ellipse, name) < np.inf:
+                value = f"{getattr(ellipse, name):g}"
+                raise InputError(f"ContactProblem.ellipse.{name}", "must be finite and > 0", value)
+        L = self.film_compliance
+        if not isinstance(L, Profile) and not 0.0 <= L < np.inf:
+            raise InputError("ContactProblem.film_compliance", "must be finite and >= 0 [m/Pa]", f"{L:g}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RollingContact:
+    """A problem on its grid: pressure and bound, shape (row, column) [Pa]; what `solve` takes.
+
+    compliance : L of a film in series, shape (row, column) [m/Pa]; coupling : slip that the pressure causes,
+    shape (2, row, column) [-].
+    """
+
+    problem: ContactProblem
+    grid: Grid
+    pressure: Array
+    bound: Array
+    compliance: Array | None
+    coupling: Array
+    film_strain: Ratio
+    operator: Operator = field(repr=False)
+
+
+Field = Annotated[Array, "Pa", ("row", "column")]
+Vectors = Annotated[Array, "Pa", ("direction", "row", "column")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactSolution:
+    """Tractions and slip of one contact, and what they sum to; forces act on the ball.
+
+    traction, slip : along x and y; the tractions of cells that the outline cuts are averaged over the whole
+    cell; slip is per rolling speed; stick : cells without slip; stick_share : of the contact's area;
+    dissipation : power per rolling speed; iterations, residual : of the tractions.
+    """
+
+    along: Annotated[Array, "m", ("column",)]
+    across: Annotated[Array, "m", ("row",)]
+    pressure: Field
+    traction: Vectors
+    slip: Annotated[Array, "-", ("direction", "row", "column")]
+    stick: NDArray[np.bool_]
+    load: Newton
+    force: Newton
+    lateral_force: Newton
+    spin_moment: NewtonMetre
+    stick_share: Ratio
+    dissipation: Newton
+    max_pressure: Pascal
+    film_strain: Ratio
+    iterations: int
+    residual: Ratio
+
+    @property
+    def traction_coefficient(self) -> Ratio:
+        """Force of the ball on the race along rolling over the load; positive where the ball is faster."""
+        return -self.force / self.load
+
+
+def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 40) -> RollingContact:
+    """Put a problem on a grid of so many cells along rolling and across.
+
+    Raises
+    ------
+    InputError
+        A film that the pressure would compress by more than itself, or a grid that is too coarse or too fine.
+
+    Warns
+    -----
+    ValidityWarning
+        The film is compressed by more than a tenth: it is not linearly elastic there.
+    """
+    for name, count in (("columns", columns), ("rows", rows)):
+        if not SMALLEST_SIDE <= count <= LARGEST_SIDE:
+            raise InputError(
+                f"rolling_contact: {name}", f"must lie from {SMALLEST_SIDE} to {LARGEST_SIDE}", f"{count}"
+            )
+    ellipse, bodies = problem.ellipse, problem.bodies
+    if problem.own_pressure:
+        grid, pressure, _ = pressed_contact(ellipse, bodies, columns=columns, rows=rows)
+    else:
+        b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
+        grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
+        pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
+    compliance = None
+    if isinstance(problem.film_compliance, Profile) or problem.film_compliance > 0.0:
+        compliance = over_cells(problem.film_compliance, grid)
+    coupling = pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape))
+    return RollingContact(
+        problem=problem,
+        grid=grid,
+        pressure=pressure,
+        bound=problem.friction.bound(grid, pressure),
+        compliance=compliance,
+        coupling=coupling,
+        film_strain=_checked_strain(bodies, _largest_pressure(problem, pressure)),
+        operator=rolling_operator(grid, bodies, compliance),
+    )
+
+
+def _largest_pressure(problem: ContactProblem, pressure: Array) -> Pascal:
+    return float(pressure.max()) if problem.own_pressure else problem.ellipse.max_pressure
+
+
+def _checked_strain(bodies: tuple[Body, Body], max_pressure: Pascal) -> Ratio:
+    strain = film_strain(bodies, max_pressure)
+    if strain > LARGEST_STRAIN:
+        cure = "A linear elastic film cannot carry this pressure."
+        raise InputError(
+            "rolling_contact: film strain p0/M_c", "must not exceed 1 [-]", f"{strain:.2g}", cure
+        )
+    if strain > DOUBTFUL_STRAIN:
+        warnings.warn(
+            f"the film is compressed by {strain:.2g} of its thickness; linear elasticity holds to about "
+            f"{DOUBTFUL_STRAIN:g}.",
+            ValidityWarning,
+            stacklevel=3,
+        )
+    return strain
+
+
+def rigid_slip(
+    grid: Grid,
+    *,
+    longitudinal: Ratio = 0.0,
+    lateral: Ratio = 0.0,
+    spin: PerMetre = 0.0,
+    curvature: PerMetre2 = 0.0,
+) -> Array:
+    """W = (xi + s y + q y^2, eta - s x) at the cell centres, shape (2, row, column) [-]."""
+    x, y = grid.x, grid.y[:, None]
+    along = longitudinal + spin * y + curvature * (y * y + grid.dy**2 / 12.0)  # mean over the row
+    return np.stack([np.broadcast_to(along, grid.shape), np.broadcast_to(lateral - spin * x, grid.shape)])
+
+
+def solve(
+    contact: RollingContact, slip: Array, *, start: Array | None = None, tolerance: Ratio = TOLERANCE
+) -> ContactSolution:
+    """Tractions under one rigid slip field, shape (2, row, column) [-]; `start` are tractions near them [Pa].
+
+    Raises
+    ------
+    InputError
+        A slip that is not finite, of another shape or above 1e3.
+    ConvergenceError
+        The tractions did not settle; carries passes and residual.
+    """
+    return solution_of(contact, settled(contact, slip, start=start, tolerance=tolerance))
+
+
+def settled(
+    contact: RollingContact, slip: Array, *, start: Array | None = None, tolerance: Ratio = TOLERANCE
+) -> Settled:
+    """As `solve`: only the tractions and their stick and slip cells."""
+    if slip.shape != (2, *contact.grid.shape):
+        raise InputError("solve: slip", f"must have the shape (2, {contact.grid.shape})", f"{slip.shape}")
+    largest = float(np.abs(slip).max())
+    if not largest <= LARGEST_CREEP:
+        raise InputError("solve: slip", f"must be finite and at most {LARGEST_CREEP:g} [-]", f"{largest:g}")
+    driving = (slip + contact.coupling) * contact.grid.dx
+    return settle(contact.operator, contact.bound, driving, start=start, tolerance=tolerance)
+
+
+def solve_each(
+    contact: RollingContact, slips: Iterable[Array], *, tolerance: Ratio = TOLERANCE
+) -> list[ContactSolution | ConvergenceError]:
+    """Solutions along a curve of rigid slips; neighbours start each other by the secant of the last two.
+
+    A case that does not settle is its error, with passes and residual.
+    """
+    solutions: list[ContactSolution | ConvergenceError] = []
+    known: list[tuple[Array, Array]] = []
+    for slip in slips:
+        try:
+            found = settled(contact, slip, start=secant(known, slip), tolerance=tolerance)
+        except ConvergenceError as error:
+            solutions.append(error)
+            known.clear()
+            continue
+        known = [*known[-1:], (slip, found.traction)]
+        solutions.append(solution_of(contact, found))
+    return solutions
+
+
+def secant(known: list[tuple[Array, Array]], slip: Array) -> Array | None:
+    """Tractions expected at a slip from those at the last two, shape (2, row, column) [Pa]."""
+    if len(known) < 2:
+        return known[0][1] if known else None
+    (W0, p0), (W1, p1) = known
+    way = W1 - W0
+    length = float((way * way).sum())
+    ahead = float(((slip - W1) * way).sum()) / length if length > 0.0 else 0.0
+    return np.asarray(p1 + min(max(ahead, 0.0), 3.0) * (p1 - p0))
+
+
+def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | None = None) -> ContactSolution:
+    """Forces, moment, shares and dissipation of tractions settled over a distance, dx in steady rolling."""
+    grid, p, dA = contact.grid, found.traction, contact.grid.cell_area
+    slips = found.sets.state == SLIP
+    slip = np.where(slips, found.slip_step / (distance or grid.dx), 0.0)
+    fraction = grid.fraction
+    return ContactSolution(
+        along=grid.x,
+        across=grid.y,
+        pressure=contact.pressure,
+        traction=p,
+        slip=slip,
+        stick=~slips & (fraction > 0.0),
+        load=float(contact.pressure.sum() * dA),
+        force=float(p[0].sum() * dA),
+        lateral_force=float(p[1].sum() * dA),
+        spin_moment=float((grid.x * p[1] - grid.y[:, None] * p[0]).sum() * dA),
+        stick_share=float(fraction[~slips].sum() / fraction.sum()),
+        dissipation=float(-(p * slip).sum() * dA),
+        max_pressure=_largest_pressure(contact.problem, contact.pressure),
+        film_strain=contact.film_strain,
+        iterations=found.passes,
+        residual=found.residual,
+    )
+
+
+def extent(grid: Grid) -> tuple[Metre, Metre]:
+    """Half lengths of a grid's box along rolling and across [m]."""
+    return 0.5 * grid.dx * grid.x.size, 0.5 * grid.dy * grid.y.size

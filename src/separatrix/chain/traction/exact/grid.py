@@ -1,0 +1,132 @@
+r"""Cells of a contact: uniform, x along rolling (particles enter at the largest x), y across the groove.
+
+Arrays are of shape (row, column): a row is a strip along rolling. The outline cuts the cells at the row ends;
+`fraction` is the share of a cell's length inside. The unknown of a cut cell is its force over the area of the
+whole cell.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from separatrix.units import Array, Metre, Pascal
+
+MEAN_SHAPE = 0.72  # mean over largest pressure of a row, between pi/4 of Hertz and 2/3 of a thin soft film
+SMALLEST_FRACTION = 1e-3  # of a cell's length; cells with less inside are left out
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Grid:
+    """Cell centres along x and y and the share of each cell inside the contact."""
+
+    x: Annotated[Array, "m", ("column",)]
+    y: Annotated[Array, "m", ("row",)]
+    dx: Metre
+    dy: Metre
+    fraction: Annotated[Array, "-", ("row", "column")]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.y.size, self.x.size
+
+    @property
+    def cell_area(self) -> float:
+        """Area of a whole cell [m2]."""
+        return self.dx * self.dy
+
+
+def elliptic_grid(*, semi_minor: Metre, semi_major: Metre, columns: int, rows: int) -> Grid:
+    """Grid over the box of an ellipse: `semi_minor` along rolling, `semi_major` across."""
+    b, a = semi_minor, semi_major
+    edges = np.linspace(-1.0, 1.0, rows + 1)
+    half_lengths = b * np.diff(_circle_area(edges)) * 0.5 * rows
+    x, dx = _centres(b, columns)
+    y, dy = _centres(a, rows)
+    return Grid(x=x, y=y, dx=dx, dy=dy, fraction=_inside(x, dx, -half_lengths, half_lengths))
+
+
+def _centres(half_length: Metre, count: int) -> tuple[Array, Metre]:
+    width = 2.0 * half_length / count
+    return width * np.arange(0.5 - 0.5 * count, 0.5 * count), width
+
+
+def _circle_area(u: Array) -> Array:
+    """Integral of sqrt(1 - u^2) from 0 to u, |u| <= 1 [-]."""
+    return 0.5 * (u * np.sqrt(np.maximum(1.0 - u * u, 0.0)) + np.arcsin(np.clip(u, -1.0, 1.0)))
+
+
+def _inside(x: Array, dx: Metre, low: Array, high: Array) -> Array:
+    """Share of each cell's length between the ends low and high of its row, shape (row, column) [-]."""
+    right, left = np.minimum(x + 0.5 * dx, high[:, None]), np.maximum(x - 0.5 * dx, low[:, None])
+    share = np.clip((right - left) / dx, 0.0, 1.0)
+    return np.where(share > SMALLEST_FRACTION, share, 0.0)
+
+
+def elliptic_pressure(grid: Grid, *, semi_minor: Metre, semi_major: Metre, max_pressure: Pascal) -> Array:
+    """Hertz pressure averaged over whole cells, shape (row, column) [Pa]; its load is exact."""
+    b, a, p0 = semi_minor, semi_major, max_pressure
+    edges = np.append(grid.x - 0.5 * grid.dx, grid.x[-1] + 0.5 * grid.dx) / b
+    mean = np.zeros(grid.shape)
+    for node, weight in zip(GAUSS_NODES, GAUSS_WEIGHTS, strict=True):
+        half_length = np.sqrt(np.maximum(1.0 - ((grid.y + 0.5 * node * grid.dy) / a) ** 2, 1e-30))[:, None]
+        mean += 0.5 * weight * half_length**2 * np.diff(_circle_area(np.clip(edges / half_length, -1.0, 1.0)))
+    mean[grid.fraction == 0.0] = 0.0
+    return np.asarray(mean * (2.0 / 3.0 * math.pi * a * b * p0 / (mean.sum() * grid.cell_area)))
+
+
+def pressed_grid(x: Array, y: Array, pressure: Array, refined: int = 1) -> tuple[Grid, Array]:
+    """Grid of any one patch of contact, cropped to it, with its pressure, shape (row, column) [Pa].
+
+    Each cell is made of `refined` x `refined` cells of the pressure. Towards the end of a row of these the
+    pressure falls with the root of the distance, under a thin soft film with the distance itself: the end is
+    between where the straight lines through the last p^2 and through the last p vanish, by how well each
+    meets the next cell. Rows of fewer than six cells have the length that their mean
+    pressure gives.
+    """
+    n, fine = refined, float(x[1] - x[0])
+    ends = np.array([_row_ends(x, row, fine) for row in pressure])
+    blocks = pressure.reshape(y.size // n, n, x.size // n, n)
+    x, y, p = x.reshape(-1, n).mean(axis=1), y.reshape(-1, n).mean(axis=1), blocks.mean(axis=(1, 3))
+    shares = _inside(x, n * fine, ends[:, 0], ends[:, 1]).reshape(y.size, n, x.size).mean(axis=1)
+    fraction = np.where((p > 0.0) & (shares > SMALLEST_FRACTION), shares, 0.0)
+    rows, columns = (np.flatnonzero((fraction > 0.0).any(axis=axis)) for axis in (1, 0))
+    window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    dx, dy = float(x[1] - x[0]), float(y[1] - y[0])
+    kept = np.where(fraction > 0.0, p, 0.0)[window]
+    grid = Grid(x=x[window[1]], y=y[window[0]], dx=dx, dy=dy, fraction=fraction[window])
+    return grid, kept * (p.sum() / kept.sum())
+
+
+def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
+    """Ends of the contact in one row [m]."""
+    inside = np.flatnonzero(pressure)
+    if inside.size == 0:
+        return 0.0, 0.0
+    first, last = inside[0], inside[-1]
+    p = pressure
+    if inside.size < 6:
+        half, middle = dx * p.sum() / (2.0 * MEAN_SHAPE * p.max()), float((x * p).sum() / p.sum())
+        return max(middle - half, x[first] - 0.5 * dx), min(middle + half, x[last] + 0.5 * dx)
+    return (
+        float(x[first + 1] - dx * _steps_to_zero(p[first + 1], p[first + 2], p[first + 3])),
+        float(x[last - 1] + dx * _steps_to_zero(p[last - 1], p[last - 2], p[last - 3])),
+    )
+
+
+def _steps_to_zero(outer: float, middle: float, inner: float) -> float:
+    """Cells from the outer one to the end: at least to its own edge, at most to that of the next cell."""
+    if middle <= outer:
+        return 1.5
+    root, line = outer**2 / (middle**2 - outer**2), outer / (middle - outer)
+    by_root, by_line = (
+        np.sqrt(2.0 * middle**2 - outer**2),
+        2.0 * middle - outer,
+    )  # what they expect further in
+    share = np.clip((inner - by_root) / (by_line - by_root), 0.0, 1.0)
+    return float(np.clip(root + share * (line - root), 0.5, 1.5))

@@ -1,0 +1,134 @@
+r"""Pressure between two layered bodies: constrained conjugate gradients of Polonsky & Keer (1999).
+
+The gap u_z + h - approach is 0 under pressure and positive elsewhere, the pressures sum to the load. Products
+with K_zz are zero-padded FFTs (Liu & Wang 2000). Normal and tangential tractions are taken as uncoupled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction.exact.flexibility import Body
+from separatrix.chain.traction.exact.grid import Grid, pressed_grid
+from separatrix.chain.traction.exact.images import Images, influence, pair_images
+from separatrix.chain.traction.exact.operator import SHIFT, spectrum
+from separatrix.errors import ConvergenceError, InputError
+from separatrix.units import Array, Metre, Newton, Ratio
+
+TOLERANCE = 1e-8  # change of the pressures in one iteration over the load
+LARGEST_ITERATIONS = 1000
+REFINED = 3  # cells of the pressure along each side of a cell of the tractions
+SEARCH_CELLS = 24  # cells along each side of the box in which the size of the contact is looked for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pressing:
+    """Pressure on whole cells, shape (row, column) [Pa], and the approach of the bodies [m]."""
+
+    pressure: Array
+    approach: Metre
+    iterations: int
+
+
+def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton) -> Pressing:
+    """Pressure under a load between bodies with this undeformed gap, a cell mean, shape (row, column) [m].
+
+    `spacing` is the width of a row and of a column [m].
+
+    Raises
+    ------
+    InputError
+        A gap that is not finite.
+    ConvergenceError
+        The pressures still change by more than 1e-8 of the load after 1000 iterations.
+    """
+    if not np.isfinite(gap).all():
+        raise InputError("press: gap", "must be finite [m]", "nan or inf")
+    rows, columns = gap.shape
+    padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
+    waves = spectrum(influence(gap.shape, spacing, images, SHIFT)[3:4], padded)[0]
+
+    def displacement(p: Array) -> Array:
+        product = fft.irfft2(fft.rfft2(p, s=padded, workers=1) * waves, s=padded, workers=1)
+        return np.asarray(product[:rows, :columns])
+
+    total = load / (spacing[0] * spacing[1])
+    p = np.full(gap.shape, total / gap.size)
+    direction, G_old, conjugate, change = np.zeros_like(gap), 1.0, 0.0, np.inf
+    for iteration in range(1, LARGEST_ITERATIONS + 1):
+        touching = p > 0.0
+        g = displacement(p) + gap
+        approach = float(g[touching].mean())
+        g -= approach
+        G = float((g[touching] ** 2).sum())
+        if change <= TOLERANCE or G == 0.0:
+            return Pressing(pressure=p, approach=approach, iterations=iteration)
+        direction = np.where(touching, g + conjugate * (G / G_old) * direction, 0.0)
+        r = displacement(direction)
+        r -= r[touching].mean()
+        tau = float((g * direction)[touching].sum() / (r * direction)[touching].sum())
+        p_old, p = p, np.maximum(p - tau * direction, 0.0)
+        overlap = (p == 0.0) & (g < 0.0)
+        conjugate = 0.0 if overlap.any() else 1.0
+        p[overlap] -= tau * g[overlap]
+        p *= total / p.sum()
+        change, G_old = float(np.abs(p - p_old).sum()) / total, G
+    message = f"Pressure of a contact did not settle in {LARGEST_ITERATIONS} iterations"
+    raise ConvergenceError(f"{message} (change {change:.2g}).", LARGEST_ITERATIONS, change)
+
+
+def pressed_contact(
+    ellipse: ContactEllipse, bodies: tuple[Body, Body], *, columns: int, rows: int
+) -> tuple[Grid, Array, Metre]:
+    """Grid, pressure, shape (row, column) [Pa], and approach [m] of layered bodies.
+
+    `ellipse` has the load and the curvatures of the gap; `columns` and `rows` lie over a box some cells wider
+    than the contact, whose size is found on a coarser grid first. The pressure is solved on finer cells.
+    """
+    images = pair_images(*bodies)
+    half = 1.5 * np.array([ellipse.semi_minor, ellipse.semi_major])
+    found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
+    while _touches_edge(found[2].pressure):
+        half *= 1.5
+        found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
+    pressed = found[2].pressure > 0.0
+    cells = np.array([pressed.any(axis=0).sum(), pressed.any(axis=1).sum()])
+    half *= (cells + 1.0) / SEARCH_CELLS
+    count = (REFINED * columns, REFINED * rows)
+    found = _in_box(ellipse, images, half, count)
+    while _touches_edge(found[2].pressure):
+        half *= 1.1
+        found = _in_box(ellipse, images, half, count)
+    x, y, pressing = found
+    return *pressed_grid(x, y, pressing.pressure, REFINED), pressing.approach
+
+
+def _in_box(
+    ellipse: ContactEllipse, images: Images, half: Array, cells: tuple[int, int]
+) -> tuple[Array, Array, Pressing]:
+    """Cell centres and pressure in a box of these half lengths along x and y."""
+    (x, dx), (y, dy) = (
+        (width * np.arange(0.5 - 0.5 * n, 0.5 * n), width)
+        for width, n in ((float(2.0 * h / n), n) for h, n in zip(half, cells, strict=True))
+    )
+    along = 0.5 * ellipse.curvature_rolling * (x * x + dx * dx / 12.0)  # cell means
+    across = 0.5 * ellipse.curvature_transverse * (y * y + dy * dy / 12.0)
+    return x, y, press(along + across[:, None], (dy, dx), images, ellipse.load)
+
+
+def _touches_edge(pressure: Array) -> bool:
+    edges = pressure[[0, -1]].any() or pressure[:, [0, -1]].any()
+    return bool(edges)
+
+
+def film_strain(bodies: tuple[Body, Body], max_pressure: float) -> Ratio:
+    """Largest pressure over the compression modulus of the softest layer [-].
+
+    Above about 0.1 a linear elastic film is not a description of it.
+    """
+    moduli = [layer.solid.compression_modulus for body in bodies for layer in body.layers]
+    return max_pressure / min(moduli) if moduli else 0.0

@@ -1,0 +1,181 @@
+"""Flexibility of layered half-spaces and their influence coefficients."""
+
+import numpy as np
+import pytest
+from exact_cases import body
+from scipy.integrate import dblquad
+
+from separatrix.chain.traction.exact import images
+from separatrix.chain.traction.exact.flexibility import (
+    Layer,
+    Solid,
+    flexibility,
+    half_space_flexibility,
+    solid,
+)
+from separatrix.chain.traction.exact.images import (
+    Images,
+    body_images,
+    corner_sums,
+    influence,
+    pair_images,
+)
+from separatrix.chain.traction.layer import BondedLayer, surface_compliance
+from separatrix.errors import InputError
+
+SOFT = body(0.3, (0.01, 0.46, 0.1))
+PLAIN = ((0, 1.0),)
+
+
+@pytest.mark.parametrize(
+    ("layers", "k", "expected"),
+    [
+        ([(0.01, 0.46, 0.1)], 1.0, (10.5656, 1.42796, -0.177863, 10.95588)),
+        ([(0.05, 0.4, 0.2)], 2.0, (7.21634, 2.03505, -0.387248, 8.43867)),
+        ([(0.02, 0.4, 0.1), (3.0, 0.25, 0.5)], 1.0, (5.27743, 1.40019, 0.083163, 5.46173)),
+        ([(0.02, 0.4, 0.1), (3.0, 0.25, 0.5)], 3.0, (13.76786, 2.93256, -0.803633, 14.88560)),
+    ],
+)
+def test_flexibility_of_layers(layers, k, expected):
+    """c_rr, c_zz, c_rz and c_tt, computed before by two methods; the tolerance is their last digit."""
+    c_rr, c_zz, c_rz, c_tt = flexibility(body(0.3, *layers), np.array([k]))[:, 0]
+    assert (c_rr, c_zz, c_rz, c_tt) == pytest.approx(expected, rel=6e-6)
+
+
+def test_limits_of_wavenumber():
+    """At k -> 0 is the base, k -> infinity the film, and nothing overflows between; exact up to rounding."""
+    c = flexibility(SOFT, np.array([0.0, 1e-3, 2e4, 1e12]))
+    assert c[:, 0] == pytest.approx(half_space_flexibility(SOFT.base), rel=1e-12)
+    assert c[:, 2] == pytest.approx(half_space_flexibility(SOFT.surface), rel=1e-12)
+    assert c[:, 3] == pytest.approx(half_space_flexibility(SOFT.surface), rel=1e-12)
+    # first order of a thin film: c_rr = base + kh/G, c_zz = base + kh/M_c
+    thin = (c[:, 1] - c[:, 0]) / (1e-3 * 0.1)
+    assert thin[0] == pytest.approx(1.0 / 0.01, rel=0.02)
+    assert thin[1] == pytest.approx(1.0 / SOFT.surface.compression_modulus, rel=0.2)
+
+
+def test_the_plane_layer_of_the_strips_is_the_same():
+    """c_rr agrees with the transfer matrix that the strips use, to the 1e-9 of its exponentials."""
+    layer = BondedLayer(
+        thickness=1e-6,
+        film_modulus=2e9,
+        film_poisson=0.4,
+        ring_modulus=205e9,
+        ring_poisson=0.285,
+        ball_modulus=205e9,
+        ball_poisson=0.285,
+    )
+    kh = np.array([0.01, 0.1, 1.0, 5.0])
+    coated = body(0.285, (solid(2e9, 0.4).shear_modulus, 0.4, 1e-6), G=solid(205e9, 0.285).shear_modulus)
+    assert flexibility(coated, kh / 1e-6)[0] == pytest.approx(surface_compliance(layer, kh), rel=1e-9)
+
+
+def test_a_layer_of_the_base_is_no_layer():
+    """Own material: the influence of a bare body. 1e-9 leaves room for rounding between the images."""
+    own, bare = (
+        influence((5, 5), (0.3, 0.2), body_images(b), PLAIN) for b in (body(0.3, (1.0, 0.3, 0.5)), body(0.3))
+    )
+    assert own == pytest.approx(bare, abs=1e-9 * np.abs(bare).max())
+
+
+@pytest.mark.parametrize(
+    ("layers", "limit"),
+    [
+        ([(0.01, 0.46, 0.1)], 2e-6),
+        ([(0.0025, 0.46, 0.1)], 2e-6),
+        ([(3.0, 0.25, 0.5)], 5e-6),
+        ([(0.02, 0.4, 0.1), (0.5, 0.25, 0.15)], 2e-6),
+        ([(0.02, 0.4, 0.1), (3.0, 0.25, 0.5)], 1e-4),
+    ],
+)
+def test_error_of_the_fit(layers, limit):
+    """The error is found at other wavenumbers too; 1e-6 of the span, 1e-4 for unlike layers."""
+    coated = body(0.3, *layers)
+    found = body_images(coated)
+    k = np.geomspace(0.01, 300.0, 997)
+    c = flexibility(coated, k)
+    error = np.abs(found.weights @ np.exp(-np.outer(found.depths, k)) - c).max(axis=1) / np.ptp(c, axis=1)
+    assert error.max() < 1.2 * found.error
+    assert found.error < limit
+
+
+def test_layers_too_unlike_are_refused():
+    """A hard film a hundred times thinner than the soft one below it does not fit."""
+    with pytest.raises(InputError, match=r"Body.layers must fit 24 images to 0.001"):
+        body_images(body(0.3, (100.0, 0.25, 0.001), (0.001, 0.45, 0.1)))
+
+
+def test_films_that_cannot_be_are_refused():
+    """Nearly incompressible films, no thickness, no stiffness."""
+    with pytest.raises(InputError, match=r"must not exceed 0.49"):
+        Layer(thickness=1e-6, solid=Solid(shear_modulus=1e9, poisson_ratio=0.495))
+    with pytest.raises(InputError, match=r"Layer.thickness must be finite"):
+        Layer(thickness=float("nan"), solid=Solid(shear_modulus=1e9, poisson_ratio=0.3))
+    with pytest.raises(InputError, match=r"Solid.shear_modulus must be finite"):
+        Solid(shear_modulus=0.0, poisson_ratio=0.3)
+    with pytest.raises(InputError, match=r"Solid.poisson_ratio must lie from 0 to 0.5"):
+        Solid(shear_modulus=1.0, poisson_ratio=0.6)
+
+
+def _point_source(x, y, d, c_rr, c_zz, c_rz, c_tt):
+    """Displacements of a point load in closed form: xx, yy, xy, zz, xz, yz."""
+    R = np.sqrt(x * x + y * y + d * d)
+    cos2, sin2 = 1.0 / (R + d) - np.array([x * x, y * y]) / (R * (R + d) ** 2)
+    both = -x * y / (R * (R + d) ** 2)
+    far = -1.0 / (R * (R + d))
+    six = (c_rr * cos2 + c_tt * sin2, c_rr * sin2 + c_tt * cos2, (c_rr - c_tt) * both)
+    return np.array([*six, c_zz / R, c_rz * x * far, c_rz * y * far]) / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize(("j", "i"), [(0, 0), (1, -1), (2, 1)])
+def test_six_corner_functions_against_quadrature(j, i):
+    """Rectangle integrals of a buried source; 1e-8 is what dblquad gives."""
+    w, d, dy, dx = np.array([1.3, 0.7, 0.4, 2.1]), 0.3, 0.8, 0.5
+    table = influence((3, 3), (dy, dx), Images(np.array([d]), w[:, None], 0.0), PLAIN)[:, j, i + 2]
+    for n in range(6):
+        value, _ = dblquad(
+            lambda y, x, n=n: _point_source(x, y, d, *w)[n],
+            (i - 0.5) * dx,
+            (i + 0.5) * dx,
+            (j - 0.5) * dy,
+            (j + 0.5) * dy,
+            epsabs=1e-10,
+        )
+        assert table[n] == pytest.approx(value, abs=1e-8)
+
+
+@pytest.mark.parametrize(("j", "i"), [(0, 0), (0, 1), (2, 3)])
+def test_influence_against_the_inverse_transform(j, i):
+    """K_xx and K_zz of a coated half-space by quadrature over wavenumbers, without images.
+
+    The film's own half-space is taken off, what is left decays as exp(-2kh). 1e-5 is the fit's error.
+    """
+    film = half_space_flexibility(SOFT.surface)
+    dy, dx = 0.2, 0.1
+    surface = Images(np.zeros(1), film[:, None], 0.0)
+    near = influence((4, 4), (dy, dx), surface, PLAIN)[:, j, i + 3]
+    node, weight = np.polynomial.legendre.leggauss(80)
+    k, wk = np.concatenate([(z * (node + 1.0), z * weight) for z in (5.0,)], axis=1)
+    k = np.concatenate([k, 10.0 + 90.0 * (node + 1.0)])
+    wk = np.concatenate([wk, 90.0 * weight])
+    angle = np.pi / 200 * (np.arange(200) + 0.5)
+    kx, ky = np.outer(k, np.cos(angle)), np.outer(k, np.sin(angle))
+    excess = (flexibility(SOFT, k) - film[:, None])[:, :, None]
+    load = dx * dy * np.sinc(kx * dx / 2 / np.pi) * np.sinc(ky * dy / 2 / np.pi)
+    phase = load * np.cos(kx * i * dx) * np.cos(ky * j * dy) * wk[:, None] / (200 * 2.0 * np.pi)
+    xx = near[0] + ((excess[0] * np.cos(angle) ** 2 + excess[3] * np.sin(angle) ** 2) * phase).sum()
+    zz = near[3] + (excess[1] * phase).sum()
+    found = influence((4, 4), (dy, dx), body_images(SOFT), PLAIN)[:, j, i + 3]
+    assert (found[0], found[3]) == pytest.approx((xx, zz), rel=1e-5)
+
+
+def test_pairs_of_bodies():
+    """Two coated bodies with films of two thicknesses: the sum of both, of c_rz the difference."""
+    other = body(0.25, (0.05, 0.4, 0.03), G=2.0)
+    x, y = np.array([0.05, 0.7]), np.array([0.1])
+    sums = [corner_sums(x, y, m.depths, m.weights) for m in (body_images(SOFT), body_images(other))]
+    pair = pair_images(SOFT, other)
+    both = corner_sums(x, y, pair.depths, pair.weights)
+    assert both[:4] == pytest.approx(sums[0][:4] + sums[1][:4], rel=1e-9)
+    assert both[4:] == pytest.approx(sums[0][4:] - sums[1][4:], rel=1e-6, abs=1e-9)
+    assert pair_images(SOFT, SOFT).depths.size == images.IMAGES + 1

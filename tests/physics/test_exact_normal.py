@@ -1,0 +1,152 @@
+"""Pressure between layered bodies: Hertz, coated spheres by an axisymmetric method, cut cells."""
+
+import math
+
+import numpy as np
+import pytest
+from exact_cases import body
+from scipy.optimize import brentq
+
+from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.traction.exact.flexibility import flexibility, half_space_flexibility
+from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid
+from separatrix.chain.traction.exact.images import pair_images
+from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
+from separatrix.errors import InputError
+
+RIGID = body(0.3, G=1e9)
+
+
+@pytest.mark.parametrize(("b", "columns", "rows"), [(0.2, 7, 12), (1.0, 40, 40), (3.0, 16, 9)])
+def test_cut_cells_keep_area_and_load(b, columns, rows):
+    """Area to the cells left out (1e-3 of a cell each), load to rounding."""
+    grid = elliptic_grid(semi_minor=b, semi_major=1.0, columns=columns, rows=rows)
+    assert grid.fraction.sum() * grid.cell_area == pytest.approx(math.pi * b, rel=1e-4)
+    p = elliptic_pressure(grid, semi_minor=b, semi_major=1.0, max_pressure=2.0)
+    assert p.sum() * grid.cell_area == pytest.approx(2.0 / 3.0 * math.pi * b * 2.0, rel=1e-12)
+    assert (p[grid.fraction == 0.0] == 0.0).all()
+
+
+@pytest.mark.parametrize("power", [0.5, 1.0])
+def test_ends_of_a_pressed_patch(power):
+    """Pressure that falls with the root (Hertz) or the distance (Winkler): area to 0.8 % at 50 cells."""
+    fine = np.linspace(-1.2, 1.2, 481)[1::2]  # 4 x 4 points a cell
+    p = np.maximum(1.0 - fine * fine - (fine * fine)[:, None], 0.0) ** power
+    p, x = p.reshape(60, 4, 60, 4).mean(axis=(1, 3)), fine.reshape(60, 4).mean(axis=1)
+    grid, kept = pressed_grid(x, x, p)
+    assert grid.fraction.sum() * grid.cell_area == pytest.approx(math.pi, rel=8e-3)
+    assert kept.sum() == pytest.approx(p.sum())
+
+
+@pytest.mark.parametrize("curvatures", [(200.0, 200.0), (400.0, 60.0)])
+def test_hertz(curvatures):
+    """Bare bodies: largest pressure and approach of the closed form; 0.2 % is the cell at the top."""
+    bare = body(0.3, G=80e9)
+    hertz = contact_ellipse(300.0, *curvatures, 80e9 / 0.7)
+    grid, pressure, approach = pressed_contact(hertz, (bare, bare), columns=32, rows=32)
+    assert pressure.max() == pytest.approx(hertz.max_pressure, rel=2e-3)
+    assert approach == pytest.approx(hertz.approach, rel=2e-3)
+    area = math.pi * hertz.semi_minor * hertz.semi_major
+    assert grid.fraction.sum() * grid.cell_area == pytest.approx(area, rel=2e-3)
+
+
+COATED = [  # E1/E2, h/a0, a/a0, d/d0, p(0)/p0: Fredholm's equation and 3-D, extrapolated, agree to 1e-4
+    (0.01, 0.1, 1.98939, 2.24473, 0.32599),
+    (0.25, 0.1, 1.12627, 1.07809, 0.87833),
+    (0.25, 1.0, 1.44700, 1.54469, 0.50714),
+    (0.5, 0.5, 1.14991, 1.12753, 0.80756),
+    (2.0, 0.5, 0.86969, 0.91020, 1.22803),
+    (4.0, 0.25, 0.84941, 0.92376, 1.11741),
+]
+
+
+def coated_sphere(ratio, h):
+    """Film of E1/E2 = ratio on a base of E* = 1, nu = 0.3; load and p0 of the uncoated contact of a0 = 1."""
+    G = 0.5 * (1.0 - 0.3)
+    return body(0.3, (ratio * G, 0.3, h), G=G), 4.0 / 3.0, 2.0 / math.pi
+
+
+@pytest.mark.parametrize(("ratio", "h", "a", "d", "p0"), COATED)
+def test_coated_sphere(ratio, h, a, d, p0):
+    """Rigid sphere: contact radius, approach and pressure at the centre, extrapolated over 32 and 64 cells.
+
+    0.1 % in approach and pressure; the radius is that of the pressed area, with half a cell to spare.
+    """
+    coated, load, top = coated_sphere(ratio, h)
+    found = []
+    for n in (32, 64):
+        dx = 2.4 * a / n
+        x = dx * (np.arange(n) + 0.5 - 0.5 * n)
+        gap = 0.5 * (x * x + dx * dx / 12.0) + 0.5 * (x * x + dx * dx / 12.0)[:, None]
+        pressing = press(gap, (dx, dx), pair_images(RIGID, coated), load)
+        centre = pressing.pressure[n // 2 - 1 : n // 2 + 1, n // 2 - 1 : n // 2 + 1].mean()
+        radius = math.sqrt((pressing.pressure > 0.0).sum() * dx * dx / math.pi)
+        found.append((pressing.approach, centre / top, radius))
+    approach, centre, _ = (4.0 * np.array(found[1]) - found[0]) / 3.0
+    assert approach == pytest.approx(d, rel=1e-3)
+    assert centre == pytest.approx(p0, rel=1e-3)
+    assert found[1][2] == pytest.approx(a, rel=0.02)
+
+
+def fredholm(coated, load, points=64):
+    """Radius, approach and pressure at the centre under a rigid sphere of radius 1: axisymmetric, no grid.
+
+    (pi/2) c_oo g(t) + int g(s) M(t, s) ds = approach - t^2, M = int (c_zz - c_oo) cos kt cos ks dk, with
+    g(a) = 0 and the load 2 pi int g (after Goodman & Keer 1965, Perriot & Barthel 2004).
+    """
+    c_oo = half_space_flexibility(coated.surface)[1]
+    h = coated.layers[0].thickness
+    node, weight = np.polynomial.legendre.leggauss(300)
+    k, wk = 15.0 / h * (node + 1.0), 15.0 / h * weight
+    excess = (flexibility(coated, k)[1] - c_oo) * wk
+    z, w = np.polynomial.legendre.leggauss(points)
+
+    def at(a):
+        t, wt = 0.5 * a * (z + 1.0), 0.5 * a * w
+        cosines, edge = np.cos(np.outer(t, k)), np.cos(a * k) * excess
+        matrix = 0.5 * np.pi * c_oo * np.eye(points) + (cosines * excess) @ cosines.T * wt
+        g_one, g_square = np.linalg.solve(matrix, np.stack([np.ones(points), t * t], axis=1)).T
+        at_edge = edge @ cosines.T * wt  # the equation at t = a, where g = 0
+        approach = (a * a - at_edge @ g_square) / (1.0 - at_edge @ g_one)
+        return approach, t, wt, approach * g_one - g_square
+
+    def excess_load(a):
+        _, _, wt, g = at(a)
+        return 2.0 * np.pi * (wt * g).sum() - load
+
+    a = brentq(excess_load, 0.3, 4.0, xtol=1e-6)
+    approach, t, wt, g = at(a)
+    sines = np.sin(np.outer(t, k)) * k
+    slope = (-2.0 * t + (sines * excess) @ np.cos(np.outer(t, k)).T @ (wt * g)) / (0.5 * np.pi * c_oo)
+    return a, approach, -(wt * slope / t).sum()
+
+
+@pytest.mark.parametrize(("ratio", "h", "a", "d", "p0"), [COATED[0], COATED[4]])
+def test_the_axisymmetric_method_agrees(ratio, h, a, d, p0):
+    """The numbers above by the method that has no grid; their digits."""
+    coated, load, top = coated_sphere(ratio, h)
+    radius, approach, centre = fredholm(coated, load)
+    assert (radius, approach, centre / top) == pytest.approx((a, d, p0), rel=2e-4)
+
+
+def test_own_pressure_of_a_thin_film_is_that_of_hertz():
+    """Film thickness -> 0 is continuous."""
+    hertz = contact_ellipse(1e-3, 2.0, 1.0, 1.0 / 0.75)
+    bodies = body(0.25), body(0.25, (0.2, 0.3, 1e-5 * hertz.semi_minor))
+    _, bare, _ = pressed_contact(hertz, (bodies[0], bodies[0]), columns=16, rows=16)
+    _, coated, _ = pressed_contact(hertz, bodies, columns=16, rows=16)
+    assert coated == pytest.approx(bare, rel=2e-3, abs=2e-3 * bare.max())
+
+
+def test_film_strain_is_pressure_over_compression_modulus():
+    """4 GPa and nu 0.38 under 1350 MPa: 0.18; 0.5 GPa and 0.46: 0.58."""
+    for E, nu, strain in ((4e9, 0.38, 0.18), (0.5e9, 0.46, 0.58)):
+        coated = body(0.3, (0.5 * E / (1.0 + nu), nu, 1e-6))
+        assert film_strain((body(0.3), coated), 1350e6) == pytest.approx(strain, abs=0.005)
+    assert film_strain((body(0.3), body(0.3)), 1e9) == 0.0
+
+
+def test_a_gap_that_is_not_a_number_is_refused():
+    """In one line."""
+    with pytest.raises(InputError, match=r"press: gap must be finite"):
+        press(np.full((8, 8), np.nan), (0.1, 0.1), pair_images(RIGID, body(0.3)), 1.0)

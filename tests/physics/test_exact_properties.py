@@ -1,0 +1,152 @@
+"""Exact rolling contacts nobody thought of: Coulomb's law, symmetries, scaling, films."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from exact_cases import MU, P0, body, contact, ellipse, kalker, saturation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from separatrix.chain.traction.exact.bound import FrictionLaw
+from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
+
+quick = settings(derandomize=True, max_examples=12, deadline=None)
+shape = st.floats(-1.0, 0.5).map(lambda x: 10.0**x)
+poisson = st.floats(0.0, 0.5)
+cells = st.integers(6, 18)
+size = st.floats(-2.0, 1.2).map(lambda x: 10.0**x)
+signed = st.tuples(size, st.sampled_from([-1.0, 1.0])).map(lambda t: t[0] * t[1])
+creeps = st.tuples(signed, signed, signed, signed)
+CLOSE = 2e-4  # of mu N: two solutions to 1e-5 of the tractions each, where slip changes sides
+
+
+def slips(made, parts, nu):
+    """Longitudinal, lateral, spin and Heathcote creep as multiples of the saturation creep."""
+    xi, eta, spin, curve = (part * saturation(nu) for part in parts)
+    return rigid_slip(made.grid, longitudinal=xi, lateral=eta, spin=spin, curvature=curve)
+
+
+def resultants(one):
+    """Force, lateral force and moment over mu N."""
+    return np.array([one.force, one.lateral_force, one.spin_moment]) / (MU * one.load)
+
+
+@quick
+@given(shape, poisson, cells, cells, creeps)
+def test_coulombs_law(b, nu, columns, rows, parts):
+    """|tau| <= g everywhere, slip against traction, none in stick, and power lost, not won."""
+    made = contact(b, nu, columns=columns, rows=rows)
+    one = solve(made, slips(made, parts, nu))
+    size = np.hypot(*one.traction)
+    g, inside = made.bound, made.bound > 0.0
+    assert (size <= g * (1.0 + 1e-9)).all()
+    sliding = inside & ~one.stick
+    assert size[sliding] == pytest.approx(g[sliding], rel=1e-3)
+    along = (one.traction * one.slip).sum(axis=0)[sliding]
+    # 1e-5 of the tractions over c g, c the cell's stiffness: slips smaller than that have no direction
+    large = np.hypot(*one.slip)[sliding] > 1e-2 * saturation(nu)
+    assert along[large] == pytest.approx(-(g * np.hypot(*one.slip))[sliding][large], rel=1e-2)
+    assert one.dissipation >= 0.0
+    assert (one.dissipation > 0.0) == (one.stick_share < 1.0)
+    assert math.hypot(one.force, one.lateral_force) <= MU * one.load * (1.0 + 1e-9)
+
+
+@quick
+@given(shape, poisson, cells, cells, creeps)
+def test_mirror_across_the_groove(b, nu, columns, rows, parts):
+    """At y -> -y lateral creep and spin change sign, and with them lateral force and moment."""
+    made = contact(b, nu, columns=columns, rows=rows)
+    xi, eta, spin, curve = parts
+    one = resultants(solve(made, slips(made, parts, nu)))
+    other = resultants(solve(made, slips(made, (xi, -eta, -spin, curve), nu)))
+    assert other == pytest.approx(one * [1.0, -1.0, -1.0], abs=CLOSE)
+
+
+@quick
+@given(shape, poisson, cells, cells, creeps)
+def test_all_creeps_reversed(b, nu, columns, rows, parts):
+    """T(-W) = -T(W)."""
+    made = contact(b, nu, columns=columns, rows=rows)
+    one, other = (solve(made, sign * slips(made, parts, nu)) for sign in (1.0, -1.0))
+    assert resultants(other) == pytest.approx(-resultants(one), abs=CLOSE)
+
+
+@quick
+@given(shape, poisson, cells, creeps, st.floats(-3.0, 3.0), st.floats(-9.0, 9.0), st.floats(-9.0, 9.0))
+def test_scaling(b, nu, count, parts, length, stiffness, load):
+    """Lengths, moduli and pressure in any units: the same tractions over the pressure."""
+    made = contact(b, nu, columns=count, rows=count)
+    base = resultants(solve(made, slips(made, parts, nu)))
+    s, G, p0 = 10.0**length, 10.0**stiffness, P0 * 10.0 ** (stiffness + 0.2 * load)
+    solid = body(nu, G=G)
+    problem = ContactProblem(
+        ellipse=ellipse(b * s, a=s, p0=p0), bodies=(solid, solid), friction=FrictionLaw(coefficient=MU)
+    )
+    scaled = rolling_contact(problem, columns=count, rows=count)
+    xi, eta, spin, curve = (part * 2.0 * MU * p0 / G * (1.0 - nu) for part in parts)
+    W = rigid_slip(scaled.grid, longitudinal=xi, lateral=eta, spin=spin / s, curvature=curve / s**2)
+    assert resultants(solve(scaled, W)) * [1.0, 1.0, 1.0 / s] == pytest.approx(base, abs=CLOSE)
+
+
+@quick
+@given(shape, poisson, cells, st.floats(-4.0, 0.5))
+def test_a_layer_of_the_base_changes_nothing(b, nu, count, thickness):
+    """To 1e-6 of the force, whatever its thickness."""
+    nu = min(nu, 0.49)
+    same = body(nu, (1.0, nu, b * 10.0**thickness))
+    forces = [
+        kalker(
+            contact(b, nu, columns=count, rows=count, race=race), 0.5 * saturation(nu), tolerance=1e-8
+        ).force
+        for race in (None, same)
+    ]
+    assert forces[1] == pytest.approx(forces[0], rel=1e-6)
+
+
+@quick
+@given(shape, poisson, cells, cells)
+def test_lateral_force_of_spin_and_moment_of_lateral_creep(b, nu, columns, rows):
+    """C23 = -C32 in stick, on any grid, to the solver's tolerance."""
+    made = contact(b, nu, columns=columns, rows=rows, friction=1e6)
+    across, spun = kalker(made, eta=1e-6, tolerance=1e-8), kalker(made, phi=1e-6, tolerance=1e-8)
+    assert spun.lateral_force == pytest.approx(-across.spin_moment, rel=1e-5)
+
+
+@quick
+@given(shape, poisson, st.floats(-2.3, -0.5), st.floats(1.1, 3.0))
+def test_a_stiffer_or_thinner_film_sticks_harder(b, nu, thickness, factor):
+    """Sticking slope up with E_f and with 1/h; below that of the bare contact."""
+    h, G = b * 10.0**thickness, 0.05
+
+    def slope(*layer):
+        made = contact(b, nu, columns=14, rows=10, friction=1e6, race=body(nu, *layer))
+        return -kalker(made, 1e-6).force
+
+    film = slope((G, 0.4, h))
+    assert film < slope((G * factor, 0.4, h)) < slope()
+    assert film < slope((G, 0.4, h / factor)) < slope()
+
+
+@quick
+@given(shape, poisson, st.floats(0.02, 0.2))
+def test_a_film_in_series_is_the_limit_of_a_layer(b, nu, G):
+    """Layer of thickness h/b = 1e-4: the sticking force of L = h/G - h/G_base; 0.5 % at 14 columns.
+
+    Compressible film: the Poisson effect of a layer is of order h.
+    """
+    h = 1e-4 * b
+    layer = contact(b, nu, columns=14, rows=10, friction=1e6, race=body(nu, (G, 0.2, h)))
+    series = contact(b, nu, columns=14, rows=10, friction=1e6, film_compliance=h * (1.0 / G - G))
+    assert kalker(layer, 1e-6).force == pytest.approx(kalker(series, 1e-6).force, rel=5e-3)
+
+
+@quick
+@given(shape, poisson, cells, creeps)
+def test_the_origin_of_the_grid_does_not_matter(b, nu, count, parts):
+    """The same slips at shifted places along rolling: the same tractions, bit for bit."""
+    made = contact(b, nu, columns=count, rows=count)
+    moved = replace(made, grid=replace(made.grid, x=made.grid.x + 3.7))
+    W = slips(made, parts, nu)
+    assert np.array_equal(solve(made, W).traction, solve(moved, W).traction)

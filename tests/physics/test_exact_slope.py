@@ -1,0 +1,293 @@
+"""Slopes of traction curves at free rolling, worn tracks, unlike bodies and transient rolling."""
+
+import math
+
+import numpy as np
+import pytest
+from exact_cases import MU, P0, body, contact, kalker, saturation
+from scipy.optimize import brentq
+
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import ContactEllipse, ellipse_shape
+from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, over_cells, worn_band
+from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
+from separatrix.chain.traction.exact.coupling import pressure_slip
+from separatrix.chain.traction.exact.flexibility import Body, Layer, solid
+from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure
+from separatrix.chain.traction.exact.normal import film_strain
+from separatrix.chain.traction.exact.slope import traction_slope
+from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.errors import ConvergenceError, InputError
+
+STEEL = solid(200e9, 0.285)
+BARE = Body(base=STEEL)
+MODULUS = 200e9 / 2.0 / (1.0 - 0.285**2)
+
+
+def race(b, a, p0, spin, heathcote):
+    """Contact of a bearing's race: half lengths [m], spin s a and curvature q a^2 [-]."""
+    ratio = math.exp(brentq(lambda r: ellipse_shape(math.exp(r), 0.0)[0] - b / a, 0.0, 12.0))
+    _, K, D = ellipse_shape(ratio, 0.0)
+    load = 2.0 / 3.0 * math.pi * a * b * p0
+    R_y = math.pi * MODULUS * a**3 / (3.0 * load * D)
+    ellipse = ContactEllipse(
+        load=load,
+        semi_major=a,
+        semi_minor=b,
+        max_pressure=p0,
+        approach=p0 * b * K / MODULUS,
+        curvature_rolling=ratio / R_y,
+        curvature_transverse=1.0 / R_y,
+        contact_modulus=MODULUS,
+    )
+    return ellipse, Creep(spin=spin / a, curvature=heathcote / a**2)
+
+
+# A bearing of 11.1 mm balls at 15000 rpm and 3000 N, without race control
+INNER = race(0.1267e-3, 1.135e-3, 1473e6, 0.0405, -0.0240)
+OUTER = race(0.1562e-3, 1.164e-3, 1348e6, -0.0137, 0.0186)
+
+
+def problem(ellipse, friction=MU, film=None, **given):
+    """Ball on a race that may be coated."""
+    coated = BARE if film is None else Body(base=STEEL, layers=(film,))
+    law = FrictionLaw(coefficient=friction)
+    return ContactProblem(ellipse=ellipse, bodies=(BARE, coated), friction=law, **given)
+
+
+@pytest.mark.parametrize(
+    ("mu", "inner", "outer"),
+    [(0.05, 1.833, 6.79), (0.1, 3.665, 13.65), (0.2, 7.33, 30.2), (0.3, 10.97, 41.07)],
+)
+def test_slopes_of_a_bearing(mu, inner, outer):
+    """Both races, bare: the numbers are known to 0.3 %, their inputs to three digits; 0.5 %."""
+    for (ellipse, creep), expected in ((INNER, inner), (OUTER, outer)):
+        found = traction_slope(problem(ellipse, mu), creep)
+        assert found.slope == pytest.approx(expected, rel=5e-3)
+        assert found.slope_error < 0.01 * found.slope
+        assert abs(found.solution.traction_coefficient) < 2e-5 * mu
+        assert found.solution.film_strain == 0.0
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.parametrize(
+    ("film", "spin", "heathcote"),
+    [
+        (None, 0.0137, 0.0186),
+        (None, 0.0, 0.0),
+        (None, 0.1, 0.0),
+        (Layer(thickness=1e-6, solid=solid(0.5e9, 0.46)), 0.0013, 0.0),
+        (Layer(thickness=5e-6, solid=solid(4e9, 0.38)), 0.0137, 0.0186),
+    ],
+)
+def test_the_slope_error_bounds_the_error(film, spin, heathcote):
+    """Outer race at mu 0.1: 56 columns and 96 rows are within the reported error of the usual grid."""
+    a = OUTER[0].semi_major
+    creep = Creep(spin=spin / a, curvature=heathcote / a**2)
+    usual = traction_slope(problem(OUTER[0], film=film), creep)
+    fine = traction_slope(problem(OUTER[0], film=film), creep, columns=(40, 56), rows=96)
+    assert abs(usual.slope - fine.slope) < usual.slope_error < 0.03 * usual.slope
+
+
+def test_lateral_force_of_spin():
+    """The strips have none: here 0.13 and 0.24 mu N at mu 0.1, opposite in the two races."""
+    lateral = [
+        traction_slope(problem(e), c, columns=(10, 14), rows=40).solution.lateral_force / (MU * e.load)
+        for e, c in (INNER, OUTER)
+    ]
+    assert lateral == pytest.approx([0.13, -0.24], abs=0.01)
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+def test_slopes_of_thin_films_do_not_depend_on_the_columns():
+    """1 um of 0.5 GPa: 14 and 40 columns within 0.5 %; without the rules of the row ends, 5 %."""
+    film = Layer(thickness=1e-6, solid=solid(0.5e9, 0.46))
+    found = [
+        traction_slope(problem(OUTER[0], film=film), OUTER[1], columns=(10, n), rows=64).slope
+        for n in (14, 40)
+    ]
+    assert found[0] == pytest.approx(found[1], rel=5e-3)
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
+    """3 um of 0.5 GPa: pressure down to 1060 MPa, slope of the outer race from 6.3 to 8.9.
+
+    8.87 is the slope on twice the cells and pressures on 200 x 480 cells; 0.5 %. With the row ends by the
+    root law alone, which a soft film does not follow, it is 5 % lower.
+    """
+    film = Layer(thickness=3e-6, solid=solid(0.5e9, 0.46))
+    hertz = traction_slope(problem(OUTER[0], film=film), OUTER[1])
+    own = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
+    assert hertz.slope == pytest.approx(6.25, rel=0.01)
+    assert own.slope == pytest.approx(8.87, rel=5e-3)
+    assert own.solution.max_pressure == pytest.approx(1064e6, rel=5e-3)
+    bodies = BARE, Body(base=STEEL, layers=(film,))
+    assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
+
+
+def test_symmetric_cases_roll_freely_without_offset():
+    """No Heathcote slip: offset 0; no friction: no slope."""
+    found = traction_slope(problem(INNER[0]), Creep(spin=20.0, curvature=0.0), columns=(8, 12), rows=24)
+    assert found.free_rolling_offset == 0.0
+    assert found.slope > 0.0
+    idle = traction_slope(problem(INNER[0], 0.0), Creep(spin=0.0, curvature=0.0), columns=(8, 12), rows=24)
+    assert idle.slope == 0.0
+
+
+def test_free_rolling_that_is_not_found_is_an_error(monkeypatch):
+    """With the force it came to."""
+    from separatrix.chain.traction.exact import slope as module
+
+    monkeypatch.setattr(module, "LARGEST_STEPS", 1)
+    with pytest.raises(ConvergenceError, match="Free rolling was not found in 1 steps"):
+        traction_slope(problem(OUTER[0]), OUTER[1], columns=(8, 12), rows=24)
+
+
+WORN = [(0.0, 3.64, 10.8), (0.1, 10.04, 21.1), (0.2, 11.07, 26.6), (0.5, 11.01, 33.6), (1.0, 10.96, 41.0)]
+
+
+@pytest.mark.parametrize(("share", "inner", "outer"), WORN)
+def test_worn_track(share, inner, outer):
+    """Film of 3 um and 1.5 GPa at mu 0.1, worn off a band to steel at 0.3: slopes to 1.2 %.
+
+    0.8 % is what rows that meet the edges of the band leave against rows twice as fine.
+    """
+    L = 3e-6 / solid(1.5e9, 0.4).shear_modulus
+    for (ellipse, creep), expected in ((INNER, inner), (OUTER, outer)):
+        w = share * ellipse.semi_major
+        friction = worn_band(w, worn=0.3, film=0.1)
+        compliance = worn_band(w, worn=0.0, film=L)
+        found = traction_slope(problem(ellipse, friction, film_compliance=compliance), creep)
+        assert found.slope == pytest.approx(expected, rel=0.012)
+
+
+def test_profiles():
+    """Means over the rows, steps, constants beyond the ends, and what is refused."""
+    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=8, rows=8)
+    line = Profile(across=(-1.0, 1.0), values=(0.0, 2.0))
+    assert line.row_means(grid)[:, 0] == pytest.approx(1.0 + grid.y)
+    band = over_cells(worn_band(0.5, worn=0.0, film=3.0), grid)
+    assert band.shape == grid.shape
+    assert band[:, 0].tolist() == [3.0, 3.0, 0.0, 0.0, 0.0, 0.0, 3.0, 3.0]
+    with pytest.raises(InputError, match=r"Profile.across must be finite, in increasing order"):
+        Profile(across=(1.0, 0.0), values=(1.0, 1.0))
+    with pytest.raises(InputError, match=r"Profile.values must be >= 0"):
+        Profile(across=(0.0,), values=(-1.0,))
+
+
+def test_bounds():
+    """Cohesion, coefficient and shear strength: sums of the bound in full sliding."""
+    made = contact(0.5, columns=20, rows=20)
+    grid, p = made.grid, made.pressure
+    law = FrictionLaw(coefficient=0.1, cohesion=0.02 * P0, shear_strength=0.07 * P0)
+    g, f = law.bound(grid, p), grid.fraction
+    assert g == pytest.approx(np.minimum(0.02 * P0 * f + 0.1 * p, 0.07 * P0 * f))
+    same = ContactProblem(ellipse=made.problem.ellipse, bodies=made.problem.bodies, friction=law)
+    slid = solve(rolling_contact(same, columns=20, rows=20), rigid_slip(grid, longitudinal=0.1))
+    assert slid.force == pytest.approx(-g.sum() * grid.cell_area, rel=1e-5)
+
+
+def test_slip_of_the_pressure_on_a_circle():
+    """Unlike half-spaces: u_r = -dc_rz p0 a^2/(3 r) [1 - (1 - r^2/a^2)^1.5] (Johnson 1985, 3.41b).
+
+    1 % of the largest: the periodic box and the linear interpolation.
+    """
+    soft, hard = body(0.3, G=1.0), body(0.3, G=5.0)
+    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=24, rows=24)
+    p = elliptic_pressure(grid, semi_minor=1.0, semi_major=1.0, max_pressure=1.0)
+    found = pressure_slip(grid, p, (soft, hard))
+    dc = 0.5 * (1.0 - 2.0 * 0.3) * (1.0 - 1.0 / 5.0)
+    x, y = np.broadcast_arrays(grid.x, grid.y[:, None])
+
+    def u_over_r(r2):
+        return -dc * 2.0 / 3.0 * (1.0 - np.maximum(1.0 - r2, 0.0) ** 1.5) / r2
+
+    e = 1e-5
+    moved = [(x + side * e) * u_over_r((x + side * e) ** 2 + y * y) for side in (1.0, -1.0)]
+    W_x = -(moved[0] - moved[1]) / (2.0 * e)
+    inside = np.hypot(x, y) < 0.9
+    assert found[0][inside] == pytest.approx(0.5 * W_x[inside], abs=0.01 * dc)
+
+
+def test_free_rolling_of_unlike_bodies():
+    """Little friction, slender ellipse: strips slide by 2 beta p/E*, whose half load is at p = 0.5^(1/3) p0.
+
+    (Bentall & Johnson 1967 have a single strip.) In an ellipse the stretch along x is a/(a + b) of the plane
+    one if the pressure is uniform; 3 % for its not being so.
+    """
+    ball, track = body(0.3, G=1.0), body(0.3, G=4.0)
+    made = contact(0.05, race=track, columns=20, rows=20)
+    slender = ContactProblem(
+        ellipse=made.problem.ellipse,
+        bodies=(ball, track),
+        friction=FrictionLaw(coefficient=1e-4),
+        coupled=True,
+    )
+    found = traction_slope(slender, Creep(spin=0.0, curvature=0.0), columns=(16, 20), rows=20)
+    beta_term = 0.5 * (1.0 - 0.6) * (1.0 - 1.0 / 4.0) * P0
+    assert found.free_rolling_offset == pytest.approx(-(0.5 ** (1.0 / 3.0)) * beta_term / 1.05, rel=0.03)
+    assert not contact(0.3, columns=8, rows=8, coupled=True).coupling.any()
+
+
+def test_cattaneo_shift():
+    """Sphere of R 50, G 200, nu 0.42 under 9.1954, mu 0.4: 0.875 mu N at 8.156e-3; a quarter sticks.
+
+    The closed form, without the lateral tractions, is 8.1724e-3. 0.05 % at 40 x 40 cells.
+    """
+    G, nu, load, R = 200.0, 0.42, 9.1954, 50.0
+    a = (3.0 * load * R * (1.0 - nu) / (4.0 * G)) ** (1.0 / 3.0)
+    sphere = ContactEllipse(
+        load=load,
+        semi_major=a,
+        semi_minor=a,
+        max_pressure=1.5 * load / (math.pi * a * a),
+        approach=a * a / R,
+        curvature_rolling=1.0 / R,
+        curvature_transverse=1.0 / R,
+        contact_modulus=G / (1.0 - nu),
+    )
+    both = (body(nu, G=G), body(nu, G=G))
+    made = rolling_contact(ContactProblem(ellipse=sphere, bodies=both, friction=FrictionLaw(coefficient=0.4)))
+    shifted = shift(made, rigid_slip(made.grid, longitudinal=-8.156e-3))
+    assert shifted.force / (0.4 * load) == pytest.approx(0.875, rel=5e-4)
+    assert shifted.stick_share == pytest.approx(0.25, abs=0.005)
+    back = shift(made, rigid_slip(made.grid, longitudinal=8.156e-3), start=shifted.traction)
+    assert -back.force + shifted.force > 0.0  # returns, not on the same way
+    assert abs(back.force) < 0.5 * abs(shifted.force)
+
+
+def test_transient_rolling_from_rest():
+    """Creep step on a sticking circle: T/T_oo at s/a = 0.4, 1, 2, 4, extrapolated; 0.002 is theirs."""
+    courses = []
+    for n in (20, 40):
+        made = contact(1.0, columns=n, rows=n, friction=1e6)
+        slip = rigid_slip(made.grid, longitudinal=1e-6)
+        steps = transient(made, [slip] * (5 * n))
+        forces = np.array([one.force for one in steps])
+        courses.append(forces[[n // 5 - 1, n // 2 - 1, n - 1, 2 * n - 1]] / forces[-1])
+    rough, fine = courses
+    assert 2.0 * fine - rough == pytest.approx([0.2086, 0.469, 0.754, 0.947], abs=4e-3)
+
+
+def test_transient_of_a_film_alone():
+    """Strip of half length 1: T/T_oo = s - s^2/4 up to s = 2, then steady; 1e-3, half of the first step."""
+    made = contact(0.01, columns=20, rows=4, friction=1e12, film_compliance=1e6)
+    slip = rigid_slip(made.grid, longitudinal=1.0)
+    forces = np.array([one.force for one in transient(made, [slip] * 24)])
+    half = 0.5 * made.grid.fraction.sum(axis=1) * made.grid.dx
+    s = made.grid.dx * np.arange(1.0, 25.0)[:, None]
+    rolled = np.minimum(s, 2.0 * half)
+    ramp = (2.0 * half * rolled - 0.5 * rolled**2).sum(axis=1) * made.grid.dy / 1e6
+    assert -forces == pytest.approx(ramp, rel=1e-3)
+
+
+def test_transient_ends_in_steady_rolling():
+    """Partial slip, after four contact lengths: the steady force to 2 %, the first order of 20 steps."""
+    made, xs = contact(0.4, columns=20, rows=12), saturation(0.25)
+    slip = rigid_slip(made.grid, longitudinal=0.3 * xs, spin=0.5 * xs)
+    last = transient(made, [slip] * 80)[-1]
+    steady = solve(made, slip)
+    assert last.force == pytest.approx(steady.force, rel=0.02)
+    assert last.stick_share == pytest.approx(steady.stick_share, abs=0.05)
+    assert kalker(made, 0.3 * xs, phi=-0.5 * xs).force == pytest.approx(steady.force)
