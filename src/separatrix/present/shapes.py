@@ -80,12 +80,18 @@ def _(found: CheckAnswer) -> Node:
 
 @shape.register
 def _(found: TractionAnswer) -> Node:
-    at = found.bearing
-    return {
-        "race_friction": Leaf(found.race_friction, "-"),
-        "inner": Group(_curve(at.inner, found.inner, found.inner_others, found.inner_shear)),
-        "outer": Group(_curve(at.outer, found.outer, found.outer_others, found.outer_shear)),
-    }
+    at, models = found.bearing, shape(found.comparison)
+    races: Node = {}
+    for race in ("inner", "outer"):
+        curve, others, shear = (getattr(found, f"{race}{part}") for part in ("", "_others", "_shear"))
+        node = _curve(getattr(at, race), curve, others, shear)
+        for model in ("strips", "exact"):
+            own: TractionCurve | None = getattr(found, f"{race}_{model}")
+            coefficient = None if own is None else own.traction_coefficient
+            node[f"{model}_traction_coefficient"] = Leaf(coefficient, "-", ("increment",))
+        races[race] = Group(node | {"free_rolling": models[race]})
+    ranges = {"models": models["models"], "outside": models["outside"]}
+    return {"race_friction": Leaf(found.race_friction, "-"), **races, **ranges}
 
 
 def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve], shear: ShearField) -> Node:
