@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from separatrix.cage import History, PlanarCage
 from separatrix.chain.contacts import BearingState
+from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
 from separatrix.chain.models import ModelComparison
 from separatrix.chain.solution import Solution
@@ -52,11 +53,16 @@ class TractionAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionAnswer:
-    """Restitution factor, and what it would be with other films; None without a film material."""
+    """Restitution factor, and what it would be with other films; None without a film material.
+
+    `exact_films` are of a study with the exact model, `wear` of one with a worn band.
+    """
 
     solution: Solution
     film_thickness: Metre
     lubrication: LubricationCurve | None
+    exact_films: ExactFilms | None
+    wear: WearCurve | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,6 +28,7 @@ from separatrix.cage_choice import (
     required_environment,
 )
 from separatrix.chain.contacts import BearingState, race_track
+from separatrix.chain.film_curves import exact_films, wear_curve
 from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, shear
@@ -147,8 +148,15 @@ def restitution(study: Study) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
+    with warnings.catch_warnings():  # of films that are not the study's
+        warnings.simplefilter("ignore", ValidityWarning)
+        films, wear = exact_films(solution), wear_curve(solution)
     return RestitutionAnswer(
-        solution=solution, film_thickness=study.film.thickness or 0.0, lubrication=solution.lubrication
+        solution=solution,
+        film_thickness=study.film.thickness or 0.0,
+        lubrication=solution.lubrication,
+        exact_films=films,
+        wear=wear,
     )
 
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from separatrix.chain.contacts import RaceContact, race_track
-from separatrix.chain.race_curve import RaceTrack, exact_slope, strips
+from separatrix.chain.race_curve import RaceTrack, contact_problem, exact_slope, strips
 from separatrix.chain.restitution import contact_damping, race_damping, restitution
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction.exact import RaceSlope
+from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import ContactPressure, PressureSlip, Race, TractionModel, TractionSettings
 from separatrix.units import Newton, NewtonMetre, NewtonSecondPerMetre, Pascal, Ratio, Rows, Watt
@@ -157,14 +158,15 @@ def _slopes(
 
 
 def _free_rolling(found: RaceSlope, at: RaceContact, track: RaceTrack) -> FreeRolling:
-    one = found.solution
+    one, whole = found.solution, replace(track, film=replace(track.film, wear=None))
+    bodies = contact_problem(whole, TractionSettings()).bodies
     return FreeRolling(
         lateral_force=one.lateral_force,
         lateral_share=one.lateral_force / (track.film.race_friction * at.load),
         spin_moment=one.spin_moment,
         stick_share=one.stick_share,
         max_pressure=one.max_pressure,
-        film_strain=one.film_strain,
+        film_strain=film_strain(bodies, one.max_pressure),
         dissipation=one.dissipation * abs(at.rolling_speed),
     )
 

@@ -116,12 +116,24 @@ def _chain(found: Solution) -> Node:
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
     node = _chain(found.solution) | {"film_thickness_here": Leaf(found.film_thickness, "m")}
+    if found.wear is not None:
+        node["wear"] = Group(shape(found.wear) | {"here": Leaf(_worn_share(found.solution), "-")})
+    if found.exact_films is not None:
+        node["exact_films"] = Group(shape(found.exact_films))
     if found.lubrication is not None:
         return node | {"lubrication": Group(shape(found.lubrication))}
     return node | {
         "lubrication": Leaf(None),
         "lubrication_reason": Leaf("The study names no film material."),
     }
+
+
+def _worn_share(found: Solution) -> float:
+    """Width of the study's worn band over that of the wider contact."""
+    wear, contacts = found.study.film.wear, (found.bearing.inner, found.bearing.outer)
+    if wear is None or wear.width is None:
+        return 0.0 if wear is None else wear.share or 0.0
+    return min(1.0, 0.5 * wear.width / max(at.ellipse.semi_major for at in contacts))
 
 
 # The cage.

@@ -18,6 +18,7 @@ from separatrix.present.text.tables import (
     table,
 )
 from separatrix.present.walk import Leaf, Node, fields_of
+from separatrix.study import PressureSlip, Worn
 
 if TYPE_CHECKING:
     from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
@@ -149,7 +150,7 @@ def _models(rows: Sequence[ModelSlopes]) -> str:
     return table(("model", "pressure", "slope in", "slope out", "C_mu", "eta"), cells, left=2)
 
 
-def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: ARG001
+def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:
     """Both restitution factors and what they are made of."""
     solution, found = answer.solution, answer.solution.restitution
     contacts, curves = solution.bearing, solution.traction
@@ -162,6 +163,7 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     )
     hertz = stated(found, "restitution_factor_hertz")
     pocket = [
+        ("Contacts", contact_words(study)),
         ("Ball/cage stiffness", f"{stated(found, 'ball_cage_stiffness')} ({solution.stiffness_source})"),
         ("Cage mass", stated(found, "cage_mass")),
         ("eta of a Hertzian pocket", f"{hertz} in an impact at the impact speed, less in a harder one"),
@@ -169,8 +171,26 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     return [
         section("Restitution factor", table(("", "dampings summed (Eq. 18)", "if the ball may spin"), cells)),
         section("From the contacts of the most loaded ball", _by_race(inner, outer, DAMPING)),
-        section("And the pocket", facts(pocket)),
+        section("And the rest", facts(pocket)),
     ]
+
+
+def contact_words(study: Study) -> str:
+    """Return how the contacts were computed, and what of the film is worn."""
+    asked, wear = study.traction, study.film.wear
+    model = {"strips": "strips", "exact": "exact contact"}[asked.model.value]
+    pressure = {"hertz": "Hertz's pressure", "coated": "pressure of the coated bodies"}[asked.pressure.value]
+    words = f"{model}, {pressure}"
+    if asked.pressure_slip is PressureSlip.INCLUDED:
+        words += ", slip by the pressure included"
+    if wear is None:
+        return words
+    where = "" if wear.races is Worn.BOTH else f" of the {wear.races.value} race"
+    if not wear.is_band:
+        return f"{words}; film{where} worn by a measured profile of {len(wear.across)} places"
+    band = quantity(wear.width, "m") if wear.width is not None else f"{wear.share:.3g} of the contact's width"
+    left = f"{quantity(wear.thickness, 'm')} left" if wear.thickness else f"bare, friction {wear.friction:g}"
+    return f"{words}; film{where} worn over {band}, {left}"
 
 
 def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
@@ -197,6 +217,7 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
         ("Bearing", f"{balls}, pitch diameter {quantity(at.pitch_diameter, 'm')}"),
         ("Operation", ", ".join([f"inner ring {quantity(operation.inner_speed, 'rad/s')}", *loaded])),
         ("Film on the races", f"{coat}; friction {quantity(film.race_friction, '-')}"),
+        ("Traction", contact_words(study)),
         ("Contact angles", both(inner, outer, "contact_angle")),
         ("Loads of the ball", both(inner, outer, "load")),
         ("Traction slopes", both(slopes.inner, slopes.outer, "slope")),
