@@ -22,6 +22,7 @@ from separatrix.units import Array, Metre, Newton, Ratio
 TOLERANCE = 1e-8  # change of the pressures in one iteration over the load
 LARGEST_ITERATIONS = 1000
 REFINED = 3  # cells of the pressure along each side of a cell of the tractions
+LARGEST_BOX = 100.0  # half lengths of the ellipse; a film that spreads the contact so far carries 1e-4 of p0
 SEARCH_CELLS = 24  # cells along each side of the box in which the size of the contact is looked for
 
 
@@ -88,11 +89,23 @@ def pressed_contact(
 
     `ellipse` has the load and the curvatures of the gap; `columns` and `rows` lie over a box some cells wider
     than the contact, whose size is found on a coarser grid first. The pressure is solved on finer cells.
+
+    Raises
+    ------
+    InputError
+        A contact that reaches beyond 100 half lengths of its ellipse.
+    ConvergenceError
+        The pressures did not settle.
     """
     images = pair_images(*bodies)
     half = 1.5 * np.array([ellipse.semi_minor, ellipse.semi_major])
+    largest = LARGEST_BOX * ellipse.semi_major
     found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
     while _touches_edge(found[2].pressure):
+        if half[1] > largest:
+            rule = f"must not reach beyond {LARGEST_BOX:g} half lengths of its ellipse"
+            cure = "Check the curvatures of the ellipse and the thickness of the films."
+            raise InputError("ContactProblem: contact under its own pressure", rule, "a wider one", cure)
         half *= 1.5
         found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
     pressed = found[2].pressure > 0.0

@@ -29,7 +29,7 @@ from separatrix.chain.traction.exact.contact import (
 from separatrix.chain.traction.exact.krylov import right_side, solve_step
 from separatrix.chain.traction.exact.newton import Settled
 from separatrix.chain.traction.exact.operator import unresolved_film
-from separatrix.errors import ConvergenceError
+from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array, Newton, Ratio
 
 TOLERANCE = 1e-6  # of the tractions
@@ -68,9 +68,16 @@ def traction_slope(
 
     Raises
     ------
+    InputError
+        A creep that is not finite, columns that do not increase.
     ConvergenceError
         Free rolling or the tractions did not settle.
     """
+    for name, value in (("spin", creep.spin), ("curvature", creep.curvature)):
+        if not math.isfinite(value):
+            raise InputError(f"traction_slope: creep.{name}", "must be finite", f"{value:g}")
+    if not columns[0] < columns[1]:
+        raise InputError("traction_slope: columns", "must be strictly increasing", f"{columns}")
     rows = _aligned(problem, rows)
     coarse, fine = (rolling_contact(problem, columns=n, rows=rows) for n in columns)
     curve = Curve(fine, creep)
