@@ -35,6 +35,7 @@ from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre
 LARGEST_TOLERANCE = 0.1
 LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling
 LARGEST_STRAIN = 1.0
+THICKEST = 100.0  # layers over the semi-major axis; the sum of the images loses digits from 1000 on
 DOUBTFUL_STRAIN = 0.1
 SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
 
@@ -132,7 +133,8 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
     Raises
     ------
     InputError
-        A film that the pressure would compress by more than itself, or a grid that is too coarse or too fine.
+        A film that the pressure would compress by more than itself, layers thicker than 100 semi-major axes,
+        or a grid that is too coarse or too fine.
 
     Warns
     -----
@@ -140,10 +142,11 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         The film is compressed by more than a tenth: it is not linearly elastic there.
     """
     for name, count in (("columns", columns), ("rows", rows)):
-        if count != int(count) or not SMALLEST_SIDE <= count <= LARGEST_SIDE:
+        if not SMALLEST_SIDE <= count <= LARGEST_SIDE or count != int(count):
             rule = f"must be a whole number and lie from {SMALLEST_SIDE} to {LARGEST_SIDE}"
             raise InputError(f"rolling_contact: {name}", rule, f"{count}")
     ellipse, bodies = problem.ellipse, problem.bodies
+    _check_layers(problem)
     if problem.own_pressure:
         grid, pressure, _ = pressed_contact(ellipse, bodies, columns=columns, rows=rows)
     else:
@@ -162,6 +165,14 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         film_strain=_checked_strain(bodies, _largest_pressure(problem, pressure)),
         operator=rolling_operator(grid, bodies, compliance),
     )
+
+
+def _check_layers(problem: ContactProblem) -> None:
+    thickest = max(sum(layer.thickness for layer in body.layers) for body in problem.bodies)
+    largest = THICKEST * problem.ellipse.semi_major
+    if thickest > largest:
+        rule = f"must be at most {largest:g} m thick together, {THICKEST:g} semi-major axes of the contact"
+        raise InputError("Body.layers", rule, f"{thickest:g} m", "Take the outermost one as the base.")
 
 
 def _compliance(problem: ContactProblem, grid: Grid, pressure: Array) -> Array | None:
