@@ -253,7 +253,7 @@ def test_threads_of_libraries_are_the_same():
 def test_1000_random_contacts_converge():
     """Shape, creeps, film, friction, Poisson's ratio and grid at random, all from a cold start.
 
-    4.1 passes on average, 16 at most; 5 s.
+    4.1 passes on average, 12 at most; 5 s.
     """
     rng = np.random.default_rng(2026)
     passes = [random_case(rng).iterations for _ in range(1000)]

@@ -126,6 +126,19 @@ def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
     assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
 
 
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.parametrize(
+    ("E", "nu", "thickness", "converged"),
+    [(0.5, 0.46, 1, 11.967), (0.5, 0.46, 3, 8.871), (4.0, 0.38, 3, 13.961), (4.0, 0.38, 10, 12.627)],
+)
+def test_the_slope_error_of_own_pressure(E, nu, thickness, converged):
+    """Bounds the difference to 56 columns and 128 rows, 0.5 % at most."""
+    film = Layer(thickness=thickness * 1e-6, solid=solid(E * 1e9, nu))
+    found = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
+    assert abs(found.slope - converged) < min(found.slope_error, 5e-3 * converged)
+    assert found.slope_error < 0.03 * found.slope
+
+
 def test_symmetric_cases_roll_freely_without_offset():
     """No Heathcote slip: offset 0; no friction: no slope."""
     found = traction_slope(problem(INNER[0]), Creep(spin=20.0, curvature=0.0), columns=(8, 12), rows=24)

@@ -40,6 +40,7 @@ SHORTEST_CHORD = 2e-3  # of the creep that saturates a tangent; below it the tan
 BALANCED = 1e-5  # force of free rolling over the force of sliding
 LARGEST_STEPS = 40
 SAMPLING = 1e-3  # relative error of a chord by the places of rows and columns (measured in the tests)
+PRESSED = 5e-3  # relative error by the row ends of a solved pressure (measured in the tests)
 UNRESOLVED = 0.01  # largest error of the rules for thin films (measured in the tests)
 
 
@@ -64,7 +65,7 @@ def traction_slope(
 
     The error falls with the first power of the columns. A tangent of bare bodies is extrapolated to none; a
     chord, in which stick and slip change cell by cell, is not. `slope_error` adds that step, what the
-    extrapolation of the chord changed, and the errors of sampling and of thin films.
+    extrapolation of the chord changed, and the errors of sampling, of thin films and of the row ends of a solved pressure.
 
     Raises
     ------
@@ -85,10 +86,10 @@ def traction_slope(
     slope, chord_error, smooth = curve.slope(offset)
     rough, _, _ = Curve(coarse, creep).slope(offset)
     step = (slope - rough) * columns[0] / (columns[1] - columns[0])
-    film = _film_error(fine)
+    film, ends = _film_error(fine), PRESSED if problem.own_pressure else 0.0
     return RaceSlope(
         slope=slope + step if smooth and film == 0.0 else slope,
-        slope_error=chord_error + abs(step) + (SAMPLING + film) * slope,
+        slope_error=chord_error + abs(step) + (SAMPLING + film + ends) * slope,
         free_rolling_offset=offset,
         solution=solution_of(fine, curve.at(offset)),
     )
