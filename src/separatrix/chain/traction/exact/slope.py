@@ -65,7 +65,8 @@ def traction_slope(
 
     The error falls with the first power of the columns. A tangent of bare bodies is extrapolated to none; a
     chord, in which stick and slip change cell by cell, is not. `slope_error` adds that step, what the
-    extrapolation of the chord changed, and the errors of sampling, of thin films and of the row ends of a solved pressure.
+    extrapolation of the chord changed, and the errors of sampling, of thin films and of the row ends of a
+    solved pressure.
 
     Raises
     ------
