@@ -153,6 +153,12 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
+    return contact_on(problem, grid, pressure)
+
+
+def contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
+    """A problem on a known grid under a known pressure, shape (row, column) [Pa]."""
+    bodies = problem.bodies
     compliance = _compliance(problem, grid, pressure)
     coupling = pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape))
     return RollingContact(
@@ -199,7 +205,7 @@ def _checked_strain(bodies: tuple[Body, Body], max_pressure: Pascal) -> Ratio:
             f"the film is compressed by {strain:.2g} of its thickness; linear elasticity holds to about "
             f"{DOUBTFUL_STRAIN:g}.",
             ValidityWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     return strain
 
