@@ -156,7 +156,7 @@ def shifts_table():
 def contact_examples():
     """Public examples of CONTACT at 40 x 40 and extrapolated over 30 and 60."""
     print("## CONTACT: at 40, and 2 f(60) - f(30)")
-    examples = (
+    examples: tuple[tuple[dict[str, float], tuple[float, ...]], ...] = (
         ({}, (243.8, 0.255, 0.468, 0.640, 0.774)),
         ({"film_compliance": 1.25 / 8200.0}, (63.6,)),
     )

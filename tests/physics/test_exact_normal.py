@@ -42,7 +42,7 @@ def test_ends_of_a_pressed_patch(power):
 def test_hertz(curvatures):
     """Bare bodies: largest pressure and approach of the closed form; 0.2 % is the cell at the top."""
     bare = body(0.3, G=80e9)
-    hertz = contact_ellipse(300.0, *curvatures, 80e9 / 0.7)
+    hertz = contact_ellipse(300.0, curvatures[0], curvatures[1], 80e9 / 0.7)
     grid, pressure, approach = pressed_contact(hertz, (bare, bare), columns=32, rows=32)
     assert pressure.max() == pytest.approx(hertz.max_pressure, rel=2e-3)
     assert approach == pytest.approx(hertz.approach, rel=2e-3)
