@@ -105,11 +105,28 @@ REFUSED = [
         lambda: FrictionLaw(coefficient=0.1, shear_strength=NAN),
         "FrictionLaw.shear_strength must be > 0 [Pa]; got nan.",
     ),
-    (lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)), "Profile."),
-    (lambda: Profile(across=(0.0,), values=(NAN,)), "Profile."),
-    (lambda: Profile(across=(0.0,), values=(INF,)), "Profile."),
-    (lambda: Profile(across=(0.0,), values=(-0.1,)), "Profile.values must be"),
-    (lambda: worn_band(NAN, worn=0.3, film=0.1), "Profile."),
+    (
+        lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)),
+        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0, nan).",
+    ),
+    (
+        lambda: Profile(across=(0.0,), values=(0.1, 0.2)),
+        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0,).",
+    ),
+    (
+        lambda: Profile(across=(0.0,), values=(NAN,)),
+        "Profile.values must be finite and >= 0; got nan.",
+    ),
+    (lambda: Profile(across=(0.0,), values=(INF,)), "Profile.values must be finite and >= 0; got inf."),
+    (lambda: Profile(across=(0.0,), values=(-0.1,)), "Profile.values must be finite and >= 0; got -0.1."),
+    (
+        lambda: worn_band(NAN, worn=0.3, film=0.1),
+        "Profile.across must be finite, in increasing order, one place for each value [m]; got (nan, nan,",
+    ),
+    (
+        lambda: worn_band(-1e-4, worn=0.3, film=0.1),
+        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0001, 0",
+    ),
     # problem and grid
     *(
         (
