@@ -17,8 +17,9 @@ from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.orbit import mean_speed
-from separatrix.chain.race_curve import RaceTrack, race_curve
+from separatrix.chain.race_curve import RaceTrack, exact_slope, race_curve
 from separatrix.chain.traction import TractionCurve
+from separatrix.chain.traction.exact import RaceSlope
 from separatrix.errors import InputError
 from separatrix.study import (
     BallBearing,
@@ -125,6 +126,36 @@ def race_traction(
         with ThreadPoolExecutor(2) as pool:
             inner, outer = pool.map(lambda track: race_curve(track, settings), tracks)
     return RaceTraction(inner=_unchangeable(inner), outer=_unchangeable(outer))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceSlopes:
+    """Slopes of the traction curves at free rolling, with their errors and offsets."""
+
+    inner: TractionCurve | RaceSlope
+    outer: TractionCurve | RaceSlope
+
+
+@lru_cache(maxsize=REMEMBERED)
+def race_slopes(
+    bearing: BallBearing,
+    operation: Operation,
+    kinematics: KinematicModel,
+    film: Film,
+    settings: TractionSettings,
+) -> RaceSlopes:
+    """Slopes of both races, remembered by the value of these records; the exact contact needs no curve."""
+    if settings.model is TractionModel.STRIPS:
+        curves = race_traction(bearing, operation, kinematics, film, settings)
+        return RaceSlopes(inner=curves.inner, outer=curves.outer)
+    state = bearing_state(bearing, operation, kinematics, film.race_friction)
+    tracks = [
+        race_track(bearing, film, race, at)
+        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
+    ]
+    with ThreadPoolExecutor(2) as pool:
+        inner, outer = pool.map(lambda track: exact_slope(track, settings), tracks)
+    return RaceSlopes(inner=inner, outer=outer)
 
 
 def race_track(bearing: BallBearing, film: Film, race: Race, at: RaceContact) -> RaceTrack:

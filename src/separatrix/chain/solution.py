@@ -17,8 +17,10 @@ from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
 from separatrix.chain.contacts import (
     BearingState,
+    RaceSlopes,
     RaceTraction,
     bearing_state,
+    race_slopes,
     race_traction,
     require_rolling,
 )
@@ -121,6 +123,14 @@ class Solution:
         _ = self.bearing  # its warnings
         return race_traction(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
 
+    @cached_property
+    def slopes(self) -> RaceSlopes:
+        """Slopes of both traction curves at free rolling; refused as `traction` is."""
+        asked = self.study
+        require_rolling(asked)
+        _ = self.bearing  # its warnings
+        return race_slopes(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+
     @property
     def design(self) -> CageDesign:
         """The cage of the study.
@@ -189,7 +199,7 @@ class Solution:
     def restitution(self) -> Restitution:
         """Restitution factor of the cage's impacts, with the race damping behind it."""
         mass = self.design.mass  # refused before anything is computed
-        slopes, contacts = self.traction, self.bearing
+        slopes, contacts = self.slopes, self.bearing
         inner, outer = (
             contact_damping(curve.slope, at.load, at.rolling_speed)
             for curve, at in ((slopes.inner, contacts.inner), (slopes.outer, contacts.outer))

@@ -176,7 +176,7 @@ def _swept(study: Study, place: int, case: Case, runner: Runner | None) -> Swept
     try:
         solution = solve(varied(study, case))
         found = replace(found, **_of_bearing(solution.bearing))
-        traction = solution.traction
+        traction = solution.slopes
         found = replace(found, slope_inner=traction.inner.slope, slope_outer=traction.outer.slope)
         if study.cage is None:
             return found

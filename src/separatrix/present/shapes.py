@@ -104,7 +104,7 @@ def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve
 def _chain(found: Solution) -> Node:
     """Restitution and the contacts, which have the slopes of their traction curves."""
     node = shape(found.restitution) | {"stiffness_source": Leaf(found.stiffness_source)}
-    contacts, curves = found.bearing, found.traction
+    contacts, curves = found.bearing, found.slopes
     for race, at, curve in (
         ("inner", contacts.inner, curves.inner),
         ("outer", contacts.outer, curves.outer),

@@ -153,7 +153,7 @@ def _models(rows: Sequence[ModelSlopes]) -> str:
 def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:
     """Both restitution factors and what they are made of."""
     solution, found = answer.solution, answer.solution.restitution
-    contacts, curves = solution.bearing, solution.traction
+    contacts, curves = solution.bearing, solution.slopes
     cells = [
         [words, *(stated(found, name + end) for end in ("", "_free_spin"))] for name, words in FACTORS.items()
     ]
@@ -203,7 +203,7 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
         modulus = quantity(film.material.elastic_modulus, "Pa")
         coat = f"{film.material.name}, {quantity(film.thickness, 'm')}, modulus {modulus}"
     balls = f"{at.ball_count} balls of {quantity(at.ball_diameter, 'm')}"
-    found, slopes = solution.restitution, solution.traction
+    found, slopes = solution.restitution, solution.slopes
     inner, outer = solution.bearing.inner, solution.bearing.outer
     free = found.restitution_factor_free_spin
     spins = f"{number(free)}{' (overdamped)' if free == 0.0 else ''} if the ball may spin"
