@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
@@ -24,9 +24,10 @@ from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, over_cells
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body
-from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure
+from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure, pressed_grid
+from separatrix.chain.traction.exact.images import pair_images
 from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
-from separatrix.chain.traction.exact.normal import film_strain, pressed_contact
+from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
 from separatrix.chain.traction.exact.operator import Operator, rolling_operator
 from separatrix.chain.traction.exact.precondition import SLIP
 from separatrix.errors import ConvergenceError, InputError, ValidityWarning
@@ -144,6 +145,39 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
+    return _on_grid(problem, grid, pressure)
+
+
+def gap_contact(
+    problem: ContactProblem, gap: Array, *, along: Array, across: Array, spacing: tuple[Metre, Metre]
+) -> RollingContact:
+    """Put bodies of any undeformed gap, a cell mean, shape (row, column) [m], on the cells of that gap.
+
+    `spacing` is the width of a row and of a column [m]; a single row is a contact in the plane, of the row's
+    width. The pressure is solved; of the ellipse of the problem only the load and the pair modulus count.
+
+    Raises
+    ------
+    InputError
+        A gap that is not finite, or as of `rolling_contact`.
+    ConvergenceError
+        The pressure did not settle.
+    """
+    pressing = press(gap, spacing, pair_images(*problem.bodies), problem.ellipse.load)
+    grid, pressure = pressed_grid(along, across, pressing.pressure, row_width=spacing[0])
+    b, a = extent(grid)
+    found = replace(
+        problem.ellipse,
+        semi_minor=b,
+        semi_major=a,
+        max_pressure=float(pressure.max()),
+        approach=pressing.approach,
+    )
+    return _on_grid(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
+
+
+def _on_grid(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
+    bodies = problem.bodies
     compliance = None
     if isinstance(problem.film_compliance, Profile) or problem.film_compliance > 0.0:
         compliance = over_cells(problem.film_compliance, grid)
