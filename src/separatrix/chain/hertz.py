@@ -148,7 +148,7 @@ def axis_ratio(curvature_ratio: Ratio) -> Ratio:
 
 
 def curvature_ratio(axis_ratio: Ratio) -> Ratio:
-    """Ratio R_y/R_x >= 1 of the gap's radii that an ellipse of this b/a in (0, 1] has [-]; undoes `axis_ratio`."""
+    """Ratio R_y/R_x >= 1 for an ellipse of this b/a, in (0, 1] [-]; the inverse of `axis_ratio`."""
     _, D, N = elliptic_integrals(axis_ratio)
     return N / (axis_ratio**2 * D)
 

@@ -21,7 +21,7 @@ from separatrix.chain.traction.exact.flexibility import Body, Solid
 from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Gap, Motion
 from separatrix.errors import InputError
 from separatrix.toml_text import Kind, label_of, read_text
-from separatrix.units import Array, printable, shown
+from separatrix.units import Array, shown
 
 MM = 1e-3
 MPA = 1e6
@@ -66,7 +66,9 @@ class _Lines:
         return InputError(f"{self.label}, line {self.line}: case {self.case}, {what}", rule, got, cure)
 
     def words(self, what: str) -> list[str]:
-        for self.line, words in self.lines:
+        found = next(self.lines, None)
+        if found is not None:
+            self.line, words = found
             return words
         raise InputError(f"{self.label}: case {self.case}, {what}", "is missing: the file ends before it")
 
@@ -297,9 +299,10 @@ def _built(
 def _gap(mx: int, my: int, place: list[float], b: tuple[float, ...], *, turned: bool) -> Gap:
     """Cell means of B1 x^2 + B2 x y + B3 y^2 + B4 x + B5 y + B6 [mm]; `turned`: seen with x reversed."""
     xl, yl, dx, dy = place
-    x, y = xl + dx * (np.arange(mx) + 0.5), yl + dy * (np.arange(my) + 0.5)[:, None]
+    x = np.asarray(xl + dx * (np.arange(mx) + 0.5), dtype=np.float64)
+    y = np.asarray(yl + dy * (np.arange(my) + 0.5), dtype=np.float64)[:, None]
     height = b[0] * (x * x + dx * dx / 12.0) + b[1] * x * y + b[2] * (y * y + dy * dy / 12.0)
-    height = height + b[3] * x + b[4] * y + b[5]
+    height += b[3] * x + b[4] * y + b[5]
     along: Array = -x[::-1] if turned else x
     return Gap(
         along=along * MM,

@@ -25,7 +25,7 @@ from separatrix.chain.traction.exact.contact import (
     solve,
 )
 from separatrix.chain.traction.exact.transient import shift, transient
-from separatrix.errors import ConvergenceError
+from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
 
 BALANCED = 1e-6  # of a wanted force, over the force of sliding
@@ -119,6 +119,7 @@ def _reversed(found: ContactSolution) -> ContactSolution:
     return replace(
         found,
         along=-found.along[::-1],
+        fraction=found.fraction[:, ::-1],
         pressure=found.pressure[:, ::-1],
         traction=sign * found.traction[:, :, ::-1],
         slip=sign * found.slip[:, :, ::-1],
@@ -184,7 +185,7 @@ def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> 
     InputError
         A contact that cannot be set up; see `rolling_contact`.
     """
-    state = _State()
+    state = _State(question.name)
     solved = []
     for case in question.cases:
         solved.append(state.solved(case))
@@ -196,7 +197,8 @@ def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> 
 class _State:
     """What a case takes over from those before: the contact, its tractions, and two solutions near it."""
 
-    def __init__(self) -> None:
+    def __init__(self, name: str) -> None:
+        self.name = name
         self.setup: ContactSetup | None = None
         self.contact: RollingContact | None = None
         self.traction: Array | None = None
@@ -222,7 +224,10 @@ class _State:
     def _contact(self, setup: ContactSetup) -> RollingContact:
         if self.contact is None or setup is not self.setup:
             self.known.clear()
-            self.contact, self.setup = setup.contact(), setup
+            try:
+                self.contact, self.setup = setup.contact(), setup
+            except InputError as error:
+                raise error.at(f"{self.name}: {error.path}") from None
         return self.contact
 
     def _attempt(

@@ -92,13 +92,14 @@ Vectors = Annotated[Array, "Pa", ("direction", "row", "column")]
 class ContactSolution:
     """Tractions and slip of one contact, and what they sum to; forces act on the ball.
 
-    traction, slip : along x and y; the tractions of cells that the outline cuts are averaged over the whole
-    cell; slip is per rolling speed; stick : cells without slip; stick_share : of the contact's area;
+    traction, slip : along x and y; pressure and tractions of cells that the outline cuts are averaged over
+    the whole cell; fraction : share of each cell inside the contact; slip is per rolling speed; stick : cells without slip; stick_share : of the contact's area;
     dissipation : power per rolling speed; iterations, residual : of the tractions.
     """
 
     along: Annotated[Array, "m", ("column",)]
     across: Annotated[Array, "m", ("row",)]
+    fraction: Annotated[Array, "-", ("row", "column")]
     pressure: Field
     traction: Vectors
     slip: Annotated[Array, "-", ("direction", "row", "column")]
@@ -298,6 +299,7 @@ def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | No
     return ContactSolution(
         along=grid.x,
         across=grid.y,
+        fraction=fraction,
         pressure=contact.pressure,
         traction=p,
         slip=slip,

@@ -108,7 +108,7 @@ def pressed_grid(
 
 
 def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
-    """Ends of the contact in one row [m]."""
+    """Ends of the contact in one row, from its pressure [m]."""
     inside = np.flatnonzero(pressure)
     if inside.size == 0:
         return 0.0, 0.0
