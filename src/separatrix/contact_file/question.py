@@ -12,6 +12,7 @@ from enum import Enum
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, root
 
 from separatrix.chain.traction.exact.contact import (
@@ -113,16 +114,82 @@ class ContactCase:
         )
 
 
+def rolling_cases(
+    problem: ContactProblem,
+    *,
+    longitudinal: ArrayLike = 0.0,
+    lateral: ArrayLike = 0.0,
+    spin: ArrayLike = 0.0,
+    curvature: ArrayLike = 0.0,
+    columns: int = 40,
+    rows: int = 40,
+    title: str = "contact",
+) -> ContactQuestion:
+    """Steady rolling of one contact under a batch of creeps, which are broadcast to each other.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        Ellipse, bodies with their layers, friction; its ellipse from `contact_ellipse`, or from
+        `ellipse_of_axes` where the half lengths are known.
+    longitudinal, lateral : array_like
+        Creep ratios [-].
+    spin, curvature : array_like
+        Coefficients of y and y^2 in the longitudinal creep [1/m, 1/m2]; Kalker's spin is -spin.
+    columns, rows : int
+        Cells along rolling and across.
+    title : str
+        Heading of the text and the figures.
+
+    Raises
+    ------
+    InputError
+        Creeps that cannot be broadcast, that are not finite, or a ratio above 1e3.
+    """
+    given = {"longitudinal": longitudinal, "lateral": lateral, "spin": spin, "curvature": curvature}
+    arrays = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in given.items()}
+    for name, values in arrays.items():
+        if not np.isfinite(values).all():
+            raise InputError(f"rolling_cases: {name}", "must be finite", "nan or inf")
+    try:
+        together = np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shapes = ", ".join(str(values.shape) for values in arrays.values())
+        raise InputError(
+            "rolling_cases", "needs creeps that can be broadcast to each other", shapes
+        ) from None
+    setup = ContactSetup(problem=problem, columns=columns, rows=rows)
+    cases = tuple(
+        ContactCase(
+            number=number,
+            setup=setup,
+            motion=Motion.ROLLING,
+            longitudinal_creep=xi,
+            lateral_creep=eta,
+            spin=s,
+            curvature=q,
+        )
+        for number, (xi, eta, s, q) in enumerate(
+            zip(*(one.ravel().tolist() for one in together), strict=True), 1
+        )
+    )
+    return ContactQuestion(name=title, title=title, cases=cases)
+
+
+def _mirrored(vectors: Array) -> Array:
+    """A field of vectors, shape (2, row, column), with x the other way."""
+    return np.array([-1.0, 1.0])[:, None, None] * vectors[:, :, ::-1]
+
+
 def _reversed(found: ContactSolution) -> ContactSolution:
     """The same solution with x the other way."""
-    sign = np.array([-1.0, 1.0])[:, None, None]
     return replace(
         found,
         along=-found.along[::-1],
         fraction=found.fraction[:, ::-1],
         pressure=found.pressure[:, ::-1],
-        traction=sign * found.traction[:, :, ::-1],
-        slip=sign * found.slip[:, :, ::-1],
+        traction=_mirrored(found.traction),
+        slip=_mirrored(found.slip),
         stick=found.stick[:, ::-1],
         force=0.0 - found.force,
         spin_moment=0.0 - found.spin_moment,
@@ -209,16 +276,21 @@ class _State:
         if case.continues and self.failed:
             return SolvedCase(case=case, solution=None, reason=FAILED_BEFORE)
         start = self.traction if case.continues else None
+        if start is not None and case.turned:
+            start = _mirrored(start)
         try:
             contact = self._contact(case.setup)
+            if start is not None and start.shape[1:] != contact.grid.shape:
+                where = f"{self.name}: case {case.number}"
+                raise InputError(where, "cannot start from the tractions of a case on other cells")
             found, solution = self._attempt(contact, case.reversed() if case.turned else case, start)
         except ConvergenceError as error:
             self.traction, self.failed = None, True
             self.known.clear()
             return SolvedCase(case=case, solution=None, reason=str(error), residual=error.residual)
-        self.traction, self.failed = solution.traction, False
         if case.turned:
             found, solution = found.reversed(), _reversed(solution)
+        self.traction, self.failed = solution.traction, False
         return SolvedCase(case=found, solution=solution, residual=solution.residual)
 
     def _contact(self, setup: ContactSetup) -> RollingContact:

@@ -159,7 +159,8 @@ def _body(file: _File, name: str) -> Body | None:
 def _profile(file: _File, given: dict[str, Any], section: str, one: str, many: str) -> float | Profile | None:
     """A number, or a profile across the contact; None where it was refused or there is none."""
     if one in given and not {"across", many} & set(given):
-        return None if given[one] is None else float(given[one])
+        number: float | None = given[one]
+        return number
     if one in given or ("across" in given) != (many in given):
         rule = f"needs either {one}, or across and {many}"
         file.problems.append(InputError(f"[{section}]", rule, ", ".join(given)))
@@ -199,7 +200,7 @@ def _film(file: _File) -> float | Profile:
         return 0.0
     if isinstance(h, Profile):
         return Profile(across=h.across, values=tuple(one / modulus for one in h.values))
-    return h / modulus
+    return h / float(modulus)
 
 
 def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEllipse | None:

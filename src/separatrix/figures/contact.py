@@ -252,7 +252,7 @@ def _map(axes: Axes, area: Area, field: Array, colours: str) -> Any:
     ratio = max(high / wide, wide / high)
     if ratio <= LONGEST:
         axes.set_aspect("equal", adjustable="datalim")
-    note = "" if ratio <= LONGEST else f"; scales differ: {wide:.3g} by {high:.3g} mm"
+    note = "" if ratio <= LONGEST else "; x and y to different scales"
     axes.set(xlabel=_ALONG + note, ylabel="y across [mm]")
     axes.locator_params(axis="x", nbins=6)
     return mesh

@@ -93,8 +93,9 @@ class ContactSolution:
     """Tractions and slip of one contact, and what they sum to; forces act on the ball.
 
     traction, slip : along x and y; pressure and tractions of cells that the outline cuts are averaged over
-    the whole cell; fraction : share of each cell inside the contact; slip is per rolling speed; stick : cells without slip; stick_share : of the contact's area;
-    dissipation : power per rolling speed; iterations, residual : of the tractions.
+    the whole cell; fraction : share of each cell inside the contact; slip is per rolling speed; stick : cells
+    without slip; stick_share : of the contact's area; dissipation : power per rolling speed; iterations,
+    residual : of the tractions.
     """
 
     along: Annotated[Array, "m", ("column",)]
