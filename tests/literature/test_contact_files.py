@@ -1,9 +1,8 @@
 """CONTACT's public examples through the reader of its input files, end to end (validation).
 
-Source: eve70a/CONTACT (E. Vollebregt), examples/*.inp and *.ref_out. That program prints what its grid and its
-first-order stencil make, 1 to 3 % off; the numbers below are closed forms or its converged values, as in
-test_exact_contact.py, and where a printed one is used the tolerance is the 1 to 3 % of the stencil. Its units
-are N, mm and rad; forces act on body 1; spin is Kalker's.
+Source: eve70a/CONTACT (E. Vollebregt), examples/*.inp and *.ref_out. That program prints what its grid and
+its first-order stencil make, 1 to 3 % off in steady rolling; the numbers below are closed forms or converged
+values, as in test_exact_contact.py. Its units are N, mm and rad; forces act on body 1; spin is Kalker's.
 """
 
 import math
@@ -56,22 +55,22 @@ def test_carter(solved):
 
 
 def test_bentall(solved):
-    """Free rolling of unlike rollers: 0.91476 (2 beta p0/E*) = 5.259e-4 with little friction.
+    """Free rolling of unlike rollers: 0.91476 (2 beta p0/E*) = 5.259e-4 with little friction; CONTACT 5.260e-4.
 
-    CONTACT's program: 5.260e-4. The creep of the last and the first of 200 cells is uncertain by their pressure,
-    sqrt(2/100) p0 of cells that share 1/100 of the load: 0.3 %. At mu = 0.05 CONTACT iterates pressure and
-    traction; its first pass, which neglects the effect of tractions on the pressure as we do, prints 4.281e-4.
+    The line without slip, x0 = 0.404 a, is in one of 200 cells; over a cell the creep changes by
+    x0 dx/(a^2 - x0^2) = 0.5 %. At mu = 0.05 CONTACT iterates pressure and traction; its first pass, which
+    neglects the effect of tractions on the pressure as we do, prints 4.281e-4.
     """
     given, free, more, pulled, braked = solved(BENTALL)
     assert given["force_share"] > 0.0  # 5.2e-4 is less than free rolling, and the bodies roll towards -x
-    assert free["longitudinal_creep"] == pytest.approx(5.259e-4, rel=3e-3)
-    assert more["longitudinal_creep"] == pytest.approx(4.281e-4, rel=3e-3)
+    assert free["longitudinal_creep"] == pytest.approx(5.259e-4, rel=5e-3)
+    assert more["longitudinal_creep"] == pytest.approx(4.281e-4, rel=5e-3)
     assert pulled["force_share"] == pytest.approx(0.75, abs=1e-5)
     assert pulled["longitudinal_creep"] < more["longitudinal_creep"] < braked["longitudinal_creep"]
 
 
 def test_traction_curve(solved):
-    """Converged: 243.8 N at 1e-5, 0.255, 0.468, 0.640, 0.774 mu N, with a film 63.6 N. 44 x 40 cells: 0.5 %."""
+    """Converged: 243.8 N at 1e-5, 0.255 ... 0.774 mu N, with a film 63.6 N. 44 x 40 cells: 0.5 %."""
     rows = solved(TRACTION_CURVE)
     assert [rows[0]["force"], rows[-1]["force"]] == pytest.approx([-243.8, -63.6], rel=5e-3)
     shares = [row["force_share"] for row in rows[1:-1]]
@@ -79,7 +78,7 @@ def test_traction_curve(solved):
 
 
 def test_fastsim(solved):
-    """Lateral creep with spin: Fy -0.625 +- 0.001 mu N, Mz -47 440 N mm, from 30 and 60 cells; 0.003, 0.5 %."""
+    """Fy -0.625 +- 0.001 mu N, Mz -47 440 N mm, from 30 and 60 cells; as in test_exact_contact.py."""
     rough, fine = (
         np.array([row["lateral_force_share"], 1e3 * row["spin_moment"]])
         for row in (solved(fastsim(cells))[0] for cells in (33, 66))

@@ -1,4 +1,4 @@
-"""Input files with the numbers of CONTACT's public examples, written anew (eve70a/CONTACT, examples/*.inp)."""
+"""Input files with the numbers of CONTACT's public examples, eve70a/CONTACT, examples/*.inp; written anew."""
 
 MATERIALS = "0.28 0.28 82000. 82000.  POISS 1,2, GG 1,2"
 ITERATIONS = "100 100 30 1 1e-5  MAXGS, MAXIN, MAXNR, MAXOUT, EPS"

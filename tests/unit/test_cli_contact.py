@@ -72,7 +72,7 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
     """One document in SI units, a row for each case; no file."""
     found = document(capsys, "contact", write())
     assert list(found) == [
-        *("separatrix_version", "verb", "name", "title", "contacts", "cases", "warnings"),
+        *("separatrix_version", "verb", "name", "title", "contacts", "slope", "cases", "warnings"),
     ]
     assert [list(row) for row in found["cases"]] == [KEYS] * 3
     assert (found["name"], found["title"]) == ("ball", "Ball in a groove")
@@ -121,7 +121,7 @@ WRONG = {  # what changes in the file, what the line says
     "unknown key": (
         "columns =",
         "colums =",
-        "line 24: [grid] colums is not a valid key of [grid]. Did you mean",
+        "line 22: [grid] colums is not a valid key of [grid]. Did you mean",
     ),
     "unknown section": ("[grid]", "[gird]", "[gird] is not a section of a contact file. Did you mean grid?"),
     "no load": ('load = "300 N"\n', "", "line 3: [contact] lacks: load."),
@@ -170,6 +170,11 @@ WRONG = {  # what changes in the file, what the line says
         '[motion] kind must be "rolling", "shift" or "transient"',
     ),
     "no distance": ("[motion]", '[motion]\nkind = "transient"', "[motion] lacks: distance."),
+    "slope": (
+        '"0.5 rad/m"',
+        '["0 1/m", "1 1/m", "2 1/m"]\nslope = true',
+        "slope needs one spin and one curvature",
+    ),
     "coarse": ("columns = 12", "columns = 2", "[grid] columns must lie from 4 to 256 [-]; got 2."),
     "profile without values": (
         "coefficient = 0.1",
@@ -292,6 +297,16 @@ def test_from_python():
         separatrix.rolling_cases(problem, longitudinal=[1.0, 2.0], lateral=[1.0, 2.0, 3.0])
     with pytest.raises(InputError, match="finite"):
         separatrix.rolling_cases(problem, spin=np.nan)
+
+
+def test_the_slope_is_that_of_the_curve(capsys):
+    """Without spin it is a tangent: of small creeps the chord, to its error and that of 12 columns."""
+    path = write(('"0.5 rad/m"', '"0 1/m"\nslope = true'), ("[-0.001, 0, 0.001]", "[-1e-6, 0, 1e-6]"))
+    found = document(capsys, "contact", path)
+    force = found["cases"][0]["force"] / 300.0
+    slope = found["slope"]
+    assert slope["slope"] == pytest.approx(force / 1e-6, rel=0.3 / 12 + slope["slope_error"] / slope["slope"])
+    assert (slope["free_rolling_offset"], slope["reason"]) == (0.0, None)
 
 
 @pytest.mark.parametrize("kind", ["shift", "transient"])

@@ -59,7 +59,7 @@ def within(reader: Reader, low: float, high: float, unit: str, *, open_low: bool
     return read
 
 
-def _logical(value: Any, where: str) -> bool:
+def logical(value: Any, where: str) -> bool:
     if not isinstance(value, bool):
         raise InputError(where, "must be true or false", shown(value))
     return value
@@ -109,7 +109,7 @@ SECTIONS: Mapping[str, Mapping[str, Reader]] = {
     },
     "motion": {"kind": choice(Motion)},
     "grid": {"columns": _CELLS, "rows": _CELLS},
-    "pressure": {"own": _logical, "coupled": _logical},
+    "pressure": {"own": logical, "coupled": logical},
 }
 """Sections of a contact file and how each key is read; the keys of [motion] depend on its kind."""
 
@@ -122,7 +122,7 @@ _ROLLS = {
     "curvature": or_list(per_length(2)),
 }
 MOTIONS: Mapping[Motion, Mapping[str, Reader]] = {
-    Motion.ROLLING: _ROLLS,
+    Motion.ROLLING: _ROLLS | {"slope": logical},
     Motion.TRANSIENT: _ROLLS | {"distance": or_list(_LENGTH)},
     Motion.SHIFT: {
         "kind": choice(Motion),

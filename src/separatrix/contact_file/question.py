@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, root
 
+from separatrix.chain.creep import Creep
 from separatrix.chain.traction.exact.contact import (
     ContactProblem,
     ContactSolution,
@@ -25,6 +26,7 @@ from separatrix.chain.traction.exact.contact import (
     secant,
     solve,
 )
+from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
@@ -123,6 +125,7 @@ def rolling_cases(
     curvature: ArrayLike = 0.0,
     columns: int = 40,
     rows: int = 40,
+    slope: bool = False,
     title: str = "contact",
 ) -> ContactQuestion:
     """Steady rolling of one contact under a batch of creeps, which are broadcast to each other.
@@ -138,6 +141,8 @@ def rolling_cases(
         Coefficients of y and y^2 in the longitudinal creep [1/m, 1/m2]; Kalker's spin is -spin.
     columns, rows : int
         Cells along rolling and across.
+    slope : bool
+        Also the slope of the traction curve at free rolling, under the spin and curvature of the first case.
     title : str
         Heading of the text and the figures.
 
@@ -173,7 +178,7 @@ def rolling_cases(
             zip(*(one.ravel().tolist() for one in together), strict=True), 1
         )
     )
-    return ContactQuestion(name=title, title=title, cases=cases)
+    return ContactQuestion(name=title, title=title, cases=cases, slope=slope)
 
 
 def _mirrored(vectors: Array) -> Array:
@@ -198,11 +203,16 @@ def _reversed(found: ContactSolution) -> ContactSolution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactQuestion:
-    """Cases in the order of their file; `of_contact`: they are in the units and signs of CONTACT's users."""
+    """Cases in the order of their file.
+
+    `slope` asks for the slope of the traction curve at free rolling, under the spin of the first case;
+    `of_contact`: the answer is printed in the units and signs of CONTACT's users.
+    """
 
     name: str
     title: str
     cases: tuple[ContactCase, ...]
+    slope: bool = False
     of_contact: bool = False
 
 
@@ -235,10 +245,12 @@ class SolvedCase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactAnswer:
-    """The solved cases of a contact file."""
+    """The solved cases of a contact file; the slope if it was wanted, or why there is none."""
 
     question: ContactQuestion
     cases: tuple[SolvedCase, ...]
+    slope: RaceSlope | None = None
+    slope_reason: str = ""
 
 
 Progress = Callable[[int, int], None]
@@ -258,7 +270,15 @@ def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> 
         solved.append(state.solved(case))
         if progress is not None:
             progress(len(solved), len(question.cases))
-    return ContactAnswer(question=question, cases=tuple(solved))
+    slope, reason = _slope(question.cases[0]) if question.slope else (None, "")
+    return ContactAnswer(question=question, cases=tuple(solved), slope=slope, slope_reason=reason)
+
+
+def _slope(case: ContactCase) -> tuple[RaceSlope | None, str]:
+    try:
+        return traction_slope(case.setup.problem, Creep(spin=case.spin, curvature=case.curvature)), ""
+    except ConvergenceError as error:
+        return None, str(error)
 
 
 class _State:

@@ -90,7 +90,7 @@ def read_contact_toml(path: Path) -> ContactQuestion:
     grid = file.section("grid", SECTIONS["grid"])
     pressure = file.section("pressure", SECTIONS["pressure"])
     ellipse = _ellipse(file, bodies)
-    motion, moves = _motion(file)
+    motion, moves, slope = _motion(file)
     file.refuse()
     if ellipse is None or bodies[0] is None or bodies[1] is None or friction is None:
         raise InputError(label_of(path), "is not complete")
@@ -106,7 +106,7 @@ def read_contact_toml(path: Path) -> ContactQuestion:
     with noted(file.problems):
         _check_size(problem, moves)
     file.refuse()
-    return ContactQuestion(name=path.stem, title=title, cases=_cases(setup, motion, moves))
+    return ContactQuestion(name=path.stem, title=title, cases=_cases(setup, motion, moves), slope=slope)
 
 
 def _solid(file: _File, given: Mapping[str, Any], where: str, kind: str) -> Solid | None:
@@ -230,8 +230,8 @@ def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEll
     return None
 
 
-def _motion(file: _File) -> tuple[Motion, dict[str, tuple[float, ...]]]:
-    """Kind of motion, and its values: lists of one length or of one value."""
+def _motion(file: _File) -> tuple[Motion, dict[str, tuple[float, ...]], bool]:
+    """Kind of motion; its values, lists of one length or of one value; whether the slope is wanted."""
     raw = file.data.get("motion")
     kind = Motion.ROLLING
     if isinstance(raw, dict) and "kind" in raw:
@@ -239,21 +239,25 @@ def _motion(file: _File) -> tuple[Motion, dict[str, tuple[float, ...]]]:
             kind = choice(Motion)(raw["kind"], "[motion] kind")
         except InputError as error:
             file.problems.append(error)
-            return kind, {}
+            return kind, {}, False
     given = file.section("motion", MOTIONS[kind], needed=True)
-    moves = {key: value for key, value in given.items() if key != "kind" and value is not None}
+    given.pop("kind", None)
+    slope = bool(given.pop("slope", False))
+    moves = {key: value for key, value in given.items() if value is not None}
     if kind is Motion.TRANSIENT and "distance" not in given:
         file.lacks("[motion]", "distance")
-    if isinstance(raw, dict) and not moves and len(given) <= ("kind" in given):
+    if isinstance(raw, dict) and not given:
         file.lacks("[motion]", "longitudinal, lateral or spin")
     counts = {len(value) for key, value in moves.items() if len(value) > 1}
     if len(counts) > 1:
         rule = "must have as many values in each list"
         file.problems.append(InputError("[motion]", rule, ", ".join(map(str, sorted(counts)))))
+    if slope and any(len(moves.get(key, ())) > 1 for key in ("spin", "curvature")):
+        file.problems.append(InputError("[motion] slope", "needs one spin and one curvature, not lists"))
     distance = moves.get("distance", ())
     if any(b <= a for a, b in pairwise(distance)):
         file.problems.append(InputError("[motion] distance", "must be strictly increasing"))
-    return kind, moves
+    return kind, moves, slope
 
 
 def _check_size(problem: ContactProblem, moves: Mapping[str, tuple[float, ...]]) -> None:

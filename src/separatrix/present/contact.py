@@ -70,9 +70,19 @@ def contact(answer: ContactAnswer, notes: Sequence[str]) -> dict[str, Any]:
         "name": asked.name,
         "title": asked.title,
         "contacts": contacts,
+        "slope": _slope(answer),
         "cases": [_case(one, setups.index(one.case.setup)) for one in answer.cases],
         "warnings": list(notes),
     }
+
+
+def _slope(answer: ContactAnswer) -> dict[str, Any] | None:
+    if not answer.question.slope:
+        return None
+    found = answer.slope
+    names = ("slope", "slope_error", "free_rolling_offset")
+    node: dict[str, Any] = {name: None if found is None else float(getattr(found, name)) for name in names}
+    return node | {"reason": answer.slope_reason or None}
 
 
 def _case(one: SolvedCase, number: int) -> dict[str, Any]:
@@ -98,8 +108,13 @@ def contact_dataset(answer: ContactAnswer, notes: Sequence[str] = ()) -> xr.Data
     Dimensions are case, direction (along, across), row and column. Cases on one grid share the coordinates
     `along` and `across` [m]; where grids differ these depend on the case, too, and smaller grids end in NaN.
     """
-    rows = contact(answer, notes)["cases"]
-    data: dict[str, Any] = {}
+    found = contact(answer, notes)
+    rows, slope = found["cases"], found["slope"] or {}
+    data: dict[str, Any] = {
+        key: ((), np.nan if slope[key] is None else slope[key], {"units": "-"})
+        for key in ("slope", "slope_error", "free_rolling_offset")
+        if key in slope
+    }
     for name, unit in (NUMBERS | GIVEN | {"force_share": "-", "lateral_force_share": "-"}).items():
         data[name] = ("case", np.array([row[name] for row in rows], dtype=float), {"units": unit})
     for name in ("stick_cells", "slip_cells", "residual"):

@@ -77,6 +77,14 @@ def _contact(setup: ContactSetup, answer: ContactAnswer) -> list[tuple[str, str]
     strain = next((one.solution.film_strain for one in answer.cases if one.solution is not None), 0.0)
     if strain:
         found.append(("Strain of the softest layer", significant(strain, 2)))
+    if answer.slope is not None:
+        one = answer.slope
+        value = f"{significant(one.slope)} +- {significant(one.slope_error, 2)}"
+        found.append(
+            ("Slope at free rolling", f"{value}, at a creep of {significant(one.free_rolling_offset)}")
+        )
+    elif answer.slope_reason:
+        found.append(("Slope at free rolling", f"none: {answer.slope_reason}"))
     return found
 
 
