@@ -176,7 +176,8 @@ def solve_contact(asked: str | Path | ContactQuestion) -> ContactCases:
         A film is compressed by more than linear elasticity holds for.
     """
     from separatrix.contact_file import read_contact
-    from separatrix.contact_file.question import ContactQuestion, solve_cases
+    from separatrix.contact_file.question import ContactQuestion
+    from separatrix.contact_file.solving import solve_cases
 
     with noted_warnings() as notes:
         question = asked if isinstance(asked, ContactQuestion) else read_contact(asked)

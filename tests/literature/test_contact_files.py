@@ -55,7 +55,7 @@ def test_carter(solved):
 
 
 def test_bentall(solved):
-    """Free rolling of unlike rollers: 0.91476 (2 beta p0/E*) = 5.259e-4 with little friction; CONTACT 5.260e-4.
+    """Free rolling of unlike rollers: 0.91476 (2 beta p0/E*) = 5.259e-4 with little friction; CONTACT: 5.260.
 
     The line without slip, x0 = 0.404 a, is in one of 200 cells; over a cell the creep changes by
     x0 dx/(a^2 - x0^2) = 0.5 %. At mu = 0.05 CONTACT iterates pressure and traction; its first pass, which

@@ -12,7 +12,7 @@ from contact_inputs import CATTANEO, MATERIALS, case, end, fastsim
 
 import separatrix
 from separatrix.cli import main
-from separatrix.contact_file import question
+from separatrix.contact_file import solving
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.figures import draw
 from separatrix.present import load
@@ -61,11 +61,34 @@ def write(*changes, name="ball.toml"):
     return name
 
 
-KEYS = (
-    "case contact motion longitudinal_creep lateral_creep spin curvature longitudinal_shift lateral_shift turn "
-    "distance load force lateral_force spin_moment stick_share dissipation max_pressure film_strain force_share "
-    "lateral_force_share stick_cells slip_cells iterations residual reason"
-).split()
+KEYS = [
+    "case",
+    "contact",
+    "motion",
+    "longitudinal_creep",
+    "lateral_creep",
+    "spin",
+    "curvature",
+    "longitudinal_shift",
+    "lateral_shift",
+    "turn",
+    "distance",
+    "load",
+    "force",
+    "lateral_force",
+    "spin_moment",
+    "stick_share",
+    "dissipation",
+    "max_pressure",
+    "film_strain",
+    "force_share",
+    "lateral_force_share",
+    "stick_cells",
+    "slip_cells",
+    "iterations",
+    "residual",
+    "reason",
+]
 
 
 def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
@@ -89,7 +112,7 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
 
 
 def test_text_files_and_figures(capsys):
-    """A table with units and signs; files in the folder named after the file; the dataset draws the figures."""
+    """A table with units and signs; a folder named after the file; the dataset draws the figures."""
     assert main(["contact", write()]) == 0
     out = capsys.readouterr().out
     for words in ("creep x", "1/mm", "N mm", "positive body 1 is the", "Figures and data are in ball/"):
@@ -107,6 +130,16 @@ def test_text_files_and_figures(capsys):
     assert (data["along"].attrs["units"], data["traction"].attrs["units"]) == ("m", "Pa")
     assert {name for name, _ in draw("contact", data)} == pictures
     assert json.loads(Path("ball/contact.json").read_text())["cases"][0]["case"] == 1
+
+
+def test_the_file_of_the_docs_is_valid():
+    """What a reader copies from the how-to page is solved."""
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "contact.md"
+    text = page.read_text(encoding="utf-8").partition("```toml\n")[2].partition("```")[0]
+    Path("copied.toml").write_text(text)
+    with pytest.warns(separatrix.ValidityWarning, match="compressed"):
+        found = separatrix.solve_contact("copied.toml")
+    assert [one.reason for one in found.cases] == [""] * 7
 
 
 def test_help(capsys):
@@ -256,7 +289,7 @@ def test_the_table_of_contacts_users(capsys):
 
 def test_a_case_that_does_not_converge_is_a_row_with_its_reason(monkeypatch, capsys):
     """No number, but residual and reason; a case that starts from it has none either."""
-    usual, calls = question.solve, []
+    usual, calls = solving.solve, []
 
     def fails_second(*given, **options):
         calls.append(given)
@@ -264,7 +297,7 @@ def test_a_case_that_does_not_converge_is_a_row_with_its_reason(monkeypatch, cap
             raise ConvergenceError("Tractions did not settle.", 60, 0.02)
         return usual(*given, **options)
 
-    monkeypatch.setattr(question, "solve", fails_second)
+    monkeypatch.setattr(solving, "solve", fails_second)
     assert main(["contact", write()]) == 0
     assert "Case 2 has no solution: Tractions did not settle." in capsys.readouterr().out
     rows = json.loads(Path("ball/contact.json").read_text())["cases"]

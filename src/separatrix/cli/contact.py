@@ -27,7 +27,7 @@ def contact(path: Path, folder: Path | None, *, as_json: bool, quiet: bool) -> i
         The file is wrong, or the folder cannot be written; nothing is written.
     """
     from separatrix.contact_file import read_contact
-    from separatrix.contact_file.question import solve_cases
+    from separatrix.contact_file.solving import solve_cases
     from separatrix.notes import grouped, noted_warnings
     from separatrix.present.contact import contact as document
     from separatrix.present.text.contact import contact as in_words

@@ -63,9 +63,11 @@ class _Lines:
     case: int = 1
 
     def wrong(self, what: str, rule: str, got: str = "", cure: str = "") -> InputError:
+        """Refusal of what is on this line."""
         return InputError(f"{self.label}, line {self.line}: case {self.case}, {what}", rule, got, cure)
 
     def words(self, what: str) -> list[str]:
+        """Words of the next line that has some."""
         found = next(self.lines, None)
         if found is not None:
             self.line, words = found
@@ -92,6 +94,7 @@ class _Lines:
         return value
 
     def whole(self, value: float, name: str) -> int:
+        """The number as an integer."""
         if value != int(value):
             raise self.wrong(name, "must be a whole number", f"{value:g}")
         return int(value)

@@ -60,6 +60,7 @@ def within(reader: Reader, low: float, high: float, unit: str, *, open_low: bool
 
 
 def logical(value: Any, where: str) -> bool:
+    """Read true or false."""
     if not isinstance(value, bool):
         raise InputError(where, "must be true or false", shown(value))
     return value

@@ -47,6 +47,7 @@ class _File:
     def table(
         self, given: Mapping[str, Any], prefix: str, readers: Mapping[str, Reader], what: str
     ) -> dict[str, Any]:
+        """Values of a table, whose keys are `what`'s."""
         found: dict[str, Any] = {}
         for key, value in given.items():
             at = f"{prefix}{printable(key)}"
@@ -58,6 +59,7 @@ class _File:
         return found
 
     def lacks(self, where: str, *keys: str) -> None:
+        """Note that keys are missing."""
         self.problems.append(InputError(where, f"lacks: {', '.join(keys)}"))
 
     def refuse(self) -> None:

@@ -50,7 +50,7 @@ def contact(answer: ContactAnswer, notes: Sequence[str]) -> dict[str, Any]:
     Parameters
     ----------
     answer : ContactAnswer
-        From `separatrix.contact_file.question.solve_cases`.
+        From `separatrix.contact_file.solving.solve_cases`.
     notes : sequence of str
         Warnings on the way.
     """
