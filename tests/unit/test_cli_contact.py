@@ -189,7 +189,7 @@ WRONG = {  # what changes in the file, what the line says
     "spin without its unit": (
         '"0.5 rad/m"',
         "0.5",
-        "[motion] spin, item 1, must be a number in 1/mm; got 0.5.",
+        "[motion] spin must be a number in 1/mm; got 0.5.",
     ),
     "huge spin": (
         '"0.5 rad/m"',

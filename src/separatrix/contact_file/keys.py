@@ -38,9 +38,11 @@ def or_list(reader: Reader) -> Reader:
     """Read one value or a list of them: a batch."""
 
     def read(value: Any, where: str) -> tuple[float, ...]:
-        if isinstance(value, list) and not 1 <= len(value) <= MOST_CASES:
+        if not isinstance(value, list):
+            return (reader(value, where),)
+        if not 1 <= len(value) <= MOST_CASES:
             raise InputError(where, f"must have 1 to {MOST_CASES} values", f"{len(value)}")
-        found: tuple[float, ...] = list_of(reader)(value if isinstance(value, list) else [value], where)
+        found: tuple[float, ...] = list_of(reader)(value, where)
         return found
 
     return read

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -15,7 +16,7 @@ from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, soli
 from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.contact_file.keys import LAYER, MOTIONS, SECTIONS
 from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Motion
-from separatrix.errors import InputError, noted, together
+from separatrix.errors import InputError, ValidityWarning, noted, together
 from separatrix.library import beside, with_files
 from separatrix.study_file.values import named_material, using
 from separatrix.toml_text import Kind, Places, label_of, places_of, read_toml
@@ -24,6 +25,7 @@ from separatrix.units import printable, shown
 
 FILE = Kind(noun="a contact file", empty="docs/how-to/contact.md has one to start from.")
 MOST_LAYERS = 4
+LARGEST_STEEPNESS = 0.3  # of the surfaces at the edge of the contact, for which bodies are half-spaces
 LARGEST_STEPS = 5000  # columns rolled in a transient
 
 
@@ -207,7 +209,7 @@ def _film(file: _File) -> float | Profile:
 
 def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEllipse | None:
     given = file.section("contact", SECTIONS["contact"], needed=True)
-    if "contact" in file.data and "load" not in given:
+    if isinstance(file.data.get("contact"), dict) and "load" not in file.data["contact"]:
         file.lacks("[contact]", "load")
     shape = sorted(key for key in given if key != "load")
     names = [[f"{name}_{side}" for side in ("lateral", "rolling")] for name in ("semi_axis", "radius")]
@@ -228,6 +230,13 @@ def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEll
         if not found.max_pressure < modulus:
             value, cure = f"{found.max_pressure:.3g} Pa", f"The modulus of the pair is {modulus:.3g} Pa."
             raise InputError("[contact]", "needs a pressure below the modulus of the pair", value, cure)
+        steepest = max(
+            found.semi_minor * found.curvature_rolling, found.semi_major * found.curvature_transverse
+        )
+        if steepest > LARGEST_STEEPNESS:
+            said = f"a half axis of the contact is {steepest:.2g} of the radius of the gap there; "
+            limit = f"half-spaces describe the bodies to about {LARGEST_STEEPNESS:g}."
+            warnings.warn(said + limit, ValidityWarning, stacklevel=2)
         return found
     return None
 

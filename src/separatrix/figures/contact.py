@@ -82,13 +82,15 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         for i in drawn.tolist():
             area, name = saved_area(data, i), f"case-{int(data['case'][i])}"
             is_shift = str(data["motion"].values[i]) == "shift"
+            entry = "" if is_shift else "left" if data["turned"].values[i] else "right"
             if area.across.size > 1:
-                yield f"contact-tractions-{name}", tractions(area)
-                yield f"contact-slip-{name}", slip_and_power(area, is_shift=is_shift)
+                yield f"contact-tractions-{name}", tractions(area, entry=entry)
+                yield f"contact-slip-{name}", slip_and_power(area, entry=entry, is_shift=is_shift)
             else:
-                yield f"contact-tractions-{name}", in_the_plane(area)
-    if data.sizes["case"] > 2:
-        yield "contact-forces", forces(data)
+                yield f"contact-tractions-{name}", in_the_plane(area, entry=entry)
+    numbers, counts = np.unique(data["contact"].values, return_counts=True)
+    if counts.max() > 2:
+        yield "contact-forces", forces(data.isel(case=data["contact"].values == numbers[counts.argmax()]))
 
 
 def saved_area(data: xr.Dataset, i: int) -> SavedArea:
@@ -106,19 +108,21 @@ def saved_area(data: xr.Dataset, i: int) -> SavedArea:
     )
 
 
-def tractions(area: Area, *, stick_line: Array | None = None) -> Figure:
+def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = None) -> Figure:
     """Return arrows of the tractions over their size, with the area of stick hatched.
 
     Parameters
     ----------
     area : ContactSolution or Area
         Of at least two rows.
+    entry : str
+        Where material enters, right or left; empty where it does not.
     stick_line : ndarray, optional
         End of stick along x of another theory for each row, shape (row,) [m]; NaN where a row slips.
     """
     figure, axes = canvas(3.9, 3.3)
     size = 1e-6 * np.hypot(*area.traction) / _share(area)
-    mesh = _map(axes, area, size, "viridis")
+    mesh = _map(axes, area, size, "viridis", entry)
     colour_bar(mesh, [axes], r"traction $|\tau|$ [MPa]", aspect=30)
     _stick(axes, area)
     _arrows(axes, area, 1e-6 * area.traction)
@@ -128,7 +132,7 @@ def tractions(area: Area, *, stick_line: Array | None = None) -> Figure:
     return figure
 
 
-def slip_and_power(area: Area, *, is_shift: bool = False) -> Figure:
+def slip_and_power(area: Area, *, entry: str = "right", is_shift: bool = False) -> Figure:
     """Return maps of the slip and of the power that it dissipates; of a shift of distance and work."""
     figure, (left, right) = canvas(PAGE, 3.1, ncols=2)
     slip = np.hypot(*area.slip)
@@ -140,7 +144,7 @@ def slip_and_power(area: Area, *, is_shift: bool = False) -> Figure:
     for axes, letter, name, (field, label) in zip(
         (left, right), "ab", ("Slip", "Work" if is_shift else "Dissipated power"), shown, strict=True
     ):
-        mesh = _map(axes, area, field, "magma_r" if axes is right else "cividis")
+        mesh = _map(axes, area, field, "magma_r" if axes is right else "cividis", entry)
         _stick(axes, area, "black" if axes is right else "white")
         colour_bar(mesh, [axes], label, aspect=30)
         axes.set_title(f"{letter}  {name}")
@@ -151,7 +155,7 @@ def slip_and_power(area: Area, *, is_shift: bool = False) -> Figure:
 _POWER = "power per area and rolling speed [MPa]"
 
 
-def in_the_plane(area: Area) -> Figure:
+def in_the_plane(area: Area, *, entry: str = "right") -> Figure:
     """Return pressure and traction along the one row of a contact in the plane."""
     figure, (upper, lower) = canvas(3.5, 3.4, nrows=2, sharex=True)
     x = 1e3 * area.along
@@ -166,7 +170,8 @@ def in_the_plane(area: Area) -> Figure:
         for place, sticks in zip(x, area.stick[0], strict=True):
             if sticks:
                 axes.axvspan(place - half, place + half, color=BLUE, alpha=0.12, lw=0)
-    lower.set(xlabel=_ALONG, ylabel="traction [MPa]")
+    lower.locator_params(axis="x", nbins=5)
+    lower.set(xlabel=_along(entry), ylabel="traction [MPa]")
     upper.set_title("stick shaded", fontsize=7.5)
     return figure
 
@@ -211,7 +216,8 @@ def _abscissa(data: xr.Dataset) -> tuple[str, float, str]:
     return "case", 1.0, "case"
 
 
-_ALONG = "x along rolling [mm]\nmaterial enters at the right"
+def _along(entry: str) -> str:
+    return f"x along rolling [mm]\nmaterial enters at the {entry}" if entry else "x [mm]"
 
 
 def _edges(centres: Array) -> Array:
@@ -237,7 +243,7 @@ def outline(area: Area) -> Array:
     return np.array([*first, *right, *last, *left])
 
 
-def _map(axes: Axes, area: Area, field: Array, colours: str) -> Any:
+def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> Any:
     """Colours over the contact, its outline, and axes that show it large."""
     around = 1e3 * outline(area)
     patch = Polygon(around, closed=True, fill=False, lw=0.9, ec="black", joinstyle="round")
@@ -253,7 +259,7 @@ def _map(axes: Axes, area: Area, field: Array, colours: str) -> Any:
     if ratio <= LONGEST:
         axes.set_aspect("equal", adjustable="datalim")
     note = "" if ratio <= LONGEST else "; x and y to different scales"
-    axes.set(xlabel=_ALONG + note, ylabel="y across [mm]")
+    axes.set(xlabel=_along(entry) + note, ylabel="y across [mm]")
     axes.locator_params(axis="x", nbins=6)
     return mesh
 

@@ -119,6 +119,8 @@ def contact_dataset(answer: ContactAnswer, notes: Sequence[str] = ()) -> xr.Data
         data[name] = ("case", np.array([row[name] for row in rows], dtype=float), {"units": unit})
     for name in ("stick_cells", "slip_cells", "residual"):
         data[name] = ("case", np.array([row[name] for row in rows], dtype=float), {"units": "-"})
+    data["contact"] = ("case", np.array([row["contact"] for row in rows]))
+    data["turned"] = ("case", np.array([one.case.turned for one in answer.cases]))
     for name in ("motion", "reason"):
         data[name] = ("case", np.array([row[name] or "" for row in rows], dtype=object))
     data |= _fields([one.solution for one in answer.cases])

@@ -25,6 +25,10 @@ SIGNS = (
     "Forces and moment act on body 1. Where the longitudinal creep is positive body 1 is the faster, and its "
     "force is negative. Spin s adds s y to the longitudinal creep; Kalker's spin is phi = -s."
 )
+SIGNS_OF_SHIFT = (
+    "Forces and moment act on body 1, against its shift. Each shift begins without tractions. A turn t adds "
+    "t y to the shift along x and -t x to that along y."
+)
 OF_CONTACT = (
     "Units and signs are CONTACT's: N, mm, rad; forces act on body 1. H elements stick, S slip; those that "
     "the outline cuts are counted. In a shift (T = 1) CKSI and CETA are distances [mm] and CPHI is an angle."
@@ -43,7 +47,8 @@ def contact(answer: ContactAnswer, notes: Sequence[str]) -> str:
     cases = _contact_table(answer) if asked.of_contact else _table(answer)
     failed = [one for one in answer.cases if one.solution is None]
     lines = [paragraph(f"Case {one.case.number} has no solution: {one.reason}", first="  ") for one in failed]
-    lines += [paragraph(OF_CONTACT if asked.of_contact else SIGNS)]
+    signs = SIGNS_OF_SHIFT if asked.cases[0].motion is Motion.SHIFT else SIGNS
+    lines += [paragraph(OF_CONTACT if asked.of_contact else signs)]
     blocks = [heading(asked.title), *described, section("Cases", cases, "", *lines)]
     noted = [paragraph(note, first="Note: ", indent="      ") for note in notes]
     return "\n\n".join([*blocks, *(["\n".join(noted)] if noted else [])]) + "\n"
@@ -100,7 +105,7 @@ def _table(answer: ContactAnswer) -> str:
     }[answer.cases[0].case.motion]
     results = ("force\nN", "lateral\nN", "moment\nN mm", "force x\nover load", "stick\n%")
     is_shift = answer.cases[0].case.motion is Motion.SHIFT
-    headers = ("case", *heads, *results, "work\nmJ" if is_shift else "power over\nspeed, N")
+    headers = ("case", *heads, *results, "work\nuJ" if is_shift else "power over\nspeed, N")
     rolled, rows = 0.0, []
     for one in answer.cases:
         rolled += one.case.distance
@@ -125,7 +130,7 @@ def _results(one: SolvedCase) -> list[str]:
     zero = ZERO * found.load
     forces = [value if abs(value) > zero else 0.0 for value in (found.force, found.lateral_force)]
     moment = 1e3 * found.spin_moment if abs(found.spin_moment) > zero * found.across.max() else 0.0
-    work = found.dissipation * (1e3 if one.case.motion is Motion.SHIFT else 1.0)
+    work = found.dissipation * (1e6 if one.case.motion is Motion.SHIFT else 1.0)
     numbers = [*forces, moment, forces[0] / found.load]
     return [*map(significant, numbers), f"{100.0 * found.stick_share:.1f}", significant(work)]
 
