@@ -233,6 +233,15 @@ def test_a_wrong_file_is_refused_in_a_line(name, capsys):
     assert line.startswith("separatrix: ball.toml")
 
 
+def test_too_many_cells_are_refused_before_the_work(capsys):
+    """500 cases of 256 x 256 cells would fill the memory."""
+    creeps = f"longitudinal = {[0] * 500}"
+    fine = ("columns = 12\nrows = 16", "columns = 256\nrows = 256")
+    Path("ball.toml").write_text(VALID.replace(*fine).replace("longitudinal = [-0.001, 0, 0.001]", creeps))
+    said = refused(capsys, "contact", "ball.toml")
+    assert "ball: its 500 cases must have at most 5000000 cells together; got 32768000." in said
+
+
 def test_every_mistake_has_its_line(capsys):
     """Three mistakes, three lines."""
     path = write(

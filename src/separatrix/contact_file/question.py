@@ -53,6 +53,11 @@ class ContactSetup:
     rows: int = 40
     gap: Gap | None = None
 
+    @property
+    def cell_count(self) -> int:
+        """Cells of the grid."""
+        return self.columns * self.rows if self.gap is None else self.gap.height.size
+
     def contact(self) -> RollingContact:
         """Pressure and operator; raises as `rolling_contact` and `gap_contact`."""
         gap = self.gap

@@ -31,6 +31,7 @@ from separatrix.units import Array
 
 BALANCED = 1e-6  # of a wanted force, over the force of sliding
 DOUBLINGS = 60
+MOST_CELLS = 5_000_000  # of all cases: their fields take 60 bytes a cell
 LARGEST_MISS = 1e-4  # of two wanted forces, over the force of sliding
 FAILED_BEFORE = "the case before it, from which it starts, has no solution"
 
@@ -43,8 +44,12 @@ def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> 
     Raises
     ------
     InputError
-        A contact that cannot be set up; see `rolling_contact`.
+        A contact that cannot be set up, see `rolling_contact`, or more cells than the memory is made for.
     """
+    cells = sum(case.setup.cell_count for case in question.cases)
+    if cells > MOST_CELLS:
+        rule, cure = f"must have at most {MOST_CELLS} cells together", "Split it, or use coarser grids."
+        raise InputError(f"{question.name}: its {len(question.cases)} cases", rule, f"{cells}", cure)
     state = _State(question.name)
     solved = []
     for case in question.cases:
