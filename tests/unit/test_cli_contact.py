@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import document, refused
-from contact_inputs import CATTANEO, MATERIALS, case, end, fastsim
+from contact_inputs import CATTANEO, MATERIALS, case, end, fastsim, from_cattaneo_to_carter
 
 import separatrix
 from separatrix.cli import main
@@ -269,6 +269,10 @@ WRONG_INPUTS = {  # a file of CONTACT, what the line says
     "word": (FASTSIM.replace("82000. 0.", "heavy 0."), 'case 1, FN must be a number; got "heavy".'),
     "lifted": (FASTSIM.replace("82000. 0.", "-1. 0."), "FN must be > 0 [N]; got -1."),
     "direction": (FASTSIM.replace("0. 0.4 3", "90d 0.4 3"), "CHI must be 0 or 180d"),
+    "step": (
+        from_cattaneo_to_carter(1).replace("0. 0.25 1000.", "0. 0.35 1000."),
+        "DQ must be a whole number",
+    ),
     "area": (FASTSIM.replace("\n-3\n", "\n-6\n"), "IPOTCN must be one of -3, -2, -1, 1, 2, 3, 4; got -6."),
     "nothing kept": (
         end(case("203100 102000 0100341", "1 0 0 0", "0 1 1", MATERIALS)),
@@ -362,3 +366,5 @@ def test_shift_and_transient(kind, capsys):
     first, second = document(capsys, "contact", path)["cases"]
     assert (first["motion"], first["reason"]) == (kind, None)
     assert second["force"] < first["force"] < 0.0
+    if kind == "transient":  # in columns of 2 x 0.15 mm/12
+        assert [first["distance"], second["distance"]] == pytest.approx([0.05e-3, 0.15e-3])

@@ -27,6 +27,7 @@ MM = 1e-3
 MPA = 1e6
 FILE = Kind(noun="an input file of CONTACT", most_bytes=4 * 1024 * 1024)
 MOST_CASES = 5000
+LARGEST_REST = 0.02  # of a column, by which a step in transient rolling may differ from whole ones
 
 WORDS = ("CPBTNFS", "VLDCMZE", "XHGIAOWR")
 READ: Mapping[str, tuple[int, ...]] = {
@@ -334,6 +335,12 @@ def _motion(
     if forces == 2:
         across = 0.0
     continues = digit["P"] == 0 and at.case > 1 and digit["T"] in (1, 2)
+    if digit["T"] == 2:
+        gap, ellipse = setup.gap, setup.problem.ellipse
+        width = (2.0 * ellipse.semi_minor / setup.columns if gap is None else gap.column_width) / MM
+        if abs(step / width - max(round(step / width), 1)) > LARGEST_REST:
+            rule = f"must be a whole number of columns of {width:.4g} mm"
+            raise at.wrong("DQ", rule, f"{step:g}")
     if digit["T"] == 0:  # the normal problem alone
         return ContactCase(number=at.case, setup=setup, motion=Motion.SHIFT)
     if digit["T"] == 1:

@@ -115,6 +115,9 @@ class _State:
         def at(one: ContactCase) -> ContactSolution:
             return self._moved(contact, one, start)
 
+        if case.motion is Motion.TRANSIENT:  # in whole columns
+            width = contact.grid.dx
+            case = replace(case, distance=max(round(case.distance / width), 1) * width)
         if case.wanted != (None, None):
             case = _with_forces(contact, case, at)
         return case, at(case)
@@ -134,8 +137,7 @@ class _State:
             curvature=case.curvature,
         )
         if case.motion is Motion.TRANSIENT:
-            steps = max(round(case.distance / grid.dx), 1)
-            return transient(contact, [slip] * steps, start=start)[-1]
+            return transient(contact, [slip] * round(case.distance / grid.dx), start=start)[-1]
         solution = solve(contact, slip, start=secant(self.known, slip))
         self.known[:] = [*self.known[-1:], (slip, solution.traction)]
         return solution
