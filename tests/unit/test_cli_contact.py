@@ -269,6 +269,10 @@ WRONG_INPUTS = {  # a file of CONTACT, what the line says
     "word": (FASTSIM.replace("82000. 0.", "heavy 0."), 'case 1, FN must be a number; got "heavy".'),
     "lifted": (FASTSIM.replace("82000. 0.", "-1. 0."), "FN must be > 0 [N]; got -1."),
     "direction": (FASTSIM.replace("0. 0.4 3", "90d 0.4 3"), "CHI must be 0 or 180d"),
+    "centre of spin": (
+        FASTSIM.replace("-0.000625 0.000625", "0 1e-4 2. 3."),
+        'SPINXO must be 0 or left out; got "2."',
+    ),
     "step": (
         from_cattaneo_to_carter(1).replace("0. 0.25 1000.", "0. 0.35 1000."),
         "DQ must be a whole number",
@@ -298,6 +302,23 @@ def test_the_table_of_contacts_users(capsys):
     out = capsys.readouterr().out
     for words in ("FSTAT", "CKSI", "CETA", "CPHI", "-0.87500", " 45 ", " 132 "):
         assert words in out
+
+
+def test_a_force_of_zero_between_equal_bodies_needs_no_creep(capsys):
+    """Free rolling, also with both forces given; another force has the creep of its sign."""
+    changes = ("203100", "203110"), ("82000. 0. -0.000625 0.000625", "82000. 0. 0. 0.")
+    text = FASTSIM
+    for old, new in changes:
+        text = text.replace(old, new)
+    both = text.replace("203110", "203120").replace("82000. 0. 0. 0.", "82000. 0.5 -0.5 0.")
+    Path("free.inp").write_text(text)
+    Path("both.inp").write_text(both)
+    (free,) = document(capsys, "contact", "free.inp")["cases"]
+    (pulled,) = document(capsys, "contact", "both.inp")["cases"]
+    assert (free["longitudinal_creep"], free["reason"]) == (0.0, None)
+    shares = [pulled["force_share"], pulled["lateral_force_share"]]
+    assert shares == pytest.approx([0.5, -0.5], abs=1e-4)  # how far it is searched
+    assert pulled["longitudinal_creep"] < 0.0 < pulled["lateral_creep"]
 
 
 def test_a_case_that_does_not_converge_is_a_row_with_its_reason(monkeypatch, capsys):

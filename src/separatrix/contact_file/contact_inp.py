@@ -21,7 +21,7 @@ from separatrix.chain.traction.exact.flexibility import Body, Solid
 from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Gap, Motion
 from separatrix.errors import InputError
 from separatrix.toml_text import Kind, label_of, read_text
-from separatrix.units import Array, shown
+from separatrix.units import NUMBER, Array, shown
 
 MM = 1e-3
 MPA = 1e6
@@ -62,6 +62,8 @@ class _Lines:
     lines: Iterator[tuple[int, list[str]]]
     line: int = 0
     case: int = 1
+    rest: list[str] = field(default_factory=list)
+    """Words of the line after those that were read."""
 
     def wrong(self, what: str, rule: str, got: str = "", cure: str = "") -> InputError:
         """Refusal of what is on this line."""
@@ -79,8 +81,10 @@ class _Lines:
         """So many numbers, on as many lines as they take."""
         found: list[float] = []
         while len(found) < len(names):
-            for word in self.words(names[len(found)])[: len(names) - len(found)]:
+            words, missing = self.words(names[len(found)]), len(names) - len(found)
+            for word in words[:missing]:
                 found.append(self._number(word, names[len(found)]))
+            self.rest = words[missing:]
         return found
 
     def _number(self, word: str, name: str) -> float:
@@ -94,6 +98,12 @@ class _Lines:
             raise self.wrong(name, "must be finite", shown(word))
         return value
 
+    def refuse_more(self, what: str) -> None:
+        """Refuse a number other than 0 that follows, which CONTACT reads if it is there."""
+        more = self.rest[0] if self.rest else ""
+        if re.fullmatch(NUMBER, more) and float(more) != 0.0:
+            raise self.wrong(what, "must be 0 or left out", shown(more))
+
     def whole(self, value: float, name: str) -> int:
         """The number as an integer."""
         if value != int(value):
@@ -102,7 +112,7 @@ class _Lines:
 
     def digits(self, names: str) -> dict[str, int]:
         """Digits of a control word by their letters; those in front that are left out are 0."""
-        (word, *_) = self.words(f"control digits {names}")
+        word, *self.rest = self.words(f"control digits {names}")
         if not word.isdecimal() or len(word) > len(names):
             raise self.wrong(f"control digits {names}", "must be one number of these digits", shown(word))
         return dict(zip(names, map(int, word.zfill(len(names))), strict=True))
@@ -152,6 +162,7 @@ def _case(at: _Lines, kept: _Kept) -> ContactCase:
     at.numbers(*["solver's number"] * ITERATIONS[digit["G"]])
     second, third = (("CKSI", "CETA"), ("FX", "CETA"), ("FX", "FY"))[digit["F"]]
     load, along, across, spin = at.numbers("FN", second, third, "CPHI")
+    at.refuse_more("SPINXO")
     if load <= 0.0:
         raise at.wrong("FN", "must be > 0 [N]", f"{load:g}")
     if digit["F"] and math.hypot(along, across if digit["F"] == 2 else 0.0) >= 1.0:
@@ -183,6 +194,7 @@ def _control(at: _Lines) -> dict[str, int]:
     digit: dict[str, int] = {}
     for names in WORDS:
         found = at.digits(names)
+        at.refuse_more("number after the control digits")
         for name, value in found.items():
             if name in READ and value not in READ[name]:
                 allowed = ", ".join(map(str, READ[name]))

@@ -72,9 +72,9 @@ class ContactCase:
     """One motion of one contact.
 
     The creeps are of rolling, the shifts of a shift; `distance` is rolled in a transient, in whole columns,
-    at least one. `continues`: it starts from the tractions of the case before, not from none. `wanted` are forces
-    along and across over that of sliding; where one is given, its creep or shift is found. `turned`: the
-    bodies roll towards -x, and the gap of the setup has x reversed.
+    at least one. `continues`: it starts from the tractions of the case before, not from none. `wanted` are
+    forces along and across over that of sliding; where one is given, its creep or shift is found. `turned`:
+    the bodies roll towards -x, and the gap of the setup has x reversed.
     """
 
     number: int

@@ -158,8 +158,7 @@ def _with_forces(
         def excess(x: float) -> float:
             return at(case.moved(x, given)).force / sliding - (along or 0.0)
 
-        low, high = _bracket(excess, scale)
-        return case.moved(float(brentq(excess, low, high, xtol=BALANCED * scale)), given)
+        return case.moved(_zero_of(excess, scale), given)
 
     def miss(x: Array) -> Array:
         one = at(case.moved(scale * x[0], scale * x[1]))
@@ -175,19 +174,21 @@ def _with_forces(
     return case.moved(*(scale * found.x).tolist())
 
 
-def _bracket(excess: Callable[[float], float], scale: float) -> tuple[float, float]:
-    """Creeps on either side of the wanted force; the force falls as the creep rises."""
-    for sign in (1.0, -1.0):
-        if sign * excess(0.0) <= 0.0:
-            continue
-        inner, step = 0.0, scale
-        for _ in range(DOUBLINGS):
-            outer = inner + sign * step
-            if sign * excess(outer) <= 0.0:
-                return min(inner, outer), max(inner, outer)
-            inner, step = outer, 2.0 * step
-        raise ConvergenceError("No creep gives the wanted force.", DOUBLINGS, abs(excess(inner)))
-    return -BALANCED * scale, BALANCED * scale
+def _zero_of(excess: Callable[[float], float], scale: float) -> float:
+    """Creep at which the force is as wanted; the force falls as the creep rises."""
+    here = excess(0.0)
+    if abs(here) <= BALANCED:
+        return 0.0
+    inner, step = 0.0, scale if here > 0.0 else -scale
+    for _ in range(DOUBLINGS):
+        outer = inner + step
+        there = excess(outer)
+        if abs(there) <= BALANCED:
+            return outer
+        if (there > 0.0) != (here > 0.0):
+            return float(brentq(excess, inner, outer, xtol=BALANCED * scale))
+        inner, step = outer, 2.0 * step
+    raise ConvergenceError("No creep gives the wanted force.", DOUBLINGS, abs(there))
 
 
 def _mirrored(vectors: Array) -> Array:
