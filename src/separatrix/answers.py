@@ -9,7 +9,9 @@ from dataclasses import dataclass
 
 from separatrix.cage import History, PlanarCage
 from separatrix.chain.contacts import BearingState
+from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
+from separatrix.chain.models import ModelComparison
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
@@ -29,12 +31,20 @@ class CheckAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TractionAnswer:
-    """Traction curves, as they are and at other pivoting-to-rolling ratios, and shear in free rolling."""
+    """Traction curves by the study's model and the other one, by strips at other pivoting-to-rolling ratios.
+
+    And models side by side, and the shear of strips in free rolling. None where there is no exact answer.
+    """
 
     race_friction: Ratio
     bearing: BearingState
+    comparison: ModelComparison
     inner: TractionCurve
     outer: TractionCurve
+    inner_strips: TractionCurve
+    outer_strips: TractionCurve
+    inner_exact: TractionCurve | None
+    outer_exact: TractionCurve | None
     inner_others: tuple[TractionCurve, ...]
     outer_others: tuple[TractionCurve, ...]
     inner_shear: ShearField
@@ -43,11 +53,16 @@ class TractionAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionAnswer:
-    """Restitution factor, and what it would be with other films; None without a film material."""
+    """Restitution factor, and what it would be with other films; None without a film material.
+
+    `exact_films` are of a study with the exact model, `wear` of one with a worn band.
+    """
 
     solution: Solution
     film_thickness: Metre
     lubrication: LubricationCurve | None
+    exact_films: ExactFilms | None
+    wear: WearCurve | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,12 +22,18 @@ from separatrix.cage_design import Guidance as Guidance
 from separatrix.cage_design import PocketContact as PocketContact
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError
+from separatrix.film_design import ContactPressure as ContactPressure
+from separatrix.film_design import Film as Film
+from separatrix.film_design import PressureSlip as PressureSlip
+from separatrix.film_design import TractionModel as TractionModel
+from separatrix.film_design import TractionSettings as TractionSettings
+from separatrix.film_design import Wear as Wear
+from separatrix.film_design import Worn as Worn
 from separatrix.measured_friction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.measured_friction import Friction as Friction
 from separatrix.pocket_shape import PocketShape as PocketShape
 from separatrix.units import (
     Kelvin,
-    Metre,
     MetrePerSecond,
     Newton,
     NewtonMetre,
@@ -103,25 +109,6 @@ def _loads(operation: Operation) -> _check.Problems:
     if not any((operation.axial_load, operation.radial_load, operation.moment)):
         rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
         yield _check.problem(operation, "axial_load", rule, "Give the preload.")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Film:
-    """Solid lubricant on the races; without material and thickness the races are bare."""
-
-    race_friction: Ratio = field(metadata=must(between, 0.0, FRICTION_LIMIT))
-    material: Material | None = None
-    thickness: Metre | None = field(
-        default=None,
-        metadata=must(positive, 1e-10, 1e-2, hint="For bare races leave material and thickness out."),
-    )
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        if (self.material is None) != (self.thickness is None):
-            missing = "material" if self.material is None else "thickness"
-            rule = "is missing: a film needs its material and its thickness"
-            raise InputError(f"Film.{missing}", rule, cure="Give both, or neither for bare races.")
 
 
 def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
@@ -225,6 +212,7 @@ class Study:
     operation: Operation
     film: Film
     kinematics: KinematicModel = KinematicModel.FREE
+    traction: TractionSettings = field(default_factory=TractionSettings)
     cage: CageDesign | None = None
     stability: StabilitySettings = field(default_factory=StabilitySettings)
     ranking: RankingQuestion | None = None
@@ -239,6 +227,7 @@ class Study:
 
     def __post_init__(self) -> None:
         checks = [_check.each_field(self), _turning_balls(self), _stiffness_of_unknown_origin(self)]
+        checks.append(_coated_pressure(self))
         if self.cage is not None:
             checks += [_cage_in_bearing(self.cage, self.bearing), _pockets_for_balls(self.cage, self.bearing)]
         _check.settle(*checks)
@@ -253,6 +242,13 @@ def _turning_balls(study: Study) -> _check.Problems:
     if study.kinematics is KinematicModel.FREE and study.film.race_friction == 0.0:
         cure = "Without friction nothing turns the balls; choose a race control model."
         yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "0", cure)
+
+
+def _coated_pressure(study: Study) -> _check.Problems:
+    """The pressure of coated contacts is that of a whole film."""
+    if study.traction.pressure is ContactPressure.COATED and study.film.wear is not None:
+        rule = 'must be "hertz" where the film is worn: a film whose thickness varies is in series'
+        yield InputError("TractionSettings.pressure", rule, '"coated"')
 
 
 def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
@@ -311,18 +307,20 @@ SECTIONS: dict[str, type] = {
     "bearing": BallBearing,
     "operation": Operation,
     "film": Film,
+    "traction": TractionSettings,
     "cage": CageDesign,
     "stability": StabilitySettings,
 }
 """Sections of a study file whose keys are the fields of a record."""
 
-_SECTION_OF = {record.__name__: section for section, record in SECTIONS.items()} | {
-    "RankingQuestion": "ranking",
-    "Friction": "ranking",
+_HEAD_OF = {record.__name__: f"[{section}] " for section, record in SECTIONS.items()} | {
+    "RankingQuestion": "[ranking] ",
+    "Friction": "[ranking] ",
+    "Wear": "[film] wear.",
 }
 
 
 def key_of(path: str) -> str:
     """Name in a study file of a field of a record: ``CageDesign.mass`` is ``[cage] mass``."""
     record, _, key = path.partition(".")
-    return f"[{_SECTION_OF[record]}] {key}" if record in _SECTION_OF else path
+    return f"{_HEAD_OF[record]}{key}" if record in _HEAD_OF else path

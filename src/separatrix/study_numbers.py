@@ -14,7 +14,7 @@ from typing import Any
 from separatrix.distribution import Distribution, LogNormal, Normal, described, positive_alternative
 from separatrix.errors import InputError
 from separatrix.study import SECTIONS as SECTIONS
-from separatrix.study import BallBearing, Material, Study, key_of
+from separatrix.study import BallBearing, Material, Study, Wear, key_of
 from separatrix.toml_values import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
 
@@ -70,8 +70,9 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
     """Every number that a study has or may have, by its name.
 
     A section's key is ``film.thickness``; a property of a material ``bearing.ball_material.density``, of the
-    film's simply ``film.elastic_modulus``; a friction ``ranking.Armalon.liquid nitrogen, 440C``. Two numbers
-    whose names come out alike (a dot in the name of a candidate) are left out.
+    film's simply ``film.elastic_modulus``, of its wear ``film.wear.width``; a friction
+    ``ranking.Armalon.liquid nitrogen, 440C``. Two numbers whose names come out alike (a dot in the name of a
+    candidate) are left out.
     """
     found = [StudyNumber(RADIAL_CLEARANCE, "m", ("bearing", "radial_clearance"))]
 
@@ -82,8 +83,10 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
         add(section, record, (section,))
         held = getattr(study, section)
         for f in fields(record) if held is not None else ():
-            if isinstance(getattr(held, f.name), Material):
-                add(section if section == "film" else f"{section}.{f.name}", Material, (section, f.name))
+            inside = getattr(held, f.name)
+            if isinstance(inside, Material | Wear):
+                is_film = isinstance(inside, Material) and section == "film"
+                add(section if is_film else f"{section}.{f.name}", type(inside), (section, f.name))
     for place, candidate in enumerate(study.ranking.candidates if study.ranking else ()):
         path: Path = ("ranking", "candidates", place)
         known = [env for env, friction in candidate.friction.items() if friction is not None]

@@ -27,9 +27,11 @@ from separatrix.cage_choice import (
     reference_candidate,
     required_environment,
 )
-from separatrix.chain.contacts import BearingState
+from separatrix.chain.contacts import BearingState, race_track
+from separatrix.chain.film_curves import exact_films, wear_curve
+from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
-from separatrix.chain.shown_traction import curves_by_ratio, shear
+from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, shear
 from separatrix.chain.solution import Solution, solve
 from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
@@ -51,7 +53,7 @@ from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.runner import Progress, Runner, made_into
-from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
+from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Race, Study, TractionModel
 from separatrix.units import MetrePerSecond, format_quantity, parse
 
 SAMPLES_A_WHIRL = 15
@@ -112,20 +114,33 @@ def bearing(study: Study) -> BearingState:
 
 
 def traction(study: Study) -> TractionAnswer:
-    """Traction curves, as they are and at other pivoting-to-rolling ratios."""
+    """Traction curves by both models, and by strips at other pivoting-to-rolling ratios."""
     solution = solve(study)
-    contacts = solution.bearing
-    inner = curves_by_ratio(study.film, contacts.inner, solution.traction.inner)
-    outer = curves_by_ratio(study.film, contacts.outer, solution.traction.outer)
+    contacts, used = solution.bearing, solution.traction
+    inner, outer = (
+        race_track(study.bearing, study.film, race, at)
+        for race, at in ((Race.INNER, contacts.inner), (Race.OUTER, contacts.outer))
+    )
+    with warnings.catch_warnings():  # the comparison says where its models leave their range
+        warnings.simplefilter("ignore", ValidityWarning)
+        inner_strips, inner_exact = curves_by_model(inner, study.traction, used.inner)
+        outer_strips, outer_exact = curves_by_model(outer, study.traction, used.outer)
+        comparison = compare_models(solution)
+    is_exact = study.traction.model is TractionModel.EXACT
     return TractionAnswer(
         race_friction=study.film.race_friction,
         bearing=contacts,
-        inner=inner[0],
-        outer=outer[0],
-        inner_others=inner[1:],
-        outer_others=outer[1:],
-        inner_shear=shear(study.film, contacts.inner),
-        outer_shear=shear(study.film, contacts.outer),
+        comparison=comparison,
+        inner=(is_exact and inner_exact) or inner_strips,
+        outer=(is_exact and outer_exact) or outer_strips,
+        inner_strips=inner_strips,
+        outer_strips=outer_strips,
+        inner_exact=inner_exact,
+        outer_exact=outer_exact,
+        inner_others=curves_by_ratio(inner, inner_strips),
+        outer_others=curves_by_ratio(outer, outer_strips),
+        inner_shear=shear(inner),
+        outer_shear=shear(outer),
     )
 
 
@@ -133,8 +148,15 @@ def restitution(study: Study) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
+    with warnings.catch_warnings():  # of films that are not the study's
+        warnings.simplefilter("ignore", ValidityWarning)
+        films, wear = exact_films(solution), wear_curve(solution)
     return RestitutionAnswer(
-        solution=solution, film_thickness=study.film.thickness or 0.0, lubrication=solution.lubrication
+        solution=solution,
+        film_thickness=study.film.thickness or 0.0,
+        lubrication=solution.lubrication,
+        exact_films=films,
+        wear=wear,
     )
 
 

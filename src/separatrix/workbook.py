@@ -275,7 +275,7 @@ def _chart(sheet: Worksheet, points: int, candidates: int) -> ScatterChart:
 
 # Inputs with their origins, materials and frictions with their sources, and what made the answer.
 
-SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability")
+SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 ROLES = {
     ("bearing", "ball_material"): "balls",
     ("bearing", "ring_material"): "rings",

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse, ellipse_shape
-from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, over_cells, worn_band
+from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body, Layer, solid
@@ -17,6 +17,7 @@ from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressur
 from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.traction.profile import Profile, worn_band
 from separatrix.errors import ConvergenceError, InputError
 
 STEEL = solid(200e9, 0.285)
@@ -166,7 +167,7 @@ def test_profiles():
     """Means over the rows, steps, constants beyond the ends, and what is refused."""
     grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=8, rows=8)
     line = Profile(across=(-1.0, 1.0), values=(0.0, 2.0))
-    assert line.row_means(grid)[:, 0] == pytest.approx(1.0 + grid.y)
+    assert over_cells(line, grid)[:, 0] == pytest.approx(1.0 + grid.y)
     band = over_cells(worn_band(0.5, worn=0.0, film=3.0), grid)
     assert band.shape == grid.shape
     assert band[:, 0].tolist() == [3.0, 3.0, 0.0, 0.0, 0.0, 0.0, 3.0, 3.0]

@@ -520,11 +520,12 @@ def test_the_page_on_study_files_names_every_key_and_every_unit():
 
 
 def test_the_toml_on_the_page_is_right(read):
-    """Both examples can be read."""
+    """All examples can be read."""
     from pathlib import Path
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
-    variant, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
+    variant, wear, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
+    assert read(BASE + wear).film.wear.width == pytest.approx(2e-4)
     assert read(variant).operation.axial_load == 1500.0
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"
 

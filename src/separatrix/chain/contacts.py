@@ -5,6 +5,7 @@ Each is dear to solve, and is remembered by the value of the records that it dep
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import TypeVar
@@ -16,9 +17,19 @@ from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.orbit import mean_speed
-from separatrix.chain.traction import TractionCurve, film_compliance, traction_curve
+from separatrix.chain.race_curve import RaceTrack, race_curve
+from separatrix.chain.traction import TractionCurve
 from separatrix.errors import InputError
-from separatrix.study import BallBearing, Film, KinematicModel, Operation, Race, Study
+from separatrix.study import (
+    BallBearing,
+    Film,
+    KinematicModel,
+    Operation,
+    Race,
+    Study,
+    TractionModel,
+    TractionSettings,
+)
 from separatrix.units import MetrePerSecond, Newton, Radian, RadianPerSecond, Ratio
 
 REMEMBERED = 1024
@@ -96,21 +107,30 @@ def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceC
 
 @lru_cache(maxsize=REMEMBERED)
 def race_traction(
-    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, film: Film
+    bearing: BallBearing,
+    operation: Operation,
+    kinematics: KinematicModel,
+    film: Film,
+    settings: TractionSettings,
 ) -> RaceTraction:
     """Traction curves of both races, remembered by the value of these records."""
     state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    inner, outer = (
-        traction_curve(
-            at.ellipse,
-            at.creep,
-            race_friction=film.race_friction,
-            film_compliance=film_compliance(film),
-            film_thickness=film.thickness or 0.0,
-        )
-        for at in (state.inner, state.outer)
-    )
+    tracks = [
+        race_track(bearing, film, race, at)
+        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
+    ]
+    if settings.model is TractionModel.STRIPS:
+        inner, outer = (race_curve(track, settings) for track in tracks)
+    else:
+        with ThreadPoolExecutor(2) as pool:
+            inner, outer = pool.map(lambda track: race_curve(track, settings), tracks)
     return RaceTraction(inner=_unchangeable(inner), outer=_unchangeable(outer))
+
+
+def race_track(bearing: BallBearing, film: Film, race: Race, at: RaceContact) -> RaceTrack:
+    """What rolls on what at one race."""
+    ball, ring = bearing.ball_material, bearing.ring_material
+    return RaceTrack(ellipse=at.ellipse, creep=at.creep, race=race, ball=ball, ring=ring, film=film)
 
 
 def _unchangeable(solved: Solved) -> Solved:

@@ -1,4 +1,4 @@
-"""Traction of a contact as figures show it: at several pivoting-to-rolling ratios, and its shear."""
+"""Traction of a contact as figures show it: by both models, at several spins, and its shear."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.chain.contacts import RaceContact
-from separatrix.chain.traction import ShearField, TractionCurve, film_compliance, shear_field, traction_curve
-from separatrix.study import Film
+from separatrix.chain.race_curve import RaceTrack, exact_curve, strips
+from separatrix.chain.traction import ShearField, TractionCurve, shear_field, track_of
+from separatrix.errors import ConvergenceError, InputError
+from separatrix.study import ContactPressure, TractionModel, TractionSettings
+from separatrix.units import Ratio
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
@@ -20,47 +22,58 @@ SATURATED = 0.995
 STRIPS = 5
 """Strips in which the shear is shown."""
 
+INCREMENTS = 101
+"""Creep increments of a curve."""
 
-def curves_by_ratio(film: Film, at: RaceContact, curve: TractionCurve) -> tuple[TractionCurve, ...]:
-    """Traction curves of one contact: at its own ratio, then at `SPIN_ROLL_RATIOS` with its sign.
+
+def curves_by_model(
+    track: RaceTrack, settings: TractionSettings, curve: TractionCurve
+) -> tuple[TractionCurve, TractionCurve | None]:
+    """Curves of one contact by strips and by the exact contact; None if that has no answer.
 
     The creep increments go a quarter beyond those at which the contact's own curve is saturated.
     """
-    increments = np.linspace(-1.0, 1.0, 201) * _saturation(film, at, curve)
-    own = at.creep.spin
-    others = (math.copysign(ratio, own) * at.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
+    increments = np.linspace(-1.0, 1.0, INCREMENTS) * _saturation(track, curve)
+    plain = strips(track, settings.pressure, increments)
+    if track.is_idle:
+        return plain, None
+    try:
+        return plain, exact_curve(track, replace(settings, model=TractionModel.EXACT), plain)
+    except (InputError, ConvergenceError):
+        if settings.model is TractionModel.EXACT:
+            raise
+        return plain, None
+
+
+def curves_by_ratio(track: RaceTrack, curve: TractionCurve) -> tuple[TractionCurve, ...]:
+    """Traction curves by strips at `SPIN_ROLL_RATIOS`, with the sign and at the increments of a curve."""
+    own = track.creep.spin
+    spins = (math.copysign(ratio, own) * track.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
     return tuple(
-        traction_curve(
-            at.ellipse,
-            replace(at.creep, spin=spin),
-            race_friction=film.race_friction,
-            film_compliance=film_compliance(film),
-            creep_increments=increments,
+        strips(
+            replace(track, creep=replace(track.creep, spin=spin)),
+            ContactPressure.HERTZ,
+            curve.creep_increment,
         )
-        for spin in (own, *others)
+        for spin in spins
     )
 
 
-def _saturation(film: Film, at: RaceContact, curve: TractionCurve) -> float:
+def _saturation(track: RaceTrack, curve: TractionCurve) -> Ratio:
     """Creep increment a quarter beyond the one at which a curve has its whole friction, either way."""
     widest = float(curve.creep_increment[-1])
-    finer = traction_curve(
-        at.ellipse,
-        at.creep,
-        race_friction=film.race_friction,
-        film_compliance=film_compliance(film),
-        creep_increments=widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0),
+    finer = strips(
+        track, ContactPressure.HERTZ, widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0)
     )
-    rising = np.abs(finer.traction_coefficient) < SATURATED * film.race_friction
-    return min(1.25 * float(np.abs(finer.creep_increment[rising]).max()), widest)
+    coefficient = np.abs(finer.traction_coefficient)
+    rising = coefficient < SATURATED * coefficient.max()
+    farthest = float(np.abs(finer.creep_increment[rising]).max(initial=0.0))
+    return min(1.25 * farthest or widest, widest)
 
 
-def shear(film: Film, at: RaceContact) -> ShearField:
+def shear(track: RaceTrack) -> ShearField:
     """Shear in a few strips of a contact in free rolling (the paper's Fig. 6)."""
+    friction, compliance = track_of(track.film, track.race, track.ellipse.semi_major)
     return shear_field(
-        at.ellipse,
-        at.creep,
-        race_friction=film.race_friction,
-        film_compliance=film_compliance(film),
-        strips=STRIPS,
+        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=STRIPS
     )

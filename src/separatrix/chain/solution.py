@@ -119,7 +119,7 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its warnings
-        return race_traction(asked.bearing, asked.operation, asked.kinematics, asked.film)
+        return race_traction(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
 
     @property
     def design(self) -> CageDesign:

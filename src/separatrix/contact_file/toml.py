@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes, ellipse_of_curvatures
-from separatrix.chain.traction.exact.bound import FrictionLaw, Profile
+from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import LARGEST_CREEP, LARGEST_SIDE, ContactProblem
 from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
 from separatrix.chain.traction.exact.normal import film_strain
+from separatrix.chain.traction.profile import Profile
 from separatrix.contact_file.keys import LAYER, MOTIONS, SECTIONS
 from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Motion
 from separatrix.errors import InputError, ValidityWarning, noted, together
@@ -88,7 +89,7 @@ def read_contact_toml(path: Path) -> ContactQuestion:
     title = path.stem
     with noted(file.problems):
         title = text(data.get("title", path.stem), "title")
-    with using(with_files(beside(path.parent, besides=path)), None):
+    with using(with_files(beside(path.parent, besides=path)), None, path.parent):
         bodies = _body(file, "body_1"), _body(file, "body_2")
     friction, film = _friction(file), _film(file)
     grid = file.section("grid", SECTIONS["grid"])

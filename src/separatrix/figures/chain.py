@@ -95,6 +95,8 @@ def contacts(data: xr.Dataset) -> Figure:
 def traction(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the pictures of `traction`."""
     yield "traction-curves", curves(data)
+    if "exact_traction_coefficient" in data:
+        yield "traction-models", models(data)
     yield "traction-shear", shear(data)
 
 
@@ -122,6 +124,24 @@ def curves(data: xr.Dataset) -> Figure:
     return figure
 
 
+def models(data: xr.Dataset) -> Figure:
+    """Traction coefficient by strips and by the exact contact, and by how much they differ."""
+    figure, panels = canvas(PAGE, 3.2, ncols=2)
+    for axes, race, letter in zip(panels, ("inner", "outer"), "ab", strict=True):
+        of = data.sel(race=race)
+        increment = 100 * of["creep_increment"].values
+        strips, exact = (of[f"{model}_traction_coefficient"].values for model in ("strips", "exact"))
+        axes.axhline(0.0, color=GREY, lw=0.5)
+        axes.axvline(0.0, color=GREY, lw=0.5)
+        axes.plot(increment, strips, color=BLUE, lw=1.2, label="strips")
+        axes.plot(increment, exact, "o", color=VERMILION, ms=2.6, mfc="none", mew=0.8, label="exact contact")
+        axes.plot(increment, 10 * (strips - exact), color=BLACK, lw=0.8, ls=DASHED, label="10 x difference")
+        axes.legend(loc="upper left", handlelength=1.8)
+        axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
+    panels[0].set_ylabel("traction coefficient $C_T$ [-]")
+    return figure
+
+
 def shear(data: xr.Dataset) -> Figure:
     """Shear along rolling in three strips of each contact: without slip, with slip, and Coulomb's bound."""
     figure, axes = canvas(PAGE, 4.2, nrows=2, ncols=3, sharex="row", sharey="row")
@@ -139,7 +159,7 @@ def shear(data: xr.Dataset) -> Figure:
 
 def _strip(axes: Axes, data: xr.Dataset, letter: str) -> None:
     x = 1e3 * data["shear_along"].values
-    bound = 1e-6 * float(data["race_friction"]) * data["shear_pressure"].values
+    bound = 1e-6 * data["shear_bound"].values
     axes.fill_between(x, -bound, bound, color=GREY, alpha=0.15, lw=0, label=r"$|\tau| \leq f_{BT}\,p$")
     axes.axhline(0.0, color=GREY, lw=0.5)
     without = 1e-6 * data["shear_shear_without_slip"].values
@@ -157,9 +177,35 @@ def signed(value: float, digits: int) -> str:
 
 
 def restitution(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the picture of `restitution`; bare races have none."""
+    """Yield the pictures of `restitution`: of a film, and of a worn band; bare races have none."""
     if "film_thickness" in data.sizes:
         yield "restitution-film", lubrication(data)
+    if "worn" in data.sizes:
+        yield "restitution-wear", wear(data)
+
+
+def wear(data: xr.Dataset) -> Figure:
+    """Restitution factor against the width of the worn band, by strips and by exact contacts."""
+    figure, panels = canvas(PAGE, 3.3, ncols=2, sharey=True)
+    widest = 1e3 * float(data["wear_width"][-1])
+    names = ("restitution_factor", "restitution_factor_free_spin")
+    own = float(data["chain_restitution_factor"]), float(data[names[1]])
+    for axes, name, eta in zip(panels, names, own, strict=True):
+        axes.plot(data["wear_share"], data[f"wear_{name}"], color=BLUE, label="strips")
+        if "wear_exact_share" in data:
+            exact = data["wear_exact_share"], data[f"wear_exact_{name}"]
+            axes.plot(*exact, "o", color=VERMILION, mfc="none", label="exact contact")
+        look: Look = {"color": BLACK, "ms": 9, "mfc": "white", "zorder": 5, "ls": "none"}
+        label = rf"this bearing: $\eta$ = {eta:.2f}"
+        axes.plot(float(data["wear_here"]), eta, marker="*", label=label, **look)
+        top = axes.secondary_xaxis("top", functions=(lambda x: x * widest, lambda x: x / widest))
+        top.set_xlabel("width of the band [mm]")
+        axes.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.0))
+        axes.legend(loc="upper left")
+    panels[0].set(title="a  Race dampings summed (Eq. 18)", ylabel=r"restitution factor $\eta$ [-]")
+    panels[1].set(title="b  Ball free to spin in the impact")
+    figure.supxlabel("width of the worn band over that of the wider contact [-]", fontsize=8)
+    return figure
 
 
 def lubrication(data: xr.Dataset) -> Figure:
@@ -168,6 +214,11 @@ def lubrication(data: xr.Dataset) -> Figure:
     _panel(axes[0], data, "lubrication_restitution_factor", float(data["chain_restitution_factor"]))
     free = "restitution_factor_free_spin"
     _panel(axes[1], data, f"lubrication_{free}", float(data[free]))
+    if "film_exact" in data.sizes:
+        thickness = 1e6 * data["exact_films_thickness"].values
+        bare = 0.2 * 1e6 * float(data["film_thickness"].values[1])
+        points = np.where(thickness > 0.0, thickness, bare), data["exact_films_restitution_factor"].values
+        axes[0].plot(*points, "D", color=VERMILION, mfc="none", ms=4, label="exact contact, this friction")
     axes[0].set(title="a  Race dampings summed (Eq. 18)", ylabel=r"restitution factor $\eta$ [-]")
     axes[1].set(title="b  Ball free to spin in the impact")
     figure.supxlabel("total thickness of the film [\u00b5m]", fontsize=8)

@@ -15,14 +15,27 @@ import numpy as np
 from separatrix.cage import CageMotion
 from separatrix.errors import SeparatrixError
 from separatrix.present.walk import Group, Leaf, Table, shape
-from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape, Race
+from separatrix.study import (
+    ContactPressure,
+    Guidance,
+    KinematicModel,
+    PocketContact,
+    PocketShape,
+    PressureSlip,
+    Race,
+    TractionModel,
+    Worn,
+)
 
 if TYPE_CHECKING:
-    from separatrix.study import Study
+    from separatrix.study import ContactPressure, PressureSlip, Study, TractionModel, Worn
 
 Document = dict[str, Any]
 
-SPELLED = (CageMotion, Guidance, KinematicModel, PocketContact, PocketShape, Race)
+SPELLED = (
+    *(CageMotion, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape, PressureSlip, Race),
+    *(TractionModel, Worn),
+)
 """Enumerations whose values are shown; of the others the names."""
 
 _left_out: ContextVar[list[str] | None] = ContextVar("left_out", default=None)

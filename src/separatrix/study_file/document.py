@@ -18,7 +18,7 @@ from separatrix.toml_text import Places, label_of, path_text, places_of, read_to
 from separatrix.toml_values import folded, nearest
 from separatrix.units import printable, shown
 
-SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability", "ranking")
+SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
 TEMPLATE = Path(__file__).with_name("template.toml")
 MOST_BASES = 8
 MOST_NAMED = 20
@@ -79,6 +79,9 @@ class Document:
 
     friction_folder: Path = field(default_factory=Path)
     """Folder of the file that gives [ranking] friction."""
+
+    film_folder: Path = field(default_factory=Path)
+    """Folder of the file that gives [film] wear."""
 
     @contextmanager
     def noting(self) -> Iterator[None]:
@@ -158,7 +161,8 @@ def _own(path: Path) -> Document:
 
         return document_of(path)
     data, lines = read_toml(path)
-    document = Document(path, places=places_of(label_of(path), data, lines), friction_folder=path.parent)
+    places, folder = places_of(label_of(path), data, lines), path.parent
+    document = Document(path, places=places, friction_folder=folder, film_folder=folder)
     for name, value in data.items():
         if len(document.problems) > MOST_PROBLEMS:
             break
@@ -180,7 +184,7 @@ def _own(path: Path) -> Document:
 
 
 def _merged(base: Document, document: Document) -> Document:
-    own = document.sections.get("ranking", {})
+    own, film = document.sections.get("ranking", {}), document.sections.get("film", {})
     merged = Document(
         document.path,
         {"title": base.top["title"], **document.top} if "title" in base.top else document.top,
@@ -188,6 +192,7 @@ def _merged(base: Document, document: Document) -> Document:
         problems=base.problems + document.problems,
         libraries=document.libraries + base.libraries,
         friction_folder=(document if "friction" in own else base).friction_folder,
+        film_folder=(document if "wear" in film else base).film_folder,
     )
     for name in SECTIONS:
         below, above = base.sections.get(name), document.sections.get(name)

@@ -10,7 +10,7 @@ from typing import Any
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
 from separatrix.friction.records import FrictionTest
-from separatrix.study import SECTIONS, CageDesign, Film, Friction, Material, RankingQuestion, Study
+from separatrix.study import SECTIONS, CageDesign, Film, Friction, Material, RankingQuestion, Study, Wear
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
@@ -24,6 +24,9 @@ _WITHOUT = {
     "operation.fluid": "not given",
     "film.material": "default: bare races",
     "film.thickness": "default: bare races",
+    "film.wear": "default: not worn",
+    "film.wear.width": "not given",
+    "film.wear.share": "not given",
     "cage.material": "not given",
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
     "cage.impact_speed": f"default: {_SCALED}",
@@ -72,6 +75,10 @@ def _section(study: Study, section: str) -> dict[str, Any] | None:
     values: dict[str, Any] = {name: _value(study, record, section, name) for name in names}
     if isinstance(record, Film):
         values["is_bare"] = record.material is None
+        if record.wear is not None:
+            del values["wear"]
+            names = [f.name for f in fields(Wear)]
+            values |= {f"wear.{name}": _value(study, record.wear, "film.wear", name) for name in names}
     if isinstance(record, CageDesign):  # whose friction the cage has, where it has not its own
         candidate = None if record.ball_cage_friction is not None else cage_candidate(study)
         environment = environment_of(study.ranking) if study.ranking and candidate else None

@@ -15,7 +15,7 @@ from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
 from separatrix.library import Library
 from separatrix.study import SECTIONS as RECORDS
-from separatrix.study import Guidance, KinematicModel, Material, Study, key_of
+from separatrix.study import Guidance, KinematicModel, Material, Study, Wear, key_of
 from separatrix.study_file import values
 from separatrix.study_file.document import (
     ALTERNATIVES,
@@ -25,6 +25,7 @@ from separatrix.study_file.document import (
     Unfinished,
     library_of,
 )
+from separatrix.study_file.wear import wear
 from separatrix.study_numbers import ANGLE_FROM, MOST_DISTRIBUTIONS, contact_angle_of, settled_in
 from separatrix.toml_values import Reader, choice, list_of, nearest, quantity, ratio, text, whole
 from separatrix.units import printable, shown, unit_of
@@ -68,6 +69,8 @@ def _reader(section: str, record: type, name: str) -> Reader:
         return values.certain(_LISTS[name])
     if hint is Material:
         return _MATERIALS[section, name]
+    if hint is Wear:
+        return wear
     if hint is int:
         return values.certain(whole) if name in _CERTAIN else values.count
     if hint is str:
@@ -119,7 +122,7 @@ def build_study(document: Document, name: str) -> Study:
         library = library_of(document)
     if library is None:
         raise document.refusal()
-    with values.using(library, _temperature(document)):
+    with values.using(library, _temperature(document), document.film_folder):
         for section in SECTIONS:
             if section in document.sections:
                 given = _converted(document, section)
@@ -341,6 +344,10 @@ def _origins(document: Document) -> dict[str, str]:
             plain = not isinstance(value, dict | list) or f"{section}.{key}" in document.distributions
             text = f": {values.written(value)}" if plain else ""
             origins[f"{section}.{key}"] = document.places.of(f"[{section}] {key}") + text
+            inside = value.items() if (section, key) == ("film", "wear") and isinstance(value, dict) else ()
+            for part, one in inside:
+                place = document.places.of(f"[film] wear.{part}")
+                origins[f"film.wear.{part}"] = f"{place}: {values.written(one)}"
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"
     return origins

@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix import library
 from separatrix.study import SECTIONS as RECORDS
-from separatrix.study import Guidance, KinematicModel, PocketContact, PocketShape
+from separatrix.study import (
+    ContactPressure,
+    Guidance,
+    KinematicModel,
+    PocketContact,
+    PocketShape,
+    PressureSlip,
+    TractionModel,
+)
 from separatrix.study_file.cells import COLUMNS, SEPARATOR, with_unit
 from separatrix.study_file.document import SECTIONS, TEMPLATE, load
 from separatrix.study_file.sections import required_fields
@@ -61,6 +69,9 @@ TEXTS = frozenset({"title", "extends", "fluid"})
 
 _CHOICES: dict[str, type[Enum]] = {
     "kinematics.model": KinematicModel,
+    "traction.model": TractionModel,
+    "traction.pressure": ContactPressure,
+    "traction.pressure_slip": PressureSlip,
     "cage.guidance": Guidance,
     "cage.pocket_shape": PocketShape,
     "cage.pocket_contact": PocketContact,

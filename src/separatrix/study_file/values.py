@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, TypeVar
 
 from separatrix import study
@@ -274,13 +275,17 @@ def _example(unit: str) -> str:
     return {"m": "0.5 um", "N": "300 daN", "Pa": "1.5 GPa", "-": "0.1"}.get(unit, "1.5 " + unit)
 
 
-_READING: ContextVar[tuple[Library, float | None]] = ContextVar("reading", default=(Library(), None))
+_Reading = tuple[Library, float | None, Path]
+_READING: ContextVar[_Reading] = ContextVar("reading", default=(Library(), None, Path()))
 
 
 @contextmanager
-def using(library: Library, temperature: float | None) -> Iterator[None]:
-    """Read names from this library, with the data that serve at this temperature, until the end."""
-    before = _READING.set((library, temperature))
+def using(library: Library, temperature: float | None, folder: Path) -> Iterator[None]:
+    """Read names from this library, with the data that serve at this temperature, until the end.
+
+    `folder` has the files that [film] names.
+    """
+    before = _READING.set((library, temperature, folder))
     try:
         yield
     finally:
@@ -295,6 +300,11 @@ def current_library() -> Library:
 def current_temperature() -> float | None:
     """Temperature of the study that is being read; None where it states none."""
     return _READING.get()[1]
+
+
+def current_folder() -> Path:
+    """Folder of the files that [film] of the study that is being read names."""
+    return _READING.get()[2]
 
 
 def items(unit: str, default: str) -> Reader:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import SECTIONS as RECORDS
-from separatrix.study import Material
+from separatrix.study import Material, Wear
 from separatrix.study_file.cells import (
     COLUMNS,
     MOST_COLUMNS,
@@ -51,6 +51,7 @@ PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "source")
 MEASURED = ("mean", "standard_deviation", "count", "source")
 LISTS = frozenset(
     {"kicks", "pocket_angles", "restitution_factors", "materials", "library", "between", "samples"}
+    | {"across", "thicknesses"}
 )
 """Keys, and last parts of dotted keys, that are lists even of one item."""
 
@@ -67,7 +68,7 @@ def document_of(path: Path) -> Document:
         It holds formulas: their saved values are taken.
     """
     label = label_of(path)
-    document = Document(path, places=Places(label), friction_folder=path.parent)
+    document = Document(path, places=Places(label), friction_folder=path.parent, film_folder=path.parent)
     formulas: list[str] = []
     known: dict[str, str] = {}
     for sheet in sheets_of(path, label, lambda name: name.strip().casefold() in _NAMES):
@@ -230,10 +231,11 @@ def _items(text: str, unit: str) -> list[Plain]:
 
 
 def _unit_of(section: str, key: str, inside: list[str]) -> str:
-    """Unit of a key of a section, or of a property of a material; empty where it has none."""
+    """Unit of a key of a section, of a property of a material or of wear; empty where it has none."""
     names = {"radial_clearance": "m", "elastic_modulus": "Pa"}
-    name = inside[-1] if inside and inside[-1] in numbers_of(Material) else key
-    record = RECORDS.get(section) if name == key else Material
+    within = Wear if key == "wear" else Material
+    name = inside[-1] if inside and inside[-1] in numbers_of(within) else key
+    record = RECORDS.get(section) if name == key else within
     known = record is not None and name in {f.name for f in dataclasses.fields(record)}
     return unit_of(record, name) if record is not None and known else names.get(name, "")
 

@@ -3,18 +3,21 @@
 from separatrix.chain.traction.curve import (
     TractionCurve,
     dundurs_coupling,
-    film_compliance,
     traction_curve,
     traction_slope,
 )
+from separatrix.chain.traction.film import Track, film_compliance, track_of
 from separatrix.chain.traction.layer import BondedLayer, bonded_layer
+from separatrix.chain.traction.profile import Profile, worn_band
 from separatrix.chain.traction.shear import ShearField, direct_traction, shear_field
 from separatrix.chain.traction.strip import StripSolution, solve_strip
 
 __all__ = [
     "BondedLayer",
+    "Profile",
     "ShearField",
     "StripSolution",
+    "Track",
     "TractionCurve",
     "bonded_layer",
     "direct_traction",
@@ -22,6 +25,8 @@ __all__ = [
     "film_compliance",
     "shear_field",
     "solve_strip",
+    "track_of",
     "traction_curve",
     "traction_slope",
+    "worn_band",
 ]

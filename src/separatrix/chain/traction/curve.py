@@ -18,16 +18,21 @@ from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.ellipse import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
-    LEVELS,
+    LAM_HIGH,
+    LAM_LOW,
+    M_LOW,
+    Y_HIGH,
+    Y_LOW,
     Table,
     free_rolling,
     resultant,
 )
 from separatrix.chain.traction.layer import BondedLayer, layer_tables
 from separatrix.chain.traction.master import MasterTable, film_tables, master_traction
+from separatrix.chain.traction.profile import Profile, edges_of, ends_of
 from separatrix.compiled import kernel
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import Film, Material
+from separatrix.study import Material
 from separatrix.units import Array, Metre, Ratio
 
 NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the finer one has twice as many
@@ -41,23 +46,33 @@ Tables = Callable[[int], tuple[MasterTable, MasterTable]]
 
 @dataclass(frozen=True, slots=True)
 class ScaledContact:
-    """Spin sigma = s a/xi_s, Heathcote eta = q a^2/xi_s, film lam = L E*/b; xi_s = 2 mu p0/E*.
+    """Spin sigma = s a/xi_s, Heathcote eta = q a^2/xi_s; xi_s = 2 mu p0/E*, mu being the largest friction.
 
-    Under a bonded layer `lam` is h/b. `steepness` is mu/xi_s; `idle` says that nothing is transmitted: no
-    friction or no load.
+    `pieces` have the film lam0 = L E*/b, or h/b under a bonded layer, and the friction over mu, shape
+    (piece, 6): see chain/traction/ellipse.py. `steepness` is mu/xi_s; `idle` says that nothing is
+    transmitted: no friction or no load.
     """
 
     sigma: Ratio
     eta: Ratio
-    lam: Ratio
+    pieces: Array
+    friction: Ratio
     saturation: Ratio
     steepness: Ratio
     idle: bool
     tables: Tables
 
-    def reach(self, table: MasterTable) -> Ratio:
-        """Creep over xi_s at which the tangent at the origin would saturate the middle strip [-]."""
-        return 2.0 / master_traction(0.0, self.lam, table.values, table.log_scale, table.axis)[1]
+    def local(self, y: Array) -> tuple[Array, Array]:
+        """Film lam0 and friction over mu at y/a, shape of y each [-]."""
+        piece = self.pieces[np.searchsorted(self.pieces[1:, Y_LOW], y, side="right")]
+        along = (y - piece[:, Y_LOW]) / (piece[:, Y_HIGH] - piece[:, Y_LOW])
+        lam, m = (piece[:, low] + (piece[:, low + 1] - piece[:, low]) * along for low in (LAM_LOW, M_LOW))
+        return lam, m
+
+    def reached(self, table: MasterTable) -> Array:
+        """The pieces with their reach, shape (piece, 7)."""
+        films = self.pieces[:, [LAM_LOW, LAM_HIGH]].max(axis=1)
+        return np.column_stack([self.pieces, [reach(table, lam) if lam > 0.0 else 0.0 for lam in films]])
 
     def offset(self, table: MasterTable) -> Ratio:
         """Offset of free rolling over the saturation creep [-]."""
@@ -73,7 +88,8 @@ class ScaledContact:
 
     def increments(self, table: MasterTable) -> Array:
         """41 creep increments from saturation to saturation, shape (case,) [-]."""
-        span = self.saturation * (2.5 * self.reach(table) + 1.5 * (abs(self.sigma) + abs(self.eta)))
+        farthest = reach(table, float(self.pieces[:, [LAM_LOW, LAM_HIGH]].max()))
+        span = self.saturation * (2.5 * farthest + 1.5 * (abs(self.sigma) + abs(self.eta)))
         return np.linspace(-span, span, 41)
 
     def refined_slope(self, tolerance: Ratio) -> tuple[Ratio, Ratio, int]:
@@ -95,25 +111,42 @@ class ScaledContact:
 
     def _arguments(
         self, table: MasterTable, splits: int
-    ) -> tuple[float, float, float, Array, int, tuple[Array, Array], Table]:
-        levels = LEVELS[:2] if self.lam == 0.0 else LEVELS * self.reach(table)
+    ) -> tuple[float, float, Array, int, tuple[Array, Array], Table]:
         contents = (table.values, table.log_scale, table.axis)
-        return self.sigma, self.eta, self.lam, levels, splits, (GAUSS_NODES, GAUSS_WEIGHTS), contents
+        return self.sigma, self.eta, self.reached(table), splits, (GAUSS_NODES, GAUSS_WEIGHTS), contents
+
+
+def reach(table: MasterTable, lam: Ratio) -> Ratio:
+    """Creep over xi_s at which the tangent at the origin would saturate a strip under a film [-]."""
+    return 2.0 / master_traction(0.0, lam, table.values, table.log_scale, table.axis)[1]
 
 
 def scaled_contact(
-    ellipse: ContactEllipse, creep: Creep, friction: Ratio, compliance: float, layer: BondedLayer | None
+    ellipse: ContactEllipse,
+    creep: Creep,
+    friction: Ratio | Profile,
+    compliance: float | Profile,
+    layer: BondedLayer | None,
 ) -> ScaledContact:
     """Dimensionless form of one contact; a layer takes the place of the compliance."""
     a, b, p0, E = ellipse.semi_major, ellipse.semi_minor, ellipse.max_pressure, ellipse.contact_modulus
-    largest = max(abs(creep.spin) * a, abs(creep.curvature) * a * a)
-    idle = friction == 0.0 or p0 == 0.0
-    saturation = (RIGID * largest or RIGID) if idle else 2.0 * friction * p0 / E
-    lam, tables = _film(b, E, compliance, None if idle else layer)
+    spread = max(abs(creep.spin) * a, abs(creep.curvature) * a * a)
+    mu = max(friction.values) if isinstance(friction, Profile) else friction
+    idle = mu == 0.0 or p0 == 0.0
+    saturation = (RIGID * spread or RIGID) if idle else 2.0 * mu * p0 / E
+    tables: Tables = film_tables
+    pieces = np.array([[-1.0, 1.0, 0.0, 0.0, 1.0, 1.0]])
+    if layer is not None and not idle:
+        pieces[0, LAM_LOW : LAM_HIGH + 1], tables = _layered(layer, b)
+    elif not idle:
+        edges = edges_of(a, friction, compliance)
+        films, shares = ends_of(compliance, edges) * E / b, ends_of(friction, edges) / mu
+        pieces = np.column_stack([edges[:-1] / a, edges[1:] / a, films, shares])
     return ScaledContact(
         sigma=creep.spin * a / saturation,
         eta=creep.curvature * a * a / saturation,
-        lam=0.0 if idle else lam,
+        pieces=pieces,
+        friction=mu,
         saturation=saturation,
         steepness=0.0 if idle else 0.5 * E / p0,
         idle=idle,
@@ -121,15 +154,11 @@ def scaled_contact(
     )
 
 
-def _film(
-    semi_minor: float, modulus: float, compliance: float, layer: BondedLayer | None
-) -> tuple[Ratio, Tables]:
-    if layer is None:
-        return (compliance * modulus / semi_minor if semi_minor > 0.0 else 0.0), film_tables
-    bonded, ratio = layer, layer.thickness / semi_minor
+def _layered(layer: BondedLayer, semi_minor: Metre) -> tuple[Ratio, Tables]:
+    ratio = layer.thickness / semi_minor
 
     def tables(nodes: int) -> tuple[MasterTable, MasterTable]:
-        return layer_tables(bonded, ratio, nodes)
+        return layer_tables(layer, ratio, nodes)
 
     return ratio, tables
 
@@ -139,8 +168,7 @@ def _forces(
     offsets: Array,
     sigma: float,
     eta: float,
-    lam: float,
-    levels: Array,
+    pieces: Array,
     splits: int,
     gauss: tuple[Array, Array],
     table: Table,
@@ -148,7 +176,7 @@ def _forces(
     """Resultant over mu N at every offset, shape (case,) [-]."""
     forces = np.empty(offsets.size)
     for i in range(offsets.size):
-        forces[i] = resultant(offsets[i], sigma, eta, lam, levels, splits, gauss, table)[0]
+        forces[i] = resultant(offsets[i], sigma, eta, pieces, splits, gauss, table)[0]
     return forces
 
 
@@ -174,19 +202,12 @@ class TractionCurve:
     nodes: int
 
 
-def film_compliance(film: Film) -> float:
-    """Shear compliance L = h/G of the film, total over ball and race [m/Pa]; 0 if the races are bare."""
-    if film.material is None or film.thickness is None:
-        return 0.0
-    return 2.0 * film.thickness * (1.0 + film.material.poisson_ratio) / film.material.elastic_modulus
-
-
 def traction_curve(
     ellipse: ContactEllipse,
     creep: Creep,
     *,
-    race_friction: Ratio,
-    film_compliance: float,
+    race_friction: Ratio | Profile,
+    film_compliance: float | Profile,
     creep_increments: Array | None = None,
     film_thickness: Metre = 0.0,
     layer: BondedLayer | None = None,
@@ -203,9 +224,9 @@ def traction_curve(
         The Hertz contact.
     creep : Creep
         Spin and Heathcote creep of the contact.
-    race_friction : float
-        Friction f_BT of ball on track, >= 0 [-].
-    film_compliance : float
+    race_friction : float or Profile
+        Friction f_BT of ball on track, >= 0; a profile across the groove of a worn track is > 0 [-].
+    film_compliance : float or Profile
         Shear compliance L = h/G of the film in series, >= 0 [m/Pa]; not used with a layer.
     creep_increments : array or None
         Where to compute, shape (case,) [-]; None takes 41 points that span saturation both ways.
@@ -234,7 +255,7 @@ def traction_curve(
     Notes
     -----
     Paper, Eqs 2, 12-15 and Fig. 7, with the rolling entry condition (docs/theory/traction.md). Odd in the
-    increment if the creep is pure spin or none; bounded by race_friction.
+    increment if the creep is pure spin or none, and the track symmetric; bounded by race_friction.
     """
     case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness, layer)
     slope, error, nodes = (0.0, 0.0, 200) if case.idle else case.refined_slope(tolerance)
@@ -246,7 +267,7 @@ def traction_curve(
     traction = (
         np.zeros_like(increments)
         if case.idle
-        else race_friction * case.forces(offset + increments / case.saturation, table)
+        else case.friction * case.forces(offset + increments / case.saturation, table)
     )
     return TractionCurve(
         creep_increment=increments,
@@ -263,8 +284,8 @@ def traction_slope(
     ellipse: ContactEllipse,
     creep: Creep,
     *,
-    race_friction: Ratio,
-    film_compliance: float,
+    race_friction: Ratio | Profile,
+    film_compliance: float | Profile,
     film_thickness: Metre = 0.0,
     layer: BondedLayer | None = None,
     tolerance: Ratio = TOLERANCE,
@@ -277,8 +298,8 @@ def traction_slope(
 def _checked_case(
     ellipse: ContactEllipse,
     creep: Creep,
-    friction: Ratio,
-    compliance: float,
+    friction: Ratio | Profile,
+    compliance: float | Profile,
     thickness: Metre,
     layer: BondedLayer | None,
 ) -> ScaledContact:
@@ -293,11 +314,14 @@ def _checked_case(
     return scaled_contact(ellipse, creep, friction, compliance, layer)
 
 
-def check_film(**values: float) -> None:
+def check_film(**values: float | Profile) -> None:
     """Refuse a friction [-], compliance [m/Pa] or thickness [m] that is negative or not finite."""
     units = {"race_friction": "-", "film_compliance": "m/Pa", "film_thickness": "m"}
     for name, value in values.items():
-        if not 0.0 <= value < math.inf:
+        if isinstance(value, Profile):
+            if name == "race_friction" and not min(value.values) > 0.0:
+                raise InputError(f"traction: {name}", "must be > 0 everywhere [-]", f"{min(value.values):g}")
+        elif not 0.0 <= value < math.inf:
             raise InputError(f"traction: {name}", f"must be finite and >= 0 [{units[name]}]", f"{value:g}")
 
 

@@ -1,9 +1,11 @@
 r"""Ellipse of strips: their placement and resultant (paper, 4.3.1 and Eq. 15).
 
 In units of the contact: y = a sin(theta); creep X = xi/xi_s with xi_s = 2 mu p0/E*, X = d + sigma sin + eta
-sin^2; the strip at theta has c = X/cos(theta) and lam = lam0/cos(theta), and carries (3/4) cos^3(theta)
-d(theta) of mu N. Strips are Gauss points of panels that end where |X| passes 0 and a geometric series of
-levels, so that they crowd at the zero-creep lines however strong the spin.
+sin^2; the strip at theta has c = X/(m cos(theta)) and lam = lam0/cos(theta), and carries (3/4) m cos^3(theta)
+d(theta) of mu N, mu being the largest friction and m that of the strip over it. A worn track is made of
+pieces in which lam0 and m change linearly with y; any other is one piece. Strips are Gauss points of panels
+that end where |X| passes 0 and a geometric series of levels, so that they crowd at the zero-creep lines
+however strong the spin.
 """
 
 from __future__ import annotations
@@ -20,6 +22,11 @@ GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 SECTORS = np.pi * np.array([-0.5, -0.4, -0.25, 0.0, 0.25, 0.4, 0.5])
 LEVELS = np.array([0.0, 0.6, 1.5, 4.0, 16.0, 100.0])
 Table = tuple[Array, Array, tuple[float, float, float, float, float]]
+
+
+Y_LOW, Y_HIGH, LAM_LOW, LAM_HIGH, M_LOW, M_HIGH, REACH = range(7)
+"""Columns of a piece: its edges y/a, lam0 and m at them, and its reach: the creep over xi_s at which the
+tangent at the origin would saturate the middle strip; 0 without a film."""
 
 
 @part
@@ -112,30 +119,36 @@ def resultant(
     d: float,
     sigma: float,
     eta: float,
-    lam0: float,
-    levels: Array,
+    pieces: Array,
     splits: int,
     gauss: tuple[Array, Array],
     table: Table,
 ) -> tuple[float, float]:
     """Traction over mu N and its derivative with d, of the ellipse of strips [-]."""
     values, log_scale, axis = table
-    edges = panel_edges(d, sigma, eta, levels, splits)
     nodes, weights = gauss
     force, slope = 0.0, 0.0
-    for k in range(edges.size - 1):
-        half = 0.5 * (edges[k + 1] - edges[k])
-        if half <= 0.0:
-            continue
-        for i in range(nodes.size):
-            theta = edges[k] + half * (1.0 + nodes[i])
-            cosine = math.cos(theta)
-            F, dF = master_traction(
-                creep_at(theta, d, sigma, eta) / cosine, lam0 / cosine, values, log_scale, axis
-            )
-            share = 0.75 * cosine * cosine * half * weights[i]
-            force += share * cosine * F
-            slope += share * dF
+    for j in range(pieces.shape[0]):
+        piece = pieces[j]
+        low, width = piece[Y_LOW], piece[Y_HIGH] - piece[Y_LOW]
+        middle = 0.5 * (piece[M_LOW] + piece[M_HIGH])
+        levels = LEVELS * piece[REACH] if piece[REACH] > 0.0 else LEVELS[:2] * 1.0
+        edges = panel_edges(d / middle, sigma / middle, eta / middle, levels, splits)
+        edges = np.minimum(np.maximum(edges, math.asin(low)), math.asin(piece[Y_HIGH]))
+        for k in range(edges.size - 1):
+            half = 0.5 * (edges[k + 1] - edges[k])
+            if half <= 0.0:
+                continue
+            for i in range(nodes.size):
+                theta = edges[k] + half * (1.0 + nodes[i])
+                cosine, along = math.cos(theta), (math.sin(theta) - low) / width
+                lam = piece[LAM_LOW] + (piece[LAM_HIGH] - piece[LAM_LOW]) * along
+                m = piece[M_LOW] + (piece[M_HIGH] - piece[M_LOW]) * along
+                c = creep_at(theta, d, sigma, eta) / (m * cosine)
+                F, dF = master_traction(c, lam / cosine, values, log_scale, axis)
+                share = 0.75 * cosine * cosine * half * weights[i]
+                force += share * cosine * m * F
+                slope += share * dF
     return min(max(force, -1.0), 1.0), slope  # the shares of the strips sum to 1 but for 1e-9
 
 
@@ -149,8 +162,7 @@ def highest(sigma: float, eta: float) -> float:
 def free_rolling(
     sigma: float,
     eta: float,
-    lam0: float,
-    levels: Array,
+    pieces: Array,
     splits: int,
     gauss: tuple[Array, Array],
     table: Table,
@@ -161,7 +173,7 @@ def free_rolling(
     low, high = -highest(sigma, eta), highest(sigma, -eta)
     d = 0.5 * (low + high)
     for _ in range(80):
-        force, slope = resultant(d, sigma, eta, lam0, levels, splits, gauss, table)
+        force, slope = resultant(d, sigma, eta, pieces, splits, gauss, table)
         if force > 0.0:
             high = d
         else:

@@ -9,9 +9,17 @@ import numpy as np
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.curve import ScaledContact, scaled_contact
-from separatrix.chain.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, strip_places
+from separatrix.chain.traction.curve import ScaledContact, reach, scaled_contact
+from separatrix.chain.traction.ellipse import (
+    GAUSS_NODES,
+    GAUSS_WEIGHTS,
+    LAM_LOW,
+    LEVELS,
+    panel_edges,
+    strip_places,
+)
 from separatrix.chain.traction.layer import BondedLayer, strip_layer
+from separatrix.chain.traction.profile import Profile
 from separatrix.chain.traction.strip import StripSolution, solve_strip, stick_solution, strip_influence
 from separatrix.units import Array, Ratio
 
@@ -21,44 +29,18 @@ class ShearField:
     """Traction over the ellipse from direct strips; arrays of shape (strip, node) unless said.
 
     across : y of the strips, shape (strip,) [m]; along : x of the elements, leading edge first [m];
-    creep_ratio : xi of the strips, shape (strip,) [-]; pressure, shear, shear_without_slip [Pa]; slip : 0 in
-    stick, else its sign; sweeps : solutions of each strip's stick zone, shape (strip,).
+    creep_ratio : xi of the strips, shape (strip,) [-]; pressure, bound (friction times pressure), shear,
+    shear_without_slip [Pa]; slip : 0 in stick, else its sign; sweeps : solutions of each strip's stick zone,
+    shape (strip,).
     """
 
     across: Annotated[Array, "m", ("strip",)]
-    along: Annotated[
-        Array,
-        "m",
-        (
-            "strip",
-            "node",
-        ),
-    ]
+    along: Annotated[Array, "m", ("strip", "node")]
     creep_ratio: Annotated[Array, "-", ("strip",)]
-    pressure: Annotated[
-        Array,
-        "Pa",
-        (
-            "strip",
-            "node",
-        ),
-    ]
-    shear: Annotated[
-        Array,
-        "Pa",
-        (
-            "strip",
-            "node",
-        ),
-    ]
-    shear_without_slip: Annotated[
-        Array,
-        "Pa",
-        (
-            "strip",
-            "node",
-        ),
-    ]
+    pressure: Annotated[Array, "Pa", ("strip", "node")]
+    bound: Annotated[Array, "Pa", ("strip", "node")]
+    shear: Annotated[Array, "Pa", ("strip", "node")]
+    shear_without_slip: Annotated[Array, "Pa", ("strip", "node")]
     slip: Annotated[Array, ("strip", "node")]
     sweeps: Annotated[Array, ("strip",)]
 
@@ -67,8 +49,8 @@ def shear_field(
     ellipse: ContactEllipse,
     creep: Creep,
     *,
-    race_friction: Ratio,
-    film_compliance: float,
+    race_friction: Ratio | Profile,
+    film_compliance: float | Profile,
     creep_increment: Ratio = 0.0,
     strips: int = 41,
     nodes: int = 100,
@@ -96,18 +78,21 @@ def shear_field(
         y * ellipse.semi_major, case.offset(case.tables(200)[0]) * case.saturation + creep_increment
     )
     half = np.sqrt(1.0 - y * y)  # b(y)/b, and p0(y)/p0
-    ratios = np.zeros(strips) if case.idle else xi / (case.saturation * half)
-    influences = [strip_toeplitz(case, c, nodes, layer) for c in half]
+    films, shares = case.local(y)
+    ratios = np.zeros(strips) if case.idle else xi / (case.saturation * shares * half)
+    influences = [strip_toeplitz(lam / c, nodes, layer) for lam, c in zip(films, half, strict=True)]
     solved = [solve_strip(c, influence=t) for c, t in zip(ratios, influences, strict=True)]
     stuck = [_stuck(c, t, nodes) for c, t in zip(ratios, influences, strict=True)]
     pressure = ellipse.max_pressure * half[:, None]
+    bound = case.friction * shares[:, None] * pressure
     return ShearField(
         across=y * ellipse.semi_major,
         along=ellipse.semi_minor * half[:, None] * solved[0].along,
         creep_ratio=xi,
         pressure=pressure * solved[0].pressure,
-        shear=race_friction * pressure * np.array([s.shear for s in solved]),
-        shear_without_slip=race_friction * pressure * np.array(stuck),
+        bound=bound * solved[0].pressure,
+        shear=bound * np.array([s.shear for s in solved]),
+        shear_without_slip=bound * np.array(stuck),
         slip=np.array([s.slip for s in solved]),
         sweeps=np.array([s.sweeps for s in solved]),
     )
@@ -118,9 +103,8 @@ def _stuck(creep: Ratio, influence: Array, nodes: int) -> Array:
     return stick_solution(influence, np.zeros(nodes), np.full(nodes, 4.0 * creep / nodes), np.zeros(nodes))
 
 
-def strip_toeplitz(case: ScaledContact, half: Ratio, nodes: int, layer: BondedLayer | None) -> Array:
-    """Influences of the strip whose half length is `half` of the semi-minor axis, shape (2 node - 1,) [-]."""
-    film = case.lam / half
+def strip_toeplitz(film: Ratio, nodes: int, layer: BondedLayer | None) -> Array:
+    """Influences of a strip, shape (2 node - 1,) [-]; `film` is L E* or h over its half length."""
     return strip_influence(nodes, film) if layer is None else strip_layer(layer, film, nodes)
 
 
@@ -139,7 +123,7 @@ def direct_traction(
     `centre_creep` is the whole creep on the centre line, free-rolling offset included.
     """
     case = scaled_contact(ellipse, creep, race_friction, film_compliance, layer)
-    d, levels = centre_creep / case.saturation, LEVELS * case.reach(case.tables(200)[0])
+    d, levels = centre_creep / case.saturation, LEVELS * reach(case.tables(200)[0], case.pieces[0, LAM_LOW])
     theta, share = strip_places(panel_edges(d, case.sigma, case.eta, levels, 1), GAUSS_NODES, GAUSS_WEIGHTS)
     solved = [_direct_strip(case, d, place, nodes, layer) for place in theta]
     force = sum(w * s.traction_ratio for w, s in zip(share, solved, strict=True))
@@ -151,5 +135,5 @@ def _direct_strip(
     case: ScaledContact, d: Ratio, theta: float, nodes: int, layer: BondedLayer | None
 ) -> StripSolution:
     half, y = np.cos(theta), np.sin(theta)
-    influence = strip_toeplitz(case, half, nodes, layer)
+    influence = strip_toeplitz(case.pieces[0, LAM_LOW] / half, nodes, layer)
     return solve_strip((d + (case.sigma + case.eta * y) * y) / half, influence=influence)

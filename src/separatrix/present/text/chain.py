@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import degrees
 from typing import TYPE_CHECKING
 
 from separatrix.present.shapes import shape
-from separatrix.present.text.tables import facts, number, quantity, section, significant, stated, table
+from separatrix.present.text.tables import (
+    facts,
+    number,
+    paragraph,
+    quantity,
+    section,
+    significant,
+    stated,
+    table,
+)
 from separatrix.present.walk import Leaf, Node, fields_of
+from separatrix.study import PressureSlip, Worn
 
 if TYPE_CHECKING:
     from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
     from separatrix.chain.contacts import BearingState
     from separatrix.chain.equilibrium import Equilibrium
+    from separatrix.chain.models import ModelSlopes
     from separatrix.study import Study
 
 BALL_HEADERS = (
@@ -36,6 +47,15 @@ TRACTION = {
     "slope": "Slope alpha at the origin",
     "slope_error": "Error of the slope",
     "free_rolling_offset": "Free-rolling offset of the creep",
+}
+ROLLING = {
+    "lateral_force": "Lateral force",
+    "lateral_share": "The same over friction times load",
+    "spin_moment": "Spin moment",
+    "stick_share": "Share of the area that sticks",
+    "max_pressure": "Maximum pressure",
+    "film_strain": "Strain of the film",
+    "dissipation": "Power of the slip",
 }
 DAMPING = {"load": "Load", "slope": "Slope alpha", "rolling_speed": "Rolling speed"}
 FACTORS = {
@@ -99,19 +119,38 @@ def _by_race(inner: Node, outer: Node, words: Mapping[str, str]) -> str:
 
 
 def traction(found: TractionAnswer, study: Study) -> list[str]:  # noqa: ARG001
-    """Slopes of the traction curves, and how they change with the pivoting-to-rolling ratio."""
-    at = found.bearing
+    """Slopes of the traction curves, how they change with the spin, and what the models differ by."""
+    at, models = found.bearing, found.comparison
     nodes = shape(at.inner) | fields_of(found.inner), shape(at.outer) | fields_of(found.outer)
     others = zip(found.inner_others, found.outer_others, strict=True)
     ratios = [[f"{i.spin_roll_ratio:.2g}", significant(i.slope), significant(o.slope)] for i, o in others]
     slopes = table(("ratio", "inner race", "outer race"), ratios)
+    rolling = models.inner and models.outer and _by_race(shape(models.inner), shape(models.outer), ROLLING)
+    notes = [one.reason for one in models.models if one.reason]
     return [
         section("Contacts of the most loaded ball", _by_race(*nodes, TRACTION)),
-        section("Slope at other pivoting-to-rolling ratios", slopes),
+        section("Slope at other pivoting-to-rolling ratios, by strips", slopes),
+        section("Models of the contact", _models(models.models), *map(paragraph, (*notes, *models.outside))),
+        *([section("Exact contact in free rolling, on the ball", rolling)] if rolling else []),
     ]
 
 
-def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: ARG001
+def _models(rows: Sequence[ModelSlopes]) -> str:
+    """Return a table of the models' slopes and what they make of the damping; * marks the study's own."""
+    cells = [
+        [
+            f"{one.model.value}{'*' if one.is_used else ''}",
+            one.pressure.value,
+            *(significant(slope) for slope in (one.inner_slope, one.outer_slope)),
+            quantity(one.race_damping, "N s/m", 4),
+            number(one.restitution_factor),
+        ]
+        for one in rows
+    ]
+    return table(("model", "pressure", "slope in", "slope out", "C_mu", "eta"), cells, left=2)
+
+
+def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:
     """Both restitution factors and what they are made of."""
     solution, found = answer.solution, answer.solution.restitution
     contacts, curves = solution.bearing, solution.traction
@@ -124,6 +163,7 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     )
     hertz = stated(found, "restitution_factor_hertz")
     pocket = [
+        ("Contacts", contact_words(study)),
         ("Ball/cage stiffness", f"{stated(found, 'ball_cage_stiffness')} ({solution.stiffness_source})"),
         ("Cage mass", stated(found, "cage_mass")),
         ("eta of a Hertzian pocket", f"{hertz} in an impact at the impact speed, less in a harder one"),
@@ -131,8 +171,26 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:  # noqa: 
     return [
         section("Restitution factor", table(("", "dampings summed (Eq. 18)", "if the ball may spin"), cells)),
         section("From the contacts of the most loaded ball", _by_race(inner, outer, DAMPING)),
-        section("And the pocket", facts(pocket)),
+        section("And the rest", facts(pocket)),
     ]
+
+
+def contact_words(study: Study) -> str:
+    """Return how the contacts were computed, and what of the film is worn."""
+    asked, wear = study.traction, study.film.wear
+    model = {"strips": "strips", "exact": "exact contact"}[asked.model.value]
+    pressure = {"hertz": "Hertz's pressure", "coated": "pressure of the coated bodies"}[asked.pressure.value]
+    words = f"{model}, {pressure}"
+    if asked.pressure_slip is PressureSlip.INCLUDED:
+        words += ", slip by the pressure included"
+    if wear is None:
+        return words
+    where = "" if wear.races is Worn.BOTH else f" of the {wear.races.value} race"
+    if not wear.is_band:
+        return f"{words}; film{where} worn by a measured profile of {len(wear.across)} places"
+    band = quantity(wear.width, "m") if wear.width is not None else f"{wear.share:.3g} of the contact's width"
+    left = f"{quantity(wear.thickness, 'm')} left" if wear.thickness else f"bare, friction {wear.friction:g}"
+    return f"{words}; film{where} worn over {band}, {left}"
 
 
 def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
@@ -159,6 +217,7 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
         ("Bearing", f"{balls}, pitch diameter {quantity(at.pitch_diameter, 'm')}"),
         ("Operation", ", ".join([f"inner ring {quantity(operation.inner_speed, 'rad/s')}", *loaded])),
         ("Film on the races", f"{coat}; friction {quantity(film.race_friction, '-')}"),
+        ("Traction", contact_words(study)),
         ("Contact angles", both(inner, outer, "contact_angle")),
         ("Loads of the ball", both(inner, outer, "load")),
         ("Traction slopes", both(slopes.inner, slopes.outer, "slope")),

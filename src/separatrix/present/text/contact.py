@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from separatrix.chain.traction.exact.bound import Profile
+from separatrix.chain.traction.profile import Profile
 from separatrix.contact_file.question import Motion
 from separatrix.present.text.tables import (
     ABSENT,

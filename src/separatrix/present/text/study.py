@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Entry = Mapping[str, Any]
 """A value of a resolved study with its unit and origin, or a section of them."""
 
-SECTIONS = ("bearing", "operation", "kinematics", "film", "cage", "stability")
+SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 NAMED = 6
 """Uncertain inputs that a note names."""
 

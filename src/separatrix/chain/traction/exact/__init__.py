@@ -1,6 +1,6 @@
 """Rolling contact of two layered half-spaces in three dimensions, with partial slip."""
 
-from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, worn_band
+from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import (
     ContactProblem,
     ContactSolution,
@@ -14,6 +14,7 @@ from separatrix.chain.traction.exact.contact import (
 from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
 from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.traction.profile import Profile, worn_band
 
 __all__ = [
     "Body",

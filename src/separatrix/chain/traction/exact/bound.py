@@ -1,4 +1,4 @@
-"""Bound of the tractions and compliance of the film over a contact, also of a worn track."""
+"""Bound of the tractions over the cells of a contact, also of a worn track."""
 
 from __future__ import annotations
 
@@ -8,51 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from separatrix.chain.traction.exact.grid import GAUSS_NODES, GAUSS_WEIGHTS, Grid
+from separatrix.chain.traction.profile import Profile
 from separatrix.errors import InputError
-from separatrix.units import Array, Metre, Pascal, Ratio
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Profile:
-    """A quantity across the groove: linear between the places y, constant beyond them.
-
-    Two equal places make a step.
-    """
-
-    across: tuple[Metre, ...]
-    values: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        y, values = np.array(self.across), np.array(self.values)
-        if (
-            y.size == 0
-            or y.shape != values.shape
-            or not np.isfinite([y, values]).all()
-            or (np.diff(y) < 0.0).any()
-        ):
-            raise InputError(
-                "Profile.across", "must be finite, in increasing order, one place for each value"
-            )
-        if (values < 0.0).any():
-            raise InputError("Profile.values", "must be >= 0", f"{values.min():g}")
-
-    def row_means(self, grid: Grid) -> Array:
-        """Mean over each row of a grid, shape (row, 1)."""
-        y = grid.y[:, None] + 0.5 * grid.dy * GAUSS_NODES
-        values = np.interp(y, self.across, self.values)
-        return np.asarray(0.5 * (values * GAUSS_WEIGHTS).sum(axis=1, keepdims=True))
-
-
-def worn_band(half_width: Metre, *, worn: float, film: float) -> Profile:
-    """Profile of a film that is worn off over |y| < half_width."""
-    w = half_width
-    return Profile(across=(-w, -w, w, w), values=(film, worn, worn, film))
+from separatrix.units import Array, Pascal, Ratio
 
 
 def over_cells(quantity: float | Profile, grid: Grid) -> Array:
-    """Value in each cell, shape (row, column)."""
-    rows = quantity.row_means(grid) if isinstance(quantity, Profile) else np.full((grid.y.size, 1), quantity)
-    return np.asarray(np.broadcast_to(rows, grid.shape))
+    """Mean of a quantity in each cell, shape (row, column)."""
+    if not isinstance(quantity, Profile):
+        return np.full(grid.shape, quantity)
+    values = quantity.at(grid.y[:, None] + 0.5 * grid.dy * GAUSS_NODES)
+    means = 0.5 * (values * GAUSS_WEIGHTS).sum(axis=1, keepdims=True)
+    return np.asarray(np.broadcast_to(means, grid.shape))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

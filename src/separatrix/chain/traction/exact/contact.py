@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.bound import FrictionLaw, Profile, over_cells
+from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body
 from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure, pressed_grid
@@ -30,6 +30,7 @@ from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
 from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
 from separatrix.chain.traction.exact.operator import Operator, rolling_operator
 from separatrix.chain.traction.exact.precondition import SLIP
+from separatrix.chain.traction.profile import Profile
 from separatrix.errors import ConvergenceError, InputError, ValidityWarning
 from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
 

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.traction.exact.bound import Profile
 from separatrix.chain.traction.exact.contact import (
     ContactProblem,
     ContactSolution,
@@ -29,6 +28,7 @@ from separatrix.chain.traction.exact.contact import (
 from separatrix.chain.traction.exact.krylov import right_side, solve_step
 from separatrix.chain.traction.exact.newton import Settled
 from separatrix.chain.traction.exact.operator import unresolved_film
+from separatrix.chain.traction.profile import Profile
 from separatrix.errors import ConvergenceError
 from separatrix.units import Array, Newton, Ratio
 

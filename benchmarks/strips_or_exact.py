@@ -1,0 +1,121 @@
+"""Slopes, C_mu and eta of the shipped bearing by strips and by the exact contact, film by film.
+
+``python benchmarks/strips_or_exact.py``: the tables of docs/theory/strips-or-exact.md.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+from separatrix.chain.contacts import race_track
+from separatrix.chain.race_curve import RaceTrack, exact_slope, strips
+from separatrix.chain.restitution import contact_damping, restitution
+from separatrix.chain.solution import Solution, solve
+from separatrix.chain.traction import bonded_layer, traction_slope
+from separatrix.errors import SeparatrixError, ValidityWarning
+from separatrix.study import (
+    ContactPressure,
+    Film,
+    KinematicModel,
+    Material,
+    Race,
+    TractionModel,
+    TractionSettings,
+    Wear,
+)
+from separatrix.study_file import read_study
+
+FILMS = (
+    *((0.5e9, 0.46, h) for h in (2e-7, 1e-6, 3e-6, 1e-5)),
+    *((1.5e9, 0.40, h) for h in (1e-6, 3e-6, 1e-5)),
+    *((4e9, 0.38, h) for h in (2e-7, 1e-6, 3e-6, 1e-5)),
+    *((20e9, 0.30, h) for h in (1e-6, 1e-5)),
+    *((136e9, 0.25, h) for h in (1e-6, 1e-5)),
+)
+"""Young's modulus [Pa], Poisson's ratio and thickness [m]."""
+
+EXACT = TractionSettings(model=TractionModel.EXACT)
+OWN = replace(EXACT, pressure=ContactPressure.COATED)
+
+
+def tracks(solution: Solution, film: Film) -> list[RaceTrack]:
+    """Both races under a film."""
+    state, bearing = solution.bearing, solution.study.bearing
+    return [
+        race_track(bearing, film, race, at)
+        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
+    ]
+
+
+def by_layer(track: RaceTrack) -> float:
+    """Slope of strips under a bonded layer."""
+    film = track.film
+    layer = bonded_layer(read_study("cryogenic-turbopump").bearing, film)
+    return traction_slope(
+        track.ellipse, track.creep, race_friction=film.race_friction, film_compliance=0.0, layer=layer
+    )[0]
+
+
+WAYS = {
+    "series": lambda track: strips(track, ContactPressure.HERTZ).slope,
+    "layer": by_layer,
+    "coated": lambda track: strips(track, ContactPressure.COATED).slope,
+    "exact": lambda track: exact_slope(track, EXACT).slope,
+    "own": lambda track: exact_slope(track, OWN).slope,
+}
+
+
+def cells(solution: Solution, film: Film, ways: list[str]) -> list[str]:
+    """Inner slopes, outer slopes, C_mu and eta, each by every way."""
+    found: list[list[str]] = [[], [], [], []]
+    for way in ways:
+        try:
+            slopes = [WAYS[way](track) for track in tracks(solution, film)]
+        except SeparatrixError:
+            for column in found:
+                column.append("-")
+            continue
+        state = solution.bearing
+        dampings = [
+            contact_damping(slope, at.load, at.rolling_speed)
+            for slope, at in zip(slopes, (state.inner, state.outer), strict=True)
+        ]
+        eta = restitution(*dampings, ball_cage_stiffness=3e6, cage_mass=0.025).restitution_factor
+        for column, value in zip(
+            found, (f"{slopes[0]:.2f}", f"{slopes[1]:.2f}", f"{sum(dampings):.0f}", f"{eta:.3f}"), strict=True
+        ):
+            column.append(value)
+    return [" / ".join(column) for column in found]
+
+
+def row(*words: str) -> None:
+    """Print a row of a table."""
+    print(f"| {' | '.join(words)} |", flush=True)
+
+
+def main() -> None:
+    """Print the tables."""
+    warnings.simplefilter("ignore", ValidityWarning)
+    study = read_study("cryogenic-turbopump")
+    free = solve(study)
+    for model in (KinematicModel.FREE, KinematicModel.OUTER_RACE_CONTROL):
+        held = solve(replace(study, kinematics=model))
+        for mu in (0.05, 0.1, 0.2, 0.3):
+            row(model.value, f"{mu:g}", *cells(held, Film(race_friction=mu), ["series", "exact"]))
+    for E, nu, h in FILMS:
+        film = Film(
+            race_friction=0.1,
+            thickness=h,
+            material=Material(name="film", elastic_modulus=E, poisson_ratio=nu),
+        )
+        row(f"{E / 1e9:g}, {h * 1e6:g}", *cells(free, film, [*WAYS]))
+    soft = Material(name="film", elastic_modulus=1.5e9, poisson_ratio=0.4)
+    for share in (0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 1.0):
+        wear = Wear(friction=0.3, share=share)
+        film = Film(race_friction=0.1, thickness=3e-6, material=soft, wear=wear)
+        row(f"{share:g}", *cells(free, film, ["series", "exact"]))
+
+
+if __name__ == "__main__":
+    main()

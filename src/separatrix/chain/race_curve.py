@@ -1,0 +1,167 @@
+"""Traction curve of ball on one race, by strips or by the exact contact.
+
+The film is a layer on the race, as thick as the study's film in all; a worn one, whose thickness varies, is
+in series.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+
+from separatrix.chain.creep import Creep
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction import exact
+from separatrix.chain.traction.curve import TractionCurve, traction_curve
+from separatrix.chain.traction.exact.normal import pressed_contact
+from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
+from separatrix.chain.traction.film import track_of
+from separatrix.errors import ConvergenceError
+from separatrix.study import (
+    ContactPressure,
+    Film,
+    Material,
+    PressureSlip,
+    Race,
+    TractionModel,
+    TractionSettings,
+)
+
+REMEMBERED = 512
+"""Exact contacts that are kept, by the records they are made of."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceTrack:
+    """What rolls on what: contact of a ball with a race, their creep, materials and film."""
+
+    ellipse: ContactEllipse
+    creep: Creep
+    race: Race
+    ball: Material
+    ring: Material
+    film: Film
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is transmitted: no friction or no load."""
+        return self.film.race_friction == 0.0 or self.ellipse.load == 0.0
+
+    @property
+    def is_worn(self) -> bool:
+        """Whether the film of this race is worn."""
+        return self.film.wear is not None and self.film.wear.touches(self.race)
+
+
+def race_curve(track: RaceTrack, settings: TractionSettings) -> TractionCurve:
+    """Traction curve by the model of the settings.
+
+    Raises
+    ------
+    InputError
+        A film that the exact contact does not take: too thick, nearly incompressible, or compressed to
+        nothing.
+    ConvergenceError
+        A point of the exact curve did not settle.
+    """
+    if settings.model is TractionModel.STRIPS or track.is_idle:
+        return strips(track, settings.pressure)
+    return exact_curve(track, settings, strips(track, ContactPressure.HERTZ))
+
+
+def strips(
+    track: RaceTrack, pressure: ContactPressure, increments: np.ndarray | None = None
+) -> TractionCurve:
+    """Traction curve by strips."""
+    film, ellipse = track.film, track.ellipse
+    if pressure is ContactPressure.COATED and film.material is not None and not track.is_idle:
+        ellipse = coated_ellipse(track)
+    friction, compliance = track_of(film, track.race, ellipse.semi_major)
+    return traction_curve(
+        ellipse,
+        track.creep,
+        race_friction=friction,
+        film_compliance=compliance,
+        film_thickness=film.thickness or 0.0,
+        creep_increments=increments,
+    )
+
+
+def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.ContactProblem:
+    """The exact contact of a race."""
+    film = track.film
+    ball, ring = (exact.solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
+    layers: tuple[exact.Layer, ...] = ()
+    if film.material is not None and film.thickness is not None and not track.is_worn:
+        coat = exact.solid(film.material.elastic_modulus, film.material.poisson_ratio)
+        layers = (exact.Layer(thickness=film.thickness, solid=coat),)
+    friction, compliance = track_of(film, track.race, track.ellipse.semi_major)
+    return exact.ContactProblem(
+        ellipse=track.ellipse,
+        bodies=(exact.Body(base=ball), exact.Body(base=ring, layers=layers)),
+        friction=exact.FrictionLaw(coefficient=friction),
+        film_compliance=compliance if track.is_worn else 0.0,
+        own_pressure=settings.pressure is ContactPressure.COATED and bool(layers),
+        coupled=settings.pressure_slip is PressureSlip.INCLUDED,
+    )
+
+
+@lru_cache(maxsize=REMEMBERED)
+def exact_slope(track: RaceTrack, settings: TractionSettings) -> exact.RaceSlope:
+    """Slope at free rolling, its error, and the solution there; remembered by the value of the records."""
+    return exact.traction_slope(contact_problem(track, settings), track.creep)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def coated_ellipse(track: RaceTrack) -> ContactEllipse:
+    """Ellipse with the area and the length along rolling of the contact of the coated bodies.
+
+    Its pressure is Hertz's form with the largest value that the load gives it.
+    """
+    whole = replace(track.film, wear=None)
+    bodies = contact_problem(replace(track, film=whole), TractionSettings()).bodies
+    grid, _, _ = pressed_contact(track.ellipse, bodies, columns=COLUMNS[1], rows=ROWS)
+    area = float(grid.fraction.sum()) * grid.cell_area
+    b = 0.5 * float(grid.fraction.sum(axis=1).max()) * grid.dx
+    a = area / (pi * b)
+    p0 = 1.5 * track.ellipse.load / area
+    return replace(track.ellipse, semi_minor=b, semi_major=a, max_pressure=p0)
+
+
+def exact_curve(track: RaceTrack, settings: TractionSettings, plain: TractionCurve) -> TractionCurve:
+    """Slope on two grids, and the curve on the finer one, at the increments of a curve by strips.
+
+    Raises
+    ------
+    ConvergenceError
+        A point did not settle.
+    """
+    found = exact_slope(track, settings)
+    problem, creep = contact_problem(track, settings), track.creep
+    rows = ROWS if problem.own_pressure else found.solution.across.size
+    made = exact.rolling_contact(problem, columns=COLUMNS[1], rows=rows)
+    slips = (
+        exact.rigid_slip(
+            made.grid,
+            longitudinal=found.free_rolling_offset + float(increment),
+            spin=creep.spin,
+            curvature=creep.curvature,
+        )
+        for increment in plain.creep_increment
+    )
+    coefficients = []
+    for solution in exact.solve_each(made, slips):
+        if isinstance(solution, ConvergenceError):
+            raise solution
+        coefficients.append(solution.traction_coefficient)
+    return replace(
+        plain,
+        traction_coefficient=np.array(coefficients),
+        slope=found.slope,
+        slope_error=found.slope_error,
+        free_rolling_offset=found.free_rolling_offset,
+        nodes=COLUMNS[1],
+    )

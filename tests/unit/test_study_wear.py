@@ -1,0 +1,159 @@
+"""[film.wear] and [traction] in study files: every form, and what is refused where."""
+
+import pytest
+from commands import document
+from test_study_refusals import VALID, refusal
+
+from separatrix.cli import main
+from separatrix.limits.map_parameters import varied
+from separatrix.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
+from separatrix.study_file import read_study
+from separatrix.study_file.provenance import resolved
+from separatrix.study_numbers import with_values
+
+BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'
+PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0.2 um"]\nfriction = 0.3\n'
+
+
+def written(folder, section):
+    """Path of the valid study with a section more, before [cage]."""
+    path = folder / "study.toml"
+    path.write_text(VALID.replace("[cage]\n", f"{section}\n[cage]\n", 1), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("section", "wear"),
+    [
+        (BAND, Wear(width=2e-4, friction=0.3)),
+        (
+            '[film.wear]\nshare = 0.1\nthickness = "50 nm"\nfriction = 0.3\nraces = "Inner race"\n',
+            Wear(share=0.1, thickness=5e-8, friction=0.3, races=Worn.INNER),
+        ),
+        (PLACES, Wear(across=(-1e-4, 1e-4), thicknesses=(0.0, 2e-7), friction=0.3)),
+    ],
+)
+def test_each_form_of_wear_is_read(section, wear, tmp_path):
+    """In SI, with the origin of each key."""
+    study = read_study(written(tmp_path, section))
+    assert study.film.wear == wear
+    found = resolved(study)["film"]
+    assert found["wear.friction"]["value"] == 0.3
+    assert found["wear.friction"]["origin"].startswith("study.toml, line ")
+
+
+def test_a_profile_is_read_from_the_folder_of_the_study(tmp_path):
+    """Two columns with units, in either order; a variant in another folder finds it, too."""
+    path = written(tmp_path, '[film.wear]\nprofile = "track.csv"\nfriction = 0.3\n')
+    (tmp_path / "track.csv").write_text("thickness [nm],y [mm]\n500,-0.2\n0,-0.1\n0,0.1\n500,0.2\n")
+    wear = read_study(path).film.wear
+    assert wear.across == pytest.approx((-2e-4, -1e-4, 1e-4, 2e-4))
+    assert wear.thicknesses == pytest.approx((5e-7, 0.0, 0.0, 5e-7))
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    (other / "variant.toml").write_text('extends = "../study.toml"\n[film]\nrace_friction = 0.2\n')
+    assert read_study(other / "variant.toml").film.wear == wear
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, ["wear.profile does not name a file", '"track.csv"', "folder of the study"]),
+        ("a,b\n1,2\n", ["line 1 must name two columns, y and thickness", "y [mm],thickness [um]"]),
+        ("y [mm],thickness [K]\n1,2\n", ["line 2: thickness", "needs a unit of length"]),
+        ("y [mm],thickness [um]\n1\n", ["line 2 must have two cells; got 1"]),
+        ("y [mm],thickness [um]\n0,x\n0.1,1\n", ["line 2: thickness", "x um"]),
+        ("y [mm],thickness [um]\n0.1,0\n0,0\n", ["wear.across must not fall", "0 mm after 100 um"]),
+    ],
+)
+def test_a_wrong_profile_is_refused(content, words, tmp_path):
+    """With the file, its line and what is due."""
+    if content is not None:
+        (tmp_path / "track.csv").write_text(content)
+    message = refusal(written(tmp_path, '[film.wear]\nprofile = "track.csv"\nfriction = 0.3\n'))
+    for word in words:
+        assert word in message, message
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ('[film.wear]\nwidth = "0.2 mm"\n', ["[film] wear lacks: friction"]),
+        ("[film.wear]\nfriction = 0.3\n", ["[film] wear.width must be the only one of the forms", "share"]),
+        (BAND + "share = 0.1\n", ["[film] wear.width must be the only one"]),
+        ("[film.wear]\nshare = 2\nfriction = 0.3\n", ["[film] wear.share must lie between 0 and 1; got 2"]),
+        ("[film.wear]\nshare = 0.1\nfriction = 0\n", ["[film] wear.friction must be > 0"]),
+        ('[film.wear]\nwidth = "0.2 N"\nfriction = 0.3\n', ["[film] wear.width needs a unit of length"]),
+        ("[film.wear]\nwidth = 0.2\nfriction = 0.3\n", ["[film] wear.width needs a unit of length"]),
+        (BAND + 'thickness = "2 um"\n', ["[film] wear.thickness must be at most the thickness of the film"]),
+        (BAND + "depth = 1\n", ["[film] wear.depth is not a key of [film.wear]"]),
+        (BAND + 'races = "left"\n', ["[film] wear.races must be", '"both"', '"inner"', '"outer"']),
+        (PLACES + 'profile = "a.csv"\n', ["[film] wear.profile and across with thicknesses exclude"]),
+        ('[traction]\nmodel = "Exakt"\n', ['[traction] model must be "strips" or "exact"; got "Exakt"']),
+        ('[traction]\npressure = "own"\n', ['[traction] pressure must be "hertz" or "coated"']),
+        ('[traction]\npressure_slip = "included"\n', ["[traction] pressure_slip must be", 'model = "exact"']),
+        ('[traction]\nmodell = "exact"\n', ["[traction] modell is not a valid key", "Did you mean model?"]),
+        (
+            BAND + '[traction]\npressure = "coated"\n',
+            ['[traction] pressure must be "hertz" where the film is'],
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_a_line(section, words, tmp_path):
+    """File, line, key, rule, value."""
+    message = refusal(written(tmp_path, section))
+    assert message.startswith("study.toml, line ")
+    assert "\n" not in message
+    for word in words:
+        assert word in message, message
+
+
+def test_wear_needs_a_film(tmp_path):
+    """Bare races have none that could wear."""
+    path = written(tmp_path, BAND)
+    bare = path.read_text().replace('material = "PTFE transfer film"\nthickness = "0.5 um"\n', "")
+    path.write_text(bare)
+    assert "[film] wear needs a film that wears" in refusal(path)
+
+
+def test_traction_is_read(tmp_path):
+    """Strips with Hertz's pressure by default."""
+    section = '[traction]\nmodel = "exact"\npressure = "coated"\npressure_slip = "included"\n'
+    found = read_study(written(tmp_path, section)).traction
+    assert found.model is TractionModel.EXACT
+    assert found.pressure is ContactPressure.COATED
+    assert found.pressure_slip is PressureSlip.INCLUDED
+    plain = read_study(written(tmp_path, "")).traction
+    assert plain.model is TractionModel.STRIPS
+
+
+def test_numbers_of_wear_may_be_uncertain_and_varied(tmp_path):
+    """By the name film.wear.width."""
+    study = read_study(written(tmp_path, BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"')))
+    assert study.distributions["film.wear.width"].mean == pytest.approx(2e-4)
+    for change in (with_values, varied):
+        assert change(study, {"film.wear.width": 3e-4}).film.wear.width == 3e-4
+
+
+def test_the_answers_name_models_and_wear(tmp_path, capsys, monkeypatch):
+    """Both models in `traction`, the band in `restitution`, as a stranger runs them."""
+    monkeypatch.chdir(tmp_path)
+    path = str(written(tmp_path, BAND))
+    found = document(capsys, "traction", path)
+    assert [(one["model"], one["pressure"]) for one in found["models"]] == [
+        ("strips", "hertz"),
+        ("exact", "hertz"),
+    ]
+    for row in found["models"]:
+        assert row["restitution_factor"] > 0.3
+        assert row["race_damping"] > 0.0
+    for race in ("inner", "outer"):
+        one = found[race]
+        assert len(one["strips_traction_coefficient"]) == len(one["exact_traction_coefficient"])
+        assert {"lateral_force", "spin_moment", "film_strain"} <= one["free_rolling"].keys()
+    found = document(capsys, "restitution", path)
+    assert len(found["wear"]["share"]) == len(found["wear"]["restitution_factor"])
+    assert main(["restitution", path, "--out", "out"]) == 0
+    text = capsys.readouterr().out
+    assert "film worn over 200 um, bare, friction 0.3" in " ".join(text.split())
+    assert (tmp_path / "out" / "restitution-wear.png").is_file()
