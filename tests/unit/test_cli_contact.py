@@ -261,7 +261,7 @@ WRONG_INPUTS = {  # a file of CONTACT, what the line says
     ),
     "approach": (
         FASTSIM.replace("203100", "203000"),
-        "digit N must be one of 1; got 0. Prescribe the normal",
+        "digit N must be 1; got 0. Prescribe the normal",
     ),
     "friction law": (FASTSIM.replace("022020", "422020"), "control digit L must be one of 0, 1; got 4."),
     "simplified theory": (FASTSIM.replace("022020", "022320"), "control digit M must be one of 0, 4; got 3."),

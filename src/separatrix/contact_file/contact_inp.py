@@ -1,7 +1,7 @@
 r"""Input files of CONTACT (E. Vollebregt), module 3, as far as this program computes the same thing.
 
-Control digits are those of its user guide. It counts in N, mm and rad; forces act on body 1, and a positive
-creep gives a negative force, as here; its spin is Kalker's, of the other sign than ours.
+Control digits are those of its user guide. Its units are N, mm and rad; forces act on body 1, and a positive
+creep has a negative force, as here; its spin is Kalker's, with the opposite sign to ours.
 """
 
 from __future__ import annotations
@@ -199,7 +199,8 @@ def _control(at: _Lines) -> dict[str, int]:
             if name in READ and value not in READ[name]:
                 allowed = ", ".join(map(str, READ[name]))
                 cure = f"{MEANS[name][:1].upper()}{MEANS[name][1:]}." if name in MEANS else ""
-                raise at.wrong(f"control digit {name}", f"must be one of {allowed}", f"{value}", cure)
+                rule = f"must be one of {allowed}" if len(READ[name]) > 1 else f"must be {allowed}"
+                raise at.wrong(f"control digit {name}", rule, f"{value}", cure)
         digit |= found
     if digit["C"] and at.case == 1 and digit["C"] != 2:
         raise at.wrong("control digit C", "must be 2 in the first case", f"{digit['C']}")

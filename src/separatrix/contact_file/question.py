@@ -1,7 +1,7 @@
 r"""Cases of one rolling contact, and their solutions.
 
 Signs are those of `separatrix.chain.traction.exact`: forces act on body 1, spin s adds s y to the
-longitudinal creep (Kalker's spin is phi = -s), and body 1 that is faster is pulled back: force < 0.
+longitudinal creep (Kalker's spin is phi = -s), and a body 1 that is the faster has a force < 0.
 """
 
 from __future__ import annotations

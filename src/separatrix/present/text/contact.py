@@ -33,7 +33,7 @@ OF_CONTACT = (
     "Units and signs are CONTACT's: N, mm, rad; forces act on body 1. H elements stick, S slip; those that "
     "the outline cuts are counted. In a shift (T = 1) CKSI and CETA are distances [mm] and CPHI is an angle."
 )
-ZERO = 1e-7  # of the load: below it a force is rounding
+ZERO = 1e-6  # of the load: the solver's tolerance
 DIGIT_T = {Motion.SHIFT: "1", Motion.TRANSIENT: "2", Motion.ROLLING: "3"}
 
 
