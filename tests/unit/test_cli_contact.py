@@ -259,10 +259,8 @@ WRONG_INPUTS = {  # a file of CONTACT, what the line says
         FASTSIM.replace("203100", "233100"),
         "line 3: case 1, control digit B must be one of 0, 2; got 3.",
     ),
-    "approach": (
-        FASTSIM.replace("203100", "203000"),
-        "digit N must be 1; got 0. Prescribe the normal",
-    ),
+    "approach of a gap": (CATTANEO.replace("201120", "201020"), "N must be 1 with a gap on cells; got 0."),
+    "stresses": (FASTSIM.replace("203100", "203101"), "control digit S must be 0; got 1. Stresses inside"),
     "friction law": (FASTSIM.replace("022020", "422020"), "control digit L must be one of 0, 1; got 4."),
     "simplified theory": (FASTSIM.replace("022020", "022320"), "control digit M must be one of 0, 4; got 3."),
     "kinetic friction": (FASTSIM.replace("0.3 0.3", "0.3 0.2"), "FKIN must equal FSTAT, 0.3 [-]; got 0.2."),

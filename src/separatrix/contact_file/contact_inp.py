@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.chain.hertz import curvature_ratio, ellipse_of_axes, ellipse_of_curvatures
+from separatrix.chain.hertz import ContactEllipse, curvature_ratio, ellipse_of_axes, ellipse_of_curvatures
 from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import LARGEST_SIDE, ContactProblem
 from separatrix.chain.traction.exact.flexibility import Body, Solid
@@ -31,24 +31,22 @@ LARGEST_REST = 0.02  # of a column, by which a step in transient rolling may dif
 
 WORDS = ("CPBTNFS", "VLDCMZE", "XHGIAOWR")
 READ: Mapping[str, tuple[int, ...]] = {
-    "P": (0, 2), "B": (0, 2), "T": (0, 1, 2, 3), "N": (1,), "F": (0, 1, 2), "S": (0,), "V": (0,), "L": (0, 1),
-    "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1), "X": (0,), "H": (0,),
+    "P": (0, 2), "B": (0, 2), "T": (0, 1, 2, 3), "N": (0, 1), "F": (0, 1, 2), "S": (0,), "V": (0,),
+    "L": (0, 1), "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1), "X": (0,), "H": (0,),
     "G": (0, 1, 2, 3, 4, 5),
 }  # fmt: skip
 """Values of the control digits that are read; I, A, O, W and R do not change the answer."""
 
-MEANS = {
-    "B": "other bounds belong to simplified theories",
-    "N": "prescribe the normal force",
-    "S": "stresses inside the bodies are not computed",
-    "V": "friction that varies over the contact is read from a TOML file",
-    "L": "friction that depends on slip or temperature is not computed",
-    "C": "only half-spaces are computed",
-    "M": "viscoelastic and simplified materials are not computed",
-    "E": "extra rigid slip is not read",
-    "X": "debug output is not written",
-    "H": "temperatures are not computed",
-    "P": "the pressure of the case before is not used alone",
+CURES = {
+    "B": "Other bounds belong to simplified theories.",
+    "C": "Only half-spaces are computed.",
+    "E": "Extra rigid slip is not read.",
+    "H": "Temperatures are not computed.",
+    "L": "Friction that depends on slip or temperature is not computed.",
+    "M": "Viscoelastic and simplified materials are not computed.",
+    "S": "Stresses inside the bodies are not computed.",
+    "V": "Write friction that varies over the contact in a contact file (TOML).",
+    "X": "Debug output is not written.",
 }
 ITERATIONS = {0: 5, 1: 0, 2: 9, 3: 9, 4: 7, 5: 13}
 """Numbers on the solver's lines by digit G; they are read and not used."""
@@ -161,10 +159,11 @@ def _case(at: _Lines, kept: _Kept) -> ContactCase:
     digit = _control(at)
     at.numbers(*["solver's number"] * ITERATIONS[digit["G"]])
     second, third = (("CKSI", "CETA"), ("FX", "CETA"), ("FX", "FY"))[digit["F"]]
-    load, along, across, spin = at.numbers("FN", second, third, "CPHI")
+    first = "FN" if digit["N"] else "PEN"
+    load, along, across, spin = at.numbers(first, second, third, "CPHI")
     at.refuse_more("SPINXO")
     if load <= 0.0:
-        raise at.wrong("FN", "must be > 0 [N]", f"{load:g}")
+        raise at.wrong(first, f"must be > 0 [{'N' if digit['N'] else 'mm'}]", f"{load:g}")
     if digit["F"] and math.hypot(along, across if digit["F"] == 2 else 0.0) >= 1.0:
         raise at.wrong(second, "must be below the force of sliding, 1 [-]", f"{along:g}")
     if digit["L"] == 0:
@@ -186,6 +185,10 @@ def _case(at: _Lines, kept: _Kept) -> ContactCase:
     turned = abs(abs(chi) - math.pi) < 1e-3
     if not turned and abs(chi) > 1e-3:
         raise at.wrong("CHI", "must be 0 or 180d: the bodies roll along x", f"{chi:g} rad")
+    if digit["N"] == 0:
+        if kept.area is None or kept.area[0] > 0:
+            raise at.wrong("control digit N", "must be 1 with a gap on cells", "0", "Prescribe the force.")
+        load = -load
     setup = _setup(at, kept, load, is_coated=digit["M"] == 4, turned=turned)
     return _motion(at, setup, digit, (along, across, spin), step, turned=turned)
 
@@ -198,9 +201,8 @@ def _control(at: _Lines) -> dict[str, int]:
         for name, value in found.items():
             if name in READ and value not in READ[name]:
                 allowed = ", ".join(map(str, READ[name]))
-                cure = f"{MEANS[name][:1].upper()}{MEANS[name][1:]}." if name in MEANS else ""
                 rule = f"must be one of {allowed}" if len(READ[name]) > 1 else f"must be {allowed}"
-                raise at.wrong(f"control digit {name}", rule, f"{value}", cure)
+                raise at.wrong(f"control digit {name}", rule, f"{value}", CURES.get(name, ""))
         digit |= found
     if digit["C"] and at.case == 1 and digit["C"] != 2:
         raise at.wrong("control digit C", "must be 2 in the first case", f"{digit['C']}")
@@ -259,7 +261,10 @@ def _gap_numbers(at: _Lines) -> tuple[float, ...]:
 
 
 def _setup(at: _Lines, kept: _Kept, load: float, *, is_coated: bool, turned: bool) -> ContactSetup:
-    """The contact of a case; one that was there before is the same object, so that cases start each other."""
+    """The contact of a case, under a load [N], or an approach [mm] with a minus sign.
+
+    One that was there before is the same object, so that cases start each other.
+    """
     missing = {"L": kept.friction, "C": kept.materials, "D": kept.area}
     for name, value in missing.items():
         if value is None:
@@ -284,16 +289,11 @@ def _built(
     solids = [Solid(shear_modulus=G * MPA, poisson_ratio=nu) for G, nu in ((g1, nu1), (g2, nu2))]
     modulus = 1.0 / sum((1.0 - s.poisson_ratio) / (2.0 * s.shear_modulus) for s in solids)
     kind, mx, my, *rest = area
-    if kind == -3:
-        ellipse = ellipse_of_axes(load, rest[0] * MM, rest[1] * MM, modulus)
-    elif kind == -1:
-        ellipse = ellipse_of_curvatures(load, 2.0 * rest[0] / MM, 2.0 * rest[1] / MM, modulus)
-    elif kind == -2:
-        k = rest[1]
-        ratio = curvature_ratio(k) if k <= 1.0 else 1.0 / curvature_ratio(1.0 / k)
-        ellipse = ellipse_of_curvatures(load, 2.0 * rest[0] / MM, 2.0 * rest[0] / ratio / MM, modulus)
-    else:  # of a gap only the load and the modulus count
-        ellipse = ellipse_of_axes(load, mx * rest[2] * MM, my * rest[3] * MM, modulus)
+    ellipse = _ellipse(int(kind), (mx, my, *rest), abs(load), modulus)
+    if load < 0.0:  # an approach: of given axes the load goes as it, else as its power 1.5
+        one = _ellipse(int(kind), (mx, my, *rest), 1.0, modulus)
+        load = (-load * MM / one.approach) ** (1.0 if kind == -3 else 1.5)
+        ellipse = _ellipse(int(kind), (mx, my, *rest), load, modulus)
     gg3, thickness, limit, _ = layer or (1.0, 0.0, 0.0, 0.0)
     if layer and (gg3 <= 0.0 or thickness < 0.0):
         raise InputError("film", "must have GG3 > 0 and LAYTHK >= 0", f"{gg3:g}, {thickness:g}")
@@ -311,6 +311,19 @@ def _built(
     if len(kept.gap) == 0:
         raise at.wrong("control digit Z", "keeps a gap that no case before has given")
     return ContactSetup(problem=problem, gap=_gap(int(mx), int(my), rest, kept.gap, turned=turned))
+
+
+def _ellipse(kind: int, area: tuple[float, ...], load: float, modulus: float) -> ContactEllipse:
+    """Hertz contact under a load [N]; of a gap on cells only load and modulus count."""
+    mx, my, first, second, *more = area
+    if kind == -3:
+        return ellipse_of_axes(load, first * MM, second * MM, modulus)
+    if kind == -1:
+        return ellipse_of_curvatures(load, 2.0 * first / MM, 2.0 * second / MM, modulus)
+    if kind == -2:
+        ratio = curvature_ratio(second) if second <= 1.0 else 1.0 / curvature_ratio(1.0 / second)
+        return ellipse_of_curvatures(load, 2.0 * first / MM, 2.0 * first / ratio / MM, modulus)
+    return ellipse_of_axes(load, mx * more[0] * MM, my * more[1] * MM, modulus)
 
 
 def _gap(mx: int, my: int, place: list[float], b: tuple[float, ...], *, turned: bool) -> Gap:
