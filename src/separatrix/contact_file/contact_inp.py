@@ -32,8 +32,8 @@ LARGEST_REST = 0.02  # of a column, by which a step in transient rolling may dif
 WORDS = ("CPBTNFS", "VLDCMZE", "XHGIAOWR")
 READ: Mapping[str, tuple[int, ...]] = {
     "P": (0, 2), "B": (0, 2), "T": (0, 1, 2, 3), "N": (0, 1), "F": (0, 1, 2), "S": (0,), "V": (0,),
-    "L": (0, 1), "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1), "X": (0,), "H": (0,),
-    "G": (0, 1, 2, 3, 4, 5),
+    "L": (0, 1), "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1), "X": (0,),
+    "H": (0,), "G": (0, 1, 2, 3, 4, 5),
 }  # fmt: skip
 """Values of the control digits that are read; I, A, O, W and R do not change the answer."""
 
