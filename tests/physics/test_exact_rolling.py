@@ -9,7 +9,8 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from exact_cases import MU, P0, body, contact, kalker, saturation, strip_force
+from exact_cases import MU, P0, body, contact, kalker, saturation, strip, strip_force
+from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from separatrix.chain.traction.exact.bound import FrictionLaw
@@ -20,6 +21,7 @@ from separatrix.chain.traction.exact.contact import (
     solve,
     solve_each,
 )
+from separatrix.chain.traction.exact.newton import settle
 from separatrix.errors import ConvergenceError, InputError, ValidityWarning
 
 BARE = (body(0.25), body(0.25))
@@ -55,15 +57,6 @@ PLANE = [  # G_f/G, nu_f and the slope over its bare value at h/b = 0.03, 0.1, 0
 ]
 
 
-@pytest.mark.parametrize(("ratio", "nu", "expected"), PLANE)
-def test_plane_layer(ratio, nu, expected):
-    """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988): 0.5 % at n = 160."""
-    bare = strip_force(160, (body(0.285), body(0.285)))
-    for h, value in zip((0.03, 0.1, 0.3, 1.0), expected, strict=True):
-        coated = strip_force(160, (body(0.285), body(0.285, (ratio, nu, h))))
-        assert coated / bare == pytest.approx(value, rel=5e-3, abs=5e-5)
-
-
 def cauchy_slope(coated, n=160):
     """Sticking force of a plane layer on a bare equal base, by the singular integral equation of its slope.
 
@@ -90,12 +83,22 @@ def cauchy_slope(coated, n=160):
     return np.linalg.solve(matrix, np.ones(n)) @ weight
 
 
-def test_plane_layer_by_the_cauchy_equation():
-    """The same by another method: 0.3 % at n = 160."""
-    for h in (0.1, 0.3):
-        coated = body(0.285, (0.01817, 0.38, h))
-        exact = cauchy_slope(coated)
-        assert strip_force(160, (body(0.285), coated)) == pytest.approx(exact, rel=3e-3)
+@pytest.mark.parametrize(("ratio", "nu", "expected"), PLANE)
+def test_plane_layer(ratio, nu, expected):
+    """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988), by the equation of its slope.
+
+    0.36 % at 40 columns, 0.1 % at 160. `expected` was computed before, with other quadratures: its four
+    decimals, of which the softest film's are short by one.
+    """
+    bare = math.pi / 2.0 / (1.0 - 0.285)
+    for h, value in zip((0.03, 0.1, 0.3, 1.0), expected, strict=True):
+        coated = body(0.285, (ratio, nu, h))
+        exact = cauchy_slope(coated) / bare
+        assert exact == pytest.approx(value, abs=1.5e-4)
+        for columns, tolerance in ((40, 3.6e-3), (160, 1e-3)):
+            base = strip_force(columns, (body(0.285), body(0.285)))
+            found = strip_force(columns, (body(0.285), coated)) / base
+            assert found == pytest.approx(exact, rel=tolerance)
 
 
 @pytest.mark.parametrize("h", [0.001, 0.003, 0.01])
@@ -106,6 +109,30 @@ def test_films_thinner_than_a_cell(h):
     """
     bodies = body(0.285), body(0.285, (0.00215, 0.46, h))
     assert strip_force(20, bodies) == pytest.approx(strip_force(160, bodies), rel=0.3 / 20)
+
+
+def creep_of_unlike_bodies(columns, friction=1e-4):
+    """Creep of a free plane strip over 2 beta p0/E*: the pressure's slip there is 2 beta p/E*."""
+    op, grid = strip(columns, BARE)
+    edges = np.append(grid.x - 0.5 * grid.dx, grid.x[-1] + 0.5 * grid.dx)
+    pressure = np.diff(circle_area(edges / edges[-1]))[None, :] / MU / grid.dx
+    driving = np.zeros((2, *grid.shape))
+
+    def force(creep):
+        driving[0] = (pressure - creep) * grid.dx
+        return settle(op, friction * pressure, driving, tolerance=1e-7).traction[0].sum()
+
+    return brentq(force, 0.2, 1.0, xtol=1e-6)
+
+
+def test_bentall_and_johnson():
+    """Unlike plane bodies, little friction: the creep of free rolling is 0.91477 times 2 beta p0/E*.
+
+    No net force where x0 sqrt(1 - x0^2) + asin x0 = pi/4 (Bentall & Johnson 1967). 0.1 % at 160 columns.
+    """
+    x0 = brentq(lambda x: x * math.sqrt(1.0 - x * x) + math.asin(x) - math.pi / 4.0, 0.0, 1.0)
+    assert math.sqrt(1.0 - x0 * x0) == pytest.approx(0.91477, abs=1e-5)
+    assert creep_of_unlike_bodies(160) == pytest.approx(0.91477, rel=1e-3)
 
 
 def test_film_alone():
@@ -223,25 +250,32 @@ def test_threads_of_libraries_are_the_same():
     assert len(answers) == 1
 
 
-def test_200_random_contacts_converge():
-    """Shape, creeps, film, friction, Poisson's ratio and grid at random, all from a cold start."""
-    rng = np.random.default_rng(7)
-    passes = [random_case(rng).iterations for _ in range(200)]
+def test_1000_random_contacts_converge():
+    """Shape, creeps, film, friction, Poisson's ratio and grid at random, all from a cold start.
+
+    4.1 passes on average, 12 at most; 5 s.
+    """
+    rng = np.random.default_rng(2026)
+    passes = [random_case(rng).iterations for _ in range(1000)]
     assert max(passes) <= 40
-    assert np.mean(passes) < 7.0
+    assert np.mean(passes) < 5.0
 
 
 def random_case(rng):
     """One contact from a cold start."""
     b, nu, mu = 10.0 ** rng.uniform(-1.1, 0.5), rng.uniform(0.0, 0.5), 10.0 ** rng.uniform(-2.0, 0.0)
     columns, rows = (int(n) for n in rng.integers(6, 22, 2))
-    kind, race, L = rng.integers(0, 3), None, 0.0
+    kind, race, L, rough = rng.integers(0, 4), None, 0.0, 0.0
     if kind == 1:
         film = 10.0 ** rng.uniform(-1.9, 0.8), rng.uniform(0.0, 0.48), b * 10.0 ** rng.uniform(-3.0, 0.0)
         race = body(nu, film)
     elif kind == 2:
         L = b * (1.0 - nu) * 10.0 ** rng.uniform(-2.0, 1.0)
-    made = contact(b, nu, columns=columns, rows=rows, friction=mu, race=race, film_compliance=L)
+    elif kind == 3:
+        rough = P0 * b * (1.0 - nu) * 10.0 ** rng.uniform(-3.0, 2.0)
+    made = contact(
+        b, nu, columns=columns, rows=rows, friction=mu, race=race, film_compliance=L, roughness=rough
+    )
     sizes = rng.normal(size=4) * 10.0 ** rng.uniform(-2.0, 1.3, size=4) * saturation(nu, mu)
     names = ("longitudinal", "lateral", "spin", "curvature")
     return solve(made, rigid_slip(made.grid, **dict(zip(names, sizes, strict=True))))
@@ -284,9 +318,9 @@ def test_inputs_that_are_refused():
         kalker(made, xi=math.nan)
     with pytest.raises(InputError, match=r"solve: slip must have the shape"):
         solve(made, np.zeros((2, 3, 3)))
-    with pytest.raises(InputError, match=r"columns must lie from 4 to 256"):
+    with pytest.raises(InputError, match=r"columns must be a whole number and lie from 4 to 256"):
         contact(0.3, columns=2)
-    with pytest.raises(InputError, match=r"must be finite and > 0; got nan"):
+    with pytest.raises(InputError, match=r"must be one number, finite and > 0; got nan"):
         contact(math.nan)
     with pytest.raises(InputError, match=r"film strain p0/M_c must not exceed 1"):
         contact(0.3, race=body(0.25, (1e-4, 0.3, 0.01)))

@@ -127,6 +127,19 @@ def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
     assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
 
 
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.parametrize(
+    ("E", "nu", "thickness", "converged"),
+    [(0.5, 0.46, 1, 11.967), (0.5, 0.46, 3, 8.871), (4.0, 0.38, 3, 13.961), (4.0, 0.38, 10, 12.627)],
+)
+def test_the_slope_error_of_own_pressure(E, nu, thickness, converged):
+    """Bounds the difference to 56 columns and 128 rows, 0.5 % at most."""
+    film = Layer(thickness=thickness * 1e-6, solid=solid(E * 1e9, nu))
+    found = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
+    assert abs(found.slope - converged) < min(found.slope_error, 5e-3 * converged)
+    assert found.slope_error < 0.03 * found.slope
+
+
 def test_symmetric_cases_roll_freely_without_offset():
     """No Heathcote slip: offset 0; no friction: no slope."""
     found = traction_slope(problem(INNER[0]), Creep(spin=20.0, curvature=0.0), columns=(8, 12), rows=24)
@@ -173,7 +186,7 @@ def test_profiles():
     assert band[:, 0].tolist() == [3.0, 3.0, 0.0, 0.0, 0.0, 0.0, 3.0, 3.0]
     with pytest.raises(InputError, match=r"Profile.across must be finite, in increasing order"):
         Profile(across=(1.0, 0.0), values=(1.0, 1.0))
-    with pytest.raises(InputError, match=r"Profile.values must be >= 0"):
+    with pytest.raises(InputError, match=r"Profile.values must be finite and >= 0; got -1"):
         Profile(across=(0.0,), values=(-1.0,))
 
 
@@ -259,7 +272,7 @@ def test_cattaneo_shift():
 
 
 def test_transient_rolling_from_rest():
-    """Creep step on a sticking circle: T/T_oo at s/a = 0.4, 1, 2, 4, extrapolated; 0.002 is theirs."""
+    """Creep step on a sticking circle: T/T_oo at s/a = 0.4, 1, 2, 4, extrapolated; 0.002."""
     courses = []
     for n in (20, 40):
         made = contact(1.0, columns=n, rows=n, friction=1e6)
@@ -268,7 +281,7 @@ def test_transient_rolling_from_rest():
         forces = np.array([one.force for one in steps])
         courses.append(forces[[n // 5 - 1, n // 2 - 1, n - 1, 2 * n - 1]] / forces[-1])
     rough, fine = courses
-    assert 2.0 * fine - rough == pytest.approx([0.2086, 0.469, 0.754, 0.947], abs=4e-3)
+    assert 2.0 * fine - rough == pytest.approx([0.2086, 0.469, 0.754, 0.947], abs=2e-3)
 
 
 def test_transient_of_a_film_alone():

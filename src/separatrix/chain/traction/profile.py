@@ -22,17 +22,12 @@ class Profile:
 
     def __post_init__(self) -> None:
         y, values = np.array(self.across), np.array(self.values)
-        if (
-            y.size == 0
-            or y.shape != values.shape
-            or not np.isfinite([y, values]).all()
-            or (np.diff(y) < 0.0).any()
-        ):
-            raise InputError(
-                "Profile.across", "must be finite, in increasing order, one place for each value"
-            )
-        if (values < 0.0).any():
-            raise InputError("Profile.values", "must be >= 0", f"{values.min():g}")
+        if y.size == 0 or y.shape != values.shape or not np.isfinite(y).all() or (np.diff(y) < 0.0).any():
+            rule = "must be finite, in increasing order, one place for each value [m]"
+            raise InputError("Profile.across", rule, f"{self.across}")
+        wrong = values[~((values >= 0.0) & (values < np.inf))]
+        if wrong.size:
+            raise InputError("Profile.values", "must be finite and >= 0", f"{wrong[0]:g}")
 
     def at(self, y: Array) -> Array:
         """Values at places, shape of y."""

@@ -14,6 +14,7 @@ from separatrix.chain.traction.exact.contact import (
 from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
 from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.traction.exact.two_way import solve_two_way
 from separatrix.chain.traction.profile import Profile, worn_band
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "solid",
     "solve",
     "solve_each",
+    "solve_two_way",
     "traction_slope",
     "transient",
     "worn_band",

@@ -10,7 +10,9 @@ import numpy as np
 from separatrix.chain.traction.exact.grid import GAUSS_NODES, GAUSS_WEIGHTS, Grid
 from separatrix.chain.traction.profile import Profile
 from separatrix.errors import InputError
-from separatrix.units import Array, Pascal, Ratio
+from separatrix.units import Array, Metre, Pascal, Ratio
+
+LIGHTEST = 1e-6  # of the largest pressure, below which asperities do not soften further
 
 
 def over_cells(quantity: float | Profile, grid: Grid) -> Array:
@@ -49,3 +51,14 @@ class FrictionLaw:
         rising = self.cohesion * grid.fraction + over_cells(self.coefficient, grid) * pressure
         strength = self.shear_strength * np.where(inside, grid.fraction, 1.0)
         return np.where(inside, np.minimum(rising, strength), 0.0)
+
+
+def rough_compliance(grid: Grid, pressure: Array, roughness: Metre) -> Array:
+    """Compliance L = l/p of asperities, p the local pressure inside a cell, shape (row, column) [m/Pa].
+
+    Their stiffness rises linearly with the pressure (Campana, Persson & Mueser 2011). At the edge L has no
+    limit, but neither traction nor bound: below a millionth of the largest pressure L is that of a millionth.
+    """
+    f = grid.fraction
+    local = pressure / np.where(f > 0.0, f, 1.0)
+    return np.where(f > 0.0, roughness / np.maximum(local, LIGHTEST * local.max()), 0.0)

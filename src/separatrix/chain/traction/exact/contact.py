@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells
+from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells, rough_compliance
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body
 from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure, pressed_grid
@@ -34,8 +34,10 @@ from separatrix.chain.traction.profile import Profile
 from separatrix.errors import ConvergenceError, InputError, ValidityWarning
 from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
 
+LARGEST_TOLERANCE = 0.1
 LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling
 LARGEST_STRAIN = 1.0
+THICKEST = 100.0  # layers over the semi-major axis; the sum of the images loses digits from 1000 on
 DOUBTFUL_STRAIN = 0.1
 SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
 
@@ -45,23 +47,29 @@ class ContactProblem:
     """What rolls on what.
 
     ellipse : Hertz contact of the bodies without films; bodies : ball and race; film_compliance : L = h/G of
-    a film in series, beside the layers of the bodies [m/Pa]; own_pressure : solve the pressure of the layered
-    bodies instead of Hertz's; coupled : add the slip that the pressure causes between unlike bodies.
+    a film in series, beside the layers of the bodies [m/Pa]; roughness : length l of a rough interface in
+    series, whose tangential stiffness is p/l under the local pressure p [m]; own_pressure : solve the
+    pressure of the layered bodies instead of Hertz's; coupled : add the slip that the pressure causes between
+    unlike bodies.
     """
 
     ellipse: ContactEllipse
     bodies: tuple[Body, Body]
     friction: FrictionLaw
     film_compliance: float | Profile = 0.0
+    roughness: Metre = 0.0
     own_pressure: bool = False
     coupled: bool = False
 
     def __post_init__(self) -> None:
-        ellipse = self.ellipse
-        for name in ("load", "semi_minor", "semi_major", "max_pressure"):
-            if not 0.0 < getattr(ellipse, name) < np.inf:
-                value = f"{getattr(ellipse, name):g}"
-                raise InputError(f"ContactProblem.ellipse.{name}", "must be finite and > 0", value)
+        gap = ("curvature_rolling", "curvature_transverse") if self.own_pressure else ()
+        for name in ("load", "semi_minor", "semi_major", "max_pressure", *gap):
+            value = getattr(self.ellipse, name)
+            if np.ndim(value) > 0 or not 0.0 < value < np.inf:
+                rule = "must be one number, finite and > 0"
+                raise InputError(f"ContactProblem.ellipse.{name}", rule, f"{value}")
+        if not 0.0 <= self.roughness < np.inf:
+            raise InputError("ContactProblem.roughness", "must be finite and >= 0 [m]", f"{self.roughness:g}")
         L = self.film_compliance
         if not isinstance(L, Profile) and not 0.0 <= L < np.inf:
             raise InputError("ContactProblem.film_compliance", "must be finite and >= 0 [m/Pa]", f"{L:g}")
@@ -129,7 +137,8 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
     Raises
     ------
     InputError
-        A film that the pressure would compress by more than itself, or a grid that is too coarse or too fine.
+        A film that the pressure would compress by more than itself, layers thicker than 100 semi-major axes,
+        or a grid that is too coarse or too fine.
 
     Warns
     -----
@@ -137,18 +146,18 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         The film is compressed by more than a tenth: it is not linearly elastic there.
     """
     for name, count in (("columns", columns), ("rows", rows)):
-        if not SMALLEST_SIDE <= count <= LARGEST_SIDE:
-            raise InputError(
-                f"rolling_contact: {name}", f"must lie from {SMALLEST_SIDE} to {LARGEST_SIDE}", f"{count}"
-            )
+        if not SMALLEST_SIDE <= count <= LARGEST_SIDE or count != int(count):
+            rule = f"must be a whole number and lie from {SMALLEST_SIDE} to {LARGEST_SIDE}"
+            raise InputError(f"rolling_contact: {name}", rule, f"{count}")
     ellipse, bodies = problem.ellipse, problem.bodies
+    _check_layers(problem)
     if problem.own_pressure:
         grid, pressure, _ = pressed_contact(ellipse, bodies, columns=columns, rows=rows)
     else:
         b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
-    return _on_grid(problem, grid, pressure)
+    return contact_on(problem, grid, pressure)
 
 
 def gap_contact(
@@ -162,12 +171,17 @@ def gap_contact(
     Raises
     ------
     InputError
-        A gap that is not finite, or as of `rolling_contact`.
+        A gap that is not finite or whose cells end inside the contact, or as of `rolling_contact`.
     ConvergenceError
         The pressure did not settle.
     """
+    _check_layers(problem)
     pressing = press(gap, spacing, pair_images(*problem.bodies), problem.ellipse.load)
-    grid, pressure = pressed_grid(along, across, pressing.pressure, row_width=spacing[0])
+    p = pressing.pressure
+    if p[:, [0, -1]].any() or (across.size > 1 and p[[0, -1]].any()):
+        cure = "Give more cells around it."
+        raise InputError("gap_contact: gap", "must reach beyond the contact on all sides", cure=cure)
+    grid, pressure = pressed_grid(along, across, p, row_width=spacing[0])
     b, a = extent(grid)
     found = replace(
         problem.ellipse,
@@ -176,14 +190,13 @@ def gap_contact(
         max_pressure=float(pressure.max()),
         approach=pressing.approach,
     )
-    return _on_grid(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
+    return contact_on(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
 
 
-def _on_grid(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
+def contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
+    """A problem on a known grid under a known pressure, shape (row, column) [Pa]."""
     bodies = problem.bodies
-    compliance = None
-    if isinstance(problem.film_compliance, Profile) or problem.film_compliance > 0.0:
-        compliance = over_cells(problem.film_compliance, grid)
+    compliance = _compliance(problem, grid, pressure)
     coupling = pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape))
     return RollingContact(
         problem=problem,
@@ -195,6 +208,22 @@ def _on_grid(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingCon
         film_strain=_checked_strain(bodies, _largest_pressure(problem, pressure)),
         operator=rolling_operator(grid, bodies, compliance),
     )
+
+
+def _check_layers(problem: ContactProblem) -> None:
+    thickest = max(sum(layer.thickness for layer in body.layers) for body in problem.bodies)
+    largest = THICKEST * problem.ellipse.semi_major
+    if thickest > largest:
+        rule = f"must be at most {largest:g} m thick together, {THICKEST:g} semi-major axes of the contact"
+        raise InputError("Body.layers", rule, f"{thickest:g} m", "Take the outermost one as the base.")
+
+
+def _compliance(problem: ContactProblem, grid: Grid, pressure: Array) -> Array | None:
+    """L of everything in series, shape (row, column) [m/Pa]."""
+    film, rough = problem.film_compliance, problem.roughness
+    if not isinstance(film, Profile) and film == 0.0 and rough == 0.0:
+        return None
+    return over_cells(film, grid) + rough_compliance(grid, pressure, rough)
 
 
 def _largest_pressure(problem: ContactProblem, pressure: Array) -> Pascal:
@@ -213,7 +242,7 @@ def _checked_strain(bodies: tuple[Body, Body], max_pressure: Pascal) -> Ratio:
             f"the film is compressed by {strain:.2g} of its thickness; linear elasticity holds to about "
             f"{DOUBTFUL_STRAIN:g}.",
             ValidityWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     return strain
 
@@ -251,13 +280,28 @@ def settled(
     contact: RollingContact, slip: Array, *, start: Array | None = None, tolerance: Ratio = TOLERANCE
 ) -> Settled:
     """As `solve`: only the tractions and their stick and slip cells."""
-    if slip.shape != (2, *contact.grid.shape):
-        raise InputError("solve: slip", f"must have the shape (2, {contact.grid.shape})", f"{slip.shape}")
+    check_fields(contact, slip, start, tolerance)
+    driving = (slip + contact.coupling) * contact.grid.dx
+    return settle(contact.operator, contact.bound, driving, start=start, tolerance=tolerance)
+
+
+def check_fields(contact: RollingContact, slip: Array, start: Array | None, tolerance: Ratio) -> None:
+    """Refuse slips and first tractions of another shape or that are not finite, and idle tolerances."""
+    for name, field_ in (("slip", slip), ("start", start)):
+        if field_ is not None and field_.shape != (2, *contact.grid.shape):
+            rows, columns = contact.grid.shape
+            raise InputError(
+                f"solve: {name}", f"must have the shape (2, {rows}, {columns})", f"{field_.shape}"
+            )
     largest = float(np.abs(slip).max())
     if not largest <= LARGEST_CREEP:
         raise InputError("solve: slip", f"must be finite and at most {LARGEST_CREEP:g} [-]", f"{largest:g}")
-    driving = (slip + contact.coupling) * contact.grid.dx
-    return settle(contact.operator, contact.bound, driving, start=start, tolerance=tolerance)
+    if start is not None and not np.isfinite(start).all():
+        raise InputError("solve: start", "must be finite [Pa]", f"{start[~np.isfinite(start)][0]:g}")
+    if not 0.0 < tolerance <= LARGEST_TOLERANCE:
+        raise InputError(
+            "solve: tolerance", f"must be > 0 and at most {LARGEST_TOLERANCE:g} [-]", f"{tolerance:g}"
+        )
 
 
 def solve_each(

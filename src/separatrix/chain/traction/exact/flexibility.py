@@ -33,8 +33,7 @@ class Solid:
 
     def __post_init__(self) -> None:
         _check("Solid.shear_modulus", "must be finite and > 0 [Pa]", self.shear_modulus, 0.0, math.inf)
-        if not 0.0 <= self.poisson_ratio <= 0.5:
-            raise InputError("Solid.poisson_ratio", "must lie from 0 to 0.5 [-]", f"{self.poisson_ratio:g}")
+        _check_poisson("Solid.poisson_ratio", self.poisson_ratio)
 
     @property
     def compression_modulus(self) -> Pascal:
@@ -72,12 +71,19 @@ class Body:
 
 def solid(elastic_modulus: Pascal, poisson_ratio: Ratio) -> Solid:
     """Solid from Young's modulus [Pa] and Poisson's ratio [-]."""
+    _check_poisson("solid: poisson_ratio", poisson_ratio)
+    _check("solid: elastic_modulus", "must be finite and > 0 [Pa]", elastic_modulus, 0.0, math.inf)
     return Solid(shear_modulus=0.5 * elastic_modulus / (1.0 + poisson_ratio), poisson_ratio=poisson_ratio)
 
 
 def _check(path: str, rule: str, value: float, low: float, high: float) -> None:
     if not low < value < high:
         raise InputError(path, rule, f"{value:g}")
+
+
+def _check_poisson(path: str, value: float) -> None:
+    if not 0.0 <= value <= 0.5:
+        raise InputError(path, "must lie from 0 to 0.5 [-]", f"{value:g}")
 
 
 def half_space_flexibility(base: Solid) -> Array:

@@ -27,6 +27,7 @@ from separatrix.errors import InputError
 from separatrix.units import Array, Metre, Ratio
 
 IMAGES = 24  # exponentials beside the constant
+STEPS = (1.0, 1.4, 2.0)  # of the depths, in half thicknesses; stiff films respond to longer waves
 NODES = 240  # wavenumbers of the fit
 SMALLEST_SINGULAR = 1e-12  # over the largest: keeps the weights, of both signs, below 1e8 of the flexibility
 CONTROLS = 300  # other wavenumbers at which its error is measured
@@ -57,8 +58,8 @@ def body_images(body: Body) -> Images:
     if not body.layers:
         return Images(np.zeros(1), half_space_flexibility(body.base)[:, None], 0.0)
     thicknesses = {layer.thickness for layer in body.layers}
-    fits = [_fit(body, H) for H in sorted(thicknesses | {sum(layer.thickness for layer in body.layers)})]
-    best = min(fits, key=lambda fit: fit.error)
+    lengths = sorted(thicknesses | {sum(layer.thickness for layer in body.layers)})
+    best = min((_fit(body, step * H) for H in lengths for step in STEPS), key=lambda fit: fit.error)
     if best.error > LARGEST_ERROR:
         cure = "Use one layer, or layers of like thickness and stiffness."
         rule = f"must fit {IMAGES} images to {LARGEST_ERROR:g} of their span [-]"

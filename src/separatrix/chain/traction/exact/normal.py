@@ -22,6 +22,7 @@ from separatrix.units import Array, Metre, Newton, Ratio
 TOLERANCE = 1e-8  # change of the pressures in one iteration over the load
 LARGEST_ITERATIONS = 1000
 REFINED = 3  # cells of the pressure along each side of a cell of the tractions
+LARGEST_BOX = 100.0  # half lengths of the ellipse; a film that spreads the contact so far carries 1e-4 of p0
 SEARCH_CELLS = 24  # cells along each side of the box in which the size of the contact is looked for
 
 
@@ -88,39 +89,63 @@ def pressed_contact(
 
     `ellipse` has the load and the curvatures of the gap; `columns` and `rows` lie over a box some cells wider
     than the contact, whose size is found on a coarser grid first. The pressure is solved on finer cells.
+
+    Raises
+    ------
+    InputError
+        A contact that reaches beyond 100 half lengths of its ellipse.
+    ConvergenceError
+        The pressures did not settle.
     """
-    images = pair_images(*bodies)
-    half = 1.5 * np.array([ellipse.semi_minor, ellipse.semi_major])
-    found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
-    while _touches_edge(found[2].pressure):
-        half *= 1.5
-        found = _in_box(ellipse, images, half, (SEARCH_CELLS, SEARCH_CELLS))
-    pressed = found[2].pressure > 0.0
-    cells = np.array([pressed.any(axis=0).sum(), pressed.any(axis=1).sum()])
-    half *= (cells + 1.0) / SEARCH_CELLS
-    count = (REFINED * columns, REFINED * rows)
-    found = _in_box(ellipse, images, half, count)
-    while _touches_edge(found[2].pressure):
-        half *= 1.1
-        found = _in_box(ellipse, images, half, count)
-    x, y, pressing = found
+    x, y, pressing = pressed_box(ellipse, pair_images(*bodies), columns=columns, rows=rows)
     return *pressed_grid(x, y, pressing.pressure, REFINED), pressing.approach
 
 
-def _in_box(
-    ellipse: ContactEllipse, images: Images, half: Array, cells: tuple[int, int]
+def pressed_box(
+    ellipse: ContactEllipse, images: Images, *, columns: int, rows: int, room: Ratio = 1.0
 ) -> tuple[Array, Array, Pressing]:
-    """Cell centres and pressure in a box of these half lengths along x and y."""
-    (x, dx), (y, dy) = (
-        (width * np.arange(0.5 - 0.5 * n, 0.5 * n), width)
-        for width, n in ((float(2.0 * h / n), n) for h, n in zip(half, cells, strict=True))
-    )
+    """Centres of the fine cells along x and y, and the pressure on them; `room` widens the box."""
+    half = 1.5 * np.array([ellipse.semi_minor, ellipse.semi_major])
+    largest = LARGEST_BOX * ellipse.semi_major
+    search = SEARCH_CELLS, SEARCH_CELLS
+    found = press_in_box(ellipse, images, *_cells_of(half, search))
+    while touches_edge(found.pressure):
+        if half[1] > largest:
+            rule = f"must not reach beyond {LARGEST_BOX:g} half lengths of its ellipse"
+            cure = "Check the curvatures of the ellipse and the thickness of the films."
+            raise InputError("ContactProblem: contact under its own pressure", rule, "a wider one", cure)
+        half *= 1.5
+        found = press_in_box(ellipse, images, *_cells_of(half, search))
+    pressed = found.pressure > 0.0
+    cells = np.array([pressed.any(axis=0).sum(), pressed.any(axis=1).sum()])
+    half *= room * (cells + 1.0) / SEARCH_CELLS
+    count = REFINED * columns, REFINED * rows
+    found = press_in_box(ellipse, images, *_cells_of(half, count))
+    while touches_edge(found.pressure):
+        half *= 1.1
+        found = press_in_box(ellipse, images, *_cells_of(half, count))
+    return *_cells_of(half, count), found
+
+
+def _cells_of(half: Array, count: tuple[int, int]) -> tuple[Array, Array]:
+    """Centres of so many cells along x and y in a box of these half lengths."""
+    widths = (float(2.0 * h / n) for h, n in zip(half, count, strict=True))
+    x, y = (width * np.arange(0.5 - 0.5 * n, 0.5 * n) for width, n in zip(widths, count, strict=True))
+    return x, y
+
+
+def press_in_box(
+    ellipse: ContactEllipse, images: Images, x: Array, y: Array, raised: Array | float = 0.0
+) -> Pressing:
+    """Pressure on cells at these places; `raised` is what widens the gap, shape (row, column) [m]."""
+    dx, dy = float(x[1] - x[0]), float(y[1] - y[0])
     along = 0.5 * ellipse.curvature_rolling * (x * x + dx * dx / 12.0)  # cell means
     across = 0.5 * ellipse.curvature_transverse * (y * y + dy * dy / 12.0)
-    return x, y, press(along + across[:, None], (dy, dx), images, ellipse.load)
+    return press(along + across[:, None] + raised, (dy, dx), images, ellipse.load)
 
 
-def _touches_edge(pressure: Array) -> bool:
+def touches_edge(pressure: Array) -> bool:
+    """Whether the pressure reaches the edge of its box."""
     edges = pressure[[0, -1]].any() or pressure[:, [0, -1]].any()
     return bool(edges)
 

@@ -29,7 +29,7 @@ from separatrix.chain.traction.exact.krylov import right_side, solve_step
 from separatrix.chain.traction.exact.newton import Settled
 from separatrix.chain.traction.exact.operator import unresolved_film
 from separatrix.chain.traction.profile import Profile
-from separatrix.errors import ConvergenceError
+from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array, Newton, Ratio
 
 TOLERANCE = 1e-6  # of the tractions
@@ -40,6 +40,7 @@ SHORTEST_CHORD = 2e-3  # of the creep that saturates a tangent; below it the tan
 BALANCED = 1e-5  # force of free rolling over the force of sliding
 LARGEST_STEPS = 40
 SAMPLING = 1e-3  # relative error of a chord by the places of rows and columns (measured in the tests)
+PRESSED = 5e-3  # relative error by the row ends of a solved pressure (measured in the tests)
 UNRESOLVED = 0.01  # largest error of the rules for thin films (measured in the tests)
 
 
@@ -64,13 +65,21 @@ def traction_slope(
 
     The error falls with the first power of the columns. A tangent of bare bodies is extrapolated to none; a
     chord, in which stick and slip change cell by cell, is not. `slope_error` adds that step, what the
-    extrapolation of the chord changed, and the errors of sampling and of thin films.
+    extrapolation of the chord changed, and the errors of sampling, of thin films and of the row ends of a
+    solved pressure.
 
     Raises
     ------
+    InputError
+        A creep that is not finite, columns that do not increase.
     ConvergenceError
         Free rolling or the tractions did not settle.
     """
+    for name, value in (("spin", creep.spin), ("curvature", creep.curvature)):
+        if not math.isfinite(value):
+            raise InputError(f"traction_slope: creep.{name}", "must be finite", f"{value:g}")
+    if not columns[0] < columns[1]:
+        raise InputError("traction_slope: columns", "must be strictly increasing", f"{columns}")
     rows = _aligned(problem, rows)
     coarse, fine = (rolling_contact(problem, columns=n, rows=rows) for n in columns)
     curve = Curve(fine, creep)
@@ -78,10 +87,10 @@ def traction_slope(
     slope, chord_error, smooth = curve.slope(offset)
     rough, _, _ = Curve(coarse, creep).slope(offset)
     step = (slope - rough) * columns[0] / (columns[1] - columns[0])
-    film = _film_error(fine)
+    film, ends = _film_error(fine), PRESSED if problem.own_pressure else 0.0
     return RaceSlope(
         slope=slope + step if smooth and film == 0.0 else slope,
-        slope_error=chord_error + abs(step) + (SAMPLING + film) * slope,
+        slope_error=chord_error + abs(step) + (SAMPLING + film + ends) * slope,
         free_rolling_offset=offset,
         solution=solution_of(fine, curve.at(offset)),
     )

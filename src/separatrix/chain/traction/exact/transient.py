@@ -15,7 +15,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.chain.traction.exact.contact import ContactSolution, RollingContact, solution_of
+from separatrix.chain.traction.exact.contact import (
+    ContactSolution,
+    RollingContact,
+    check_fields,
+    solution_of,
+)
 from separatrix.chain.traction.exact.images import influence, pair_images
 from separatrix.chain.traction.exact.newton import TOLERANCE, settle
 from separatrix.chain.traction.exact.operator import (
@@ -38,9 +43,12 @@ def shift(
 
     Raises
     ------
+    InputError
+        A displacement or start that is not finite or has another shape.
     ConvergenceError
         The tractions did not settle.
     """
+    check_fields(contact, way, start, tolerance)
     op = shift_operator(contact.grid, contact.problem.bodies, contact.compliance)
     driving = way if start is None else way - product(op, start)
     found = settle(op, contact.bound, driving, start=start, tolerance=tolerance)
@@ -60,6 +68,8 @@ def transient(
 
     Raises
     ------
+    InputError
+        A slip or start that is not finite or has another shape.
     ConvergenceError
         The tractions of a step did not settle.
     """
@@ -70,6 +80,7 @@ def transient(
     p = np.zeros((2, *grid.shape)) if start is None else start
     solutions = []
     for slip in slips:
+        check_fields(contact, slip, p, tolerance)
         U = displacement(waves, op.padded, p)
         U[:, :, :-1] += passed[:, :, :-1] * p[:, :, 1:]
         driving = (slip + contact.coupling) * grid.dx - U

@@ -1,0 +1,215 @@
+"""Numbers of docs/validation.md: the exact contact beside closed forms, other methods and published values.
+
+Run with `PYTHONPATH=tests/physics:tests/literature python benchmarks/exact_accuracy.py`; half a minute. The
+references are those of the tests.
+"""
+
+import math
+import sys
+import time
+import warnings
+from itertools import chain
+
+import numpy as np
+from exact_cases import MU, body, contact, kalker, saturation, strip_force
+from test_exact_contact import GALIN, given
+from test_exact_normal import COATED, RIGID, coated_sphere
+from test_exact_rolling import (
+    CREEPS,
+    ORDER,
+    PARTIAL,
+    PLANE,
+    cauchy_slope,
+    circle_area,
+    creep_of_unlike_bodies,
+)
+from test_exact_slope import INNER, OUTER, WORN, problem
+
+from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.traction.exact.bound import FrictionLaw
+from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact
+from separatrix.chain.traction.exact.flexibility import Layer, solid
+from separatrix.chain.traction.exact.images import pair_images
+from separatrix.chain.traction.exact.normal import press
+from separatrix.chain.traction.exact.slope import traction_slope
+from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.traction.profile import worn_band
+from separatrix.errors import ValidityWarning
+
+
+def coefficients(b, nu, columns, rows):
+    """C11, C22, C23, C33 in full stick."""
+    made, e = contact(b, nu, columns=columns, rows=rows, friction=1e6), 1e-6
+    along, across, spun = (kalker(made, *creep, tolerance=1e-7) for creep in np.eye(3) * -e)
+    forces = (along.force / b, across.lateral_force / b, spun.lateral_force / b**1.5, spun.spin_moment / b**2)
+    return np.array(forces) / e
+
+
+def say(*values):
+    """Print with four digits behind the point, at once."""
+    print(*(np.round(v, 4) if isinstance(v, (float, np.ndarray)) else v for v in values), flush=True)
+
+
+def percent(found, exact):
+    """Differences in per cent."""
+    return " ".join(f"{100.0 * (f / e - 1.0):+7.2f}" for f, e in zip(found, exact, strict=True))
+
+
+def kalker_table():
+    """Kalker's coefficients on 40 x 40 cells, and extrapolated over two grids."""
+    print("## C11 C22 C23 C33: per cent at 40 x 40 | 2 f(80) - f(40) | 2 f(160) - f(80), wide contacts")
+    for b, nu, *exact in GALIN:
+        f = {n: coefficients(b, nu, n, n) for n in ((40, 80, 160) if b >= 1.0 else (40, 80))}
+        values = [f[40], 2.0 * f[80] - f[40]] + ([2.0 * f[160] - f[80]] if b >= 1.0 else [])
+        say(b, nu, f[40], " | ".join(percent(v, exact) for v in values))
+
+
+def partial_slip_table():
+    """Largest differences of partial slip at 40 x 40 and extrapolated."""
+    print("## partial slip: largest |difference| over mu N at 40 x 40, of 2 f(80) - f(40), and each")
+    for b, nu, *expected in PARTIAL:
+        found = []
+        for cells in (40, 80):
+            made, xs = contact(b, nu, columns=cells, rows=cells), saturation(nu)
+            sliding, row = MU * made.problem.ellipse.load, []
+            for (xi, eta, phi), wanted in zip(CREEPS, ORDER, strict=True):
+                one = kalker(made, -xi * xs, -eta * xs, -phi * xs / math.sqrt(b))
+                values = {"x": one.force, "y": one.lateral_force, "m": one.spin_moment / math.sqrt(b)}
+                row += [values[key] / sliding for key in wanted]
+            found.append(np.array(row))
+        exact = np.array(list(chain.from_iterable(expected)))
+        best = 2.0 * found[1] - found[0]
+        print(b, np.abs(found[0] - exact).max().round(5), np.abs(best - exact).max().round(5))
+        print("   ", (found[0] - exact).round(4))
+        print("   ", (best - exact).round(4), flush=True)
+    for lam, force in ((0.3, 0.695), (1.0, 0.522), (3.0, 0.297)):
+        made = contact(0.2, film_compliance=lam * 0.2 * 0.75)
+        found = kalker(made, xi=-0.5 * saturation(0.25)).force / (MU * made.problem.ellipse.load)
+        print("film", lam, force, round(found, 4), flush=True)
+
+
+def strips_table():
+    """Carter, and the plane layer over 160 cells and extrapolated."""
+    bare = body(0.25), body(0.25)
+    for n in (20, 40, 80):
+        force = strip_force(n, bare, creep=0.4 * 2.0 * MU * 0.75, bound=circle_area)
+        print("Carter", n, force / (math.pi / 2.0 * MU))
+    print("Bentall-Johnson 0.91477", *(creep_of_unlike_bodies(n) for n in (40, 160)))
+    print("## plane layer by the Cauchy equation, n = 40, 160; per cent")
+    worst, bare = np.zeros(2), math.pi / 2.0 / (1.0 - 0.285)
+    for ratio, nu, expected in PLANE:
+        for h, value in zip((0.03, 0.1, 0.3, 1.0), expected, strict=True):
+            coated = body(0.285, (ratio, nu, h))
+            exact, found = cauchy_slope(coated) / bare, []
+            for n in (40, 160):
+                base = strip_force(n, (body(0.285), body(0.285)))
+                found.append(strip_force(n, (body(0.285), coated)) / base)
+            error = 100.0 * (np.array(found) / exact - 1.0)
+            worst = np.maximum(worst, np.abs(error))
+            say(ratio, h, value, exact, np.array(found), error)
+    say("largest", worst)
+
+
+def spheres_table():
+    """Coated spheres: approach and pressure at the centre."""
+    print("## coated sphere: approach, centre pressure, radius; per cent, extrapolated over 32 and 64 cells")
+    for ratio, h, a, d, p0 in COATED:
+        coated, load, top = coated_sphere(ratio, h)
+        found = []
+        for n in (32, 64):
+            dx = 2.4 * a / n
+            x = dx * (np.arange(n) + 0.5 - 0.5 * n)
+            gap = 0.5 * (x * x + dx * dx / 12.0) + 0.5 * (x * x + dx * dx / 12.0)[:, None]
+            pressing = press(gap, (dx, dx), pair_images(RIGID, coated), load)
+            centre = pressing.pressure[n // 2 - 1 : n // 2 + 1, n // 2 - 1 : n // 2 + 1].mean()
+            radius = math.sqrt((pressing.pressure > 0.0).sum() * dx * dx / math.pi)
+            found.append(np.array([pressing.approach, centre / top, radius]))
+        best = (4.0 * found[1] - found[0]) / 3.0
+        say(ratio, h, best[:2], (d, p0), percent(best[:2], (d, p0)), found[1][2], a)
+
+
+def shifts_table():
+    """Cattaneo's shift and transient rolling."""
+    G, nu, load, R = 200.0, 0.42, 9.1954, 50.0
+    a = (3.0 * load * R * (1.0 - nu) / (4.0 * G)) ** (1.0 / 3.0)
+    sphere = ContactEllipse(
+        load=load, semi_major=a, semi_minor=a, max_pressure=1.5 * load / (math.pi * a * a),
+        approach=a * a / R, curvature_rolling=1.0 / R, curvature_transverse=1.0 / R,
+        contact_modulus=G / (1.0 - nu),
+    )  # fmt: skip
+    both = (body(nu, G=G), body(nu, G=G))
+    made = rolling_contact(ContactProblem(ellipse=sphere, bodies=both, friction=FrictionLaw(coefficient=0.4)))
+    low, high = 8.0e-3, 8.3e-3
+    for _ in range(30):
+        way = 0.5 * (low + high)
+        one = shift(made, rigid_slip(made.grid, longitudinal=-way))
+        low, high = (way, high) if one.force / (0.4 * load) < 0.875 else (low, way)
+    print("## Cattaneo: shift at 0.875 mu N", way, "stick", one.stick_share, flush=True)
+    courses = []
+    for n in (20, 40, 80):
+        made = contact(1.0, columns=n, rows=n, friction=1e6)
+        steps = transient(made, [rigid_slip(made.grid, longitudinal=1e-6)] * (5 * n))
+        forces = np.array([one.force for one in steps])
+        courses.append(forces[[n // 5 - 1, n // 2 - 1, n - 1, 2 * n - 1]] / forces[-1])
+    print("## transient", 2.0 * courses[1] - courses[0], 2.0 * courses[2] - courses[1], flush=True)
+
+
+def contact_examples():
+    """Public examples of CONTACT at 40 x 40 and extrapolated over 30 and 60."""
+    print("## CONTACT: at 40, and 2 f(60) - f(30)")
+    examples: tuple[tuple[dict[str, float], tuple[float, ...]], ...] = (
+        ({}, (243.8, 0.255, 0.468, 0.640, 0.774)),
+        ({"film_compliance": 1.25 / 8200.0}, (63.6,)),
+    )
+    for options, exact in examples:
+        rows = {}
+        for cells in (30, 40, 60):
+            made = given(6.3035, 12.6076, 106700.0, 82000.0, 0.28, 0.33, cells=cells, **options)
+            rows[cells] = np.array(
+                [-kalker(made, 1e-5).force]
+                + [-kalker(made, xi).force / (0.33 * 106700.0) for xi in (4e-4, 8e-4, 1.2e-3, 1.6e-3)]
+            )[: len(exact)]
+        best = 2.0 * rows[60] - rows[30]
+        say(exact, rows[40], percent(rows[40], exact), best, percent(best, exact))
+    found = []
+    for cells in (30, 40, 60):
+        made = given(8.0, 4.0, 82000.0, 82000.0, 0.28, 0.3, cells=cells)
+        one = kalker(made, eta=-6.25e-4, phi=6.25e-4)
+        found.append(np.array([abs(one.lateral_force) / (0.3 * 82000.0), abs(one.spin_moment)]))
+    print("fastsim .625 47440:", found[1], 2.0 * found[2] - found[0], flush=True)
+
+
+def slopes_table():
+    """Slopes of a bearing's races."""
+    print("## bare slopes: found, error reported, reference, per cent")
+    rows = [(0.05, 1.833, 6.79), (0.1, 3.665, 13.65), (0.2, 7.33, 30.2), (0.3, 10.97, 41.07)]
+    for mu, *expected in rows:
+        for (ellipse, creep), value in zip((INNER, OUTER), expected, strict=True):
+            s = traction_slope(problem(ellipse, mu), creep)
+            lateral = s.solution.lateral_force / (mu * ellipse.load)
+            say(mu, s.slope, s.slope_error, value, percent([s.slope], [value]), "lateral", lateral)
+    print("## worn track")
+    L = 3e-6 / solid(1.5e9, 0.4).shear_modulus
+    for share, *expected in WORN:
+        for (ellipse, creep), value in zip((INNER, OUTER), expected, strict=True):
+            w = share * ellipse.semi_major
+            friction, compliance = worn_band(w, worn=0.3, film=0.1), worn_band(w, worn=0.0, film=L)
+            s = traction_slope(problem(ellipse, friction, film_compliance=compliance), creep)
+            say(share, s.slope, s.slope_error, value, percent([s.slope], [value]))
+    print("## own pressure, outer race, mu 0.1")
+    films = ((0.5, 0.46, 1, 11.97), (0.5, 0.46, 3, 8.87), (4, 0.38, 3, 13.97), (4, 0.38, 10, 12.63))
+    for E, nu, h, ref in films:
+        film = Layer(thickness=h * 1e-6, solid=solid(E * 1e9, nu))
+        s = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
+        say(E, h, s.slope, s.slope_error, ref, s.solution.max_pressure / 1e6)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore", ValidityWarning)
+    tables = kalker_table, partial_slip_table, strips_table, spheres_table, shifts_table
+    chosen = sys.argv[1:]
+    for table in (*tables, contact_examples, slopes_table):
+        if not chosen or table.__name__ in chosen:
+            start = time.process_time()
+            table()
+            print(f"({time.process_time() - start:.1f} s of processor time)\n", flush=True)

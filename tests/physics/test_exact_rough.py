@@ -1,0 +1,122 @@
+"""Rough interface in series: its compliance rises where the pressure falls."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from exact_cases import MU, P0, body, contact, ellipse, kalker, saturation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from separatrix.chain.creep import Creep
+from separatrix.chain.traction.exact.bound import FrictionLaw, rough_compliance
+from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.traction.exact.grid import elliptic_grid
+from separatrix.chain.traction.exact.operator import rolling_operator
+from separatrix.chain.traction.exact.slope import traction_slope
+from separatrix.chain.traction.exact.transient import shift, transient
+
+quick = settings(derandomize=True, max_examples=12, deadline=None)
+B = 0.2
+
+
+def alone(columns, *, friction, roughness=1.0):
+    """Rough interface between rigid bodies."""
+    stiff = body(0.25, G=1e9)
+    problem = ContactProblem(
+        ellipse=ellipse(B),
+        bodies=(stiff, stiff),
+        friction=FrictionLaw(coefficient=friction),
+        roughness=roughness,
+    )
+    return rolling_contact(problem, columns=columns, rows=columns)
+
+
+def test_rough_interface_alone_in_stick():
+    """Traction p xi d/l, d the distance from the leading edge: force 9 pi/32 N b xi/l.
+
+    0.04 % at 40 x 40 cells; 0.3/n^1.5.
+    """
+    for columns in (20, 40):
+        force = -kalker(alone(columns, friction=1e9), xi=1.0).force
+        exact = 9.0 * math.pi / 32.0 * ellipse(B).load * B
+        assert force == pytest.approx(exact, rel=0.3 / columns**1.5)
+
+
+@pytest.mark.parametrize("creep", [0.5, 1.0, 3.0])
+def test_rough_interface_alone_slips_at_one_distance(creep):
+    """Traction mu p min(1, xi d/(mu l)) in every row, whatever the pressure; 0.1 % at 40 x 40 cells."""
+
+    def row(y):
+        end = B * math.sqrt(1.0 - y * y)
+
+        def traction(x):
+            p = P0 * math.sqrt(max(1.0 - (x / B) ** 2 - y * y, 0.0))
+            return MU * p * min(1.0, creep * (end - x) / B)
+
+        return quad(traction, -end, end, limit=100)[0]
+
+    exact = 2.0 * quad(row, 0.0, 1.0, limit=100)[0]
+    found = kalker(alone(40, friction=MU), xi=creep * MU / B)
+    assert -found.force == pytest.approx(exact, rel=1e-3)
+    assert found.stick_share == pytest.approx(1.0 if creep < 0.6 else 2.0 / math.pi / creep, abs=0.04)
+
+
+def test_uniform_pressure_is_a_film_in_series():
+    """L = l/p on whole and cut cells alike; the operators are equal."""
+    grid = elliptic_grid(semi_minor=B, semi_major=1.0, columns=12, rows=10)
+    bodies = body(0.25), body(0.25)
+    rough = rough_compliance(grid, 2.0 * grid.fraction, 0.3)
+    assert rough == pytest.approx(np.where(grid.fraction > 0.0, 0.15, 0.0), rel=1e-14)
+    one, other = (rolling_operator(grid, bodies, L) for L in (rough, np.full(grid.shape, 0.15)))
+    assert one.local == pytest.approx(other.local, rel=1e-12)
+    assert one.upstream == pytest.approx(other.upstream, rel=1e-12)
+
+
+def test_smooth_surfaces_are_no_film():
+    """Length l -> 0: the bare contact, in force, slope and transient rolling; to the solver's tolerance."""
+    made, smooth = contact(B, columns=20, rows=20), contact(B, columns=20, rows=20, roughness=1e-12)
+    xs = saturation(0.25)
+    slip = rigid_slip(made.grid, longitudinal=0.4 * xs, spin=xs)
+    for one, other in zip(
+        solve_each(made, [slip, 2.0 * slip]), solve_each(smooth, [slip, 2.0 * slip]), strict=True
+    ):
+        assert other.force == pytest.approx(one.force, rel=2e-5)
+    creep = Creep(spin=2.0 * xs, curvature=xs)
+    slopes = [traction_slope(c.problem, creep, columns=(10, 14), rows=16).slope for c in (made, smooth)]
+    assert slopes[1] == pytest.approx(slopes[0], rel=2e-5)
+    for run in (lambda c: transient(c, [slip] * 3)[-1], lambda c: shift(c, slip)):
+        assert run(smooth).force == pytest.approx(run(made).force, rel=2e-5)
+
+
+shape = st.floats(-1.0, 0.5).map(lambda x: 10.0**x)
+size = st.floats(-2.0, 1.2).map(lambda x: 10.0**x)
+
+
+@quick
+@given(shape, st.floats(0.0, 0.5), st.integers(6, 18), st.floats(-9.0, 0.0), size, size)
+def test_roughness_softens(b, nu, cells, logarithm, xi, spin):
+    """Whatever the contact: finite, within the bound, and sticking less the rougher it is."""
+    made = contact(b, nu, columns=cells, rows=cells, roughness=10.0**logarithm)
+    one = kalker(made, xi * saturation(nu), phi=spin * saturation(nu))
+    assert np.isfinite(one.traction).all()
+    assert (np.hypot(*one.traction) <= made.bound * (1.0 + 1e-9)).all()
+    sticking = [
+        -kalker(contact(b, nu, columns=cells, rows=cells, friction=1e6, roughness=r), 1e-6).force
+        for r in (0.0, made.problem.roughness, 2.0 * made.problem.roughness)
+    ]
+    assert sticking[0] > sticking[1] > sticking[2] > 0.0
+
+
+def test_edges_without_pressure():
+    """Cells that the pressure leaves out are neither nan nor infinitely soft, with cohesion too."""
+    made = contact(B, columns=12, rows=12, roughness=1e-4)
+    pressure = made.pressure.copy()
+    pressure[:, :6] = 0.0
+    L = rough_compliance(made.grid, pressure, 1e-4)
+    assert np.isfinite(L).all()
+    assert L.max() == pytest.approx(1e-4 / (1e-6 * pressure[made.grid.fraction == 1.0].max()), rel=0.2)
+    sticky = replace(made.problem, friction=FrictionLaw(coefficient=MU, cohesion=0.1 * P0))
+    assert math.isfinite(kalker(rolling_contact(sticky, columns=12, rows=12), xi=1e-3).force)
