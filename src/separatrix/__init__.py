@@ -10,17 +10,22 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer bearing check map rank restitution sensitivity simulate stability sweep traction",
+    "api": "Answer ContactCases bearing check map rank restitution sensitivity simulate solve_contact "
+    "stability sweep traction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
     "chain.contacts": "BearingState RaceContact RaceTraction",
     "chain.creep": "Creep contact_creep",
     "chain.equilibrium": "Equilibrium contact",
-    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus race_curvatures",
+    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
     "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
     "chain.solution": "Solution solve",
+    "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
+    "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "contact_file": "read_contact",
+    "contact_file.question": "ContactQuestion rolling_cases",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
     "friction.logs": "read_log",

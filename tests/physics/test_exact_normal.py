@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from exact_cases import body
+from exact_cases import MU, body, kalker
 from scipy.optimize import brentq
 
-from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.hertz import contact_ellipse, ellipse_of_curvatures
+from separatrix.chain.traction.exact.bound import FrictionLaw
+from separatrix.chain.traction.exact.contact import ContactProblem, gap_contact, rolling_contact
 from separatrix.chain.traction.exact.flexibility import flexibility, half_space_flexibility
 from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid
 from separatrix.chain.traction.exact.images import pair_images
@@ -158,3 +160,28 @@ def test_a_gap_that_is_not_a_number_is_refused():
     """In one line."""
     with pytest.raises(InputError, match=r"press: gap must be finite"):
         press(np.full((8, 8), np.nan), (0.1, 0.1), pair_images(RIGID, body(0.3)), 1.0)
+
+
+def test_a_gap_gives_the_contact_of_its_ellipse():
+    """The gap of an ellipse on 40 cells across it: forces and largest pressure as on the ellipse, to 1 %.
+
+    The share of the load on the cells at the outline is (2/40)^1.5 = 1 %.
+    """
+    hertz = ellipse_of_curvatures(1e-3, 1.0, 0.3, 1.0 / (1.0 - 0.25))  # E* of G = 1
+    problem = ContactProblem(
+        ellipse=hertz, bodies=(body(0.25), body(0.25)), friction=FrictionLaw(coefficient=MU)
+    )
+    (x, dx), (y, dy) = (
+        (2.2 * h / 44 * np.arange(-21.5, 22.0), 2.2 * h / 44) for h in (hertz.semi_minor, hertz.semi_major)
+    )
+    gap = 0.5 * (x * x + dx * dx / 12.0) + 0.5 * 0.3 * (y * y + dy * dy / 12.0)[:, None]
+    made = gap_contact(problem, gap, along=x, across=y, spacing=(dy, dx))
+    xi = 0.5 * 2.0 * MU * hertz.max_pressure / hertz.contact_modulus
+    other = rolling_contact(problem)
+    for one, two in zip(
+        *([kalker(at, xi).force, kalker(at, 0.0, xi).lateral_force] for at in (made, other)), strict=True
+    ):
+        assert one == pytest.approx(two, rel=1e-2)
+    assert made.problem.ellipse.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-2)
+    with pytest.raises(InputError, match="must reach beyond the contact on all sides"):
+        gap_contact(problem, gap[:, 8:], along=x[8:], across=y, spacing=(dy, dx))

@@ -13,6 +13,8 @@ from separatrix.chain.hertz import (
     axis_ratio,
     contact_ellipse,
     contact_modulus,
+    ellipse_of_axes,
+    ellipse_of_curvatures,
     elliptic_integrals,
     race_curvatures,
 )
@@ -137,3 +139,15 @@ def test_no_load_gives_an_ellipse_of_no_size() -> None:
     found = contact_ellipse(0.0, 200.0, 10.0, 1e11)
     for name in ("semi_major", "semi_minor", "max_pressure", "approach", "stiffness"):
         assert getattr(found, name) == 0.0, name
+
+
+@pytest.mark.parametrize("curvatures", [(300.0, 10.0), (10.0, 300.0), (50.0, 50.0), (1000.0, 1.0)])
+def test_axes_give_back_the_curvatures(curvatures):
+    """From curvatures to half lengths and back, longer along or across rolling; to rounding."""
+    found = ellipse_of_curvatures(200.0, *curvatures, 1.1e11)
+    again = ellipse_of_axes(200.0, found.semi_minor, found.semi_major, 1.1e11)
+    assert (again.curvature_rolling, again.curvature_transverse) == pytest.approx(curvatures, rel=1e-9)
+    assert (again.max_pressure, again.approach) == pytest.approx(
+        (found.max_pressure, found.approach), rel=1e-9
+    )
+    assert (found.semi_minor < found.semi_major) == (curvatures[0] > curvatures[1])

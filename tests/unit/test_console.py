@@ -25,10 +25,11 @@ from separatrix.notes import noted_warnings
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "stability", "map", "simulate", "rank"),
-    *("sensitivity", "sweep", "tribometer", "compare", "materials"),
+    *("sensitivity", "sweep", "tribometer", "contact", "compare", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),
+    "contact": ("--json", "--out", "--quiet"),
     "compare": ("--json", "--out", "--quiet"),
     "tribometer": ("--json", "--out"),
     "materials": ("list", "show", "check", "add"),

@@ -147,6 +147,46 @@ def axis_ratio(curvature_ratio: Ratio) -> Ratio:
     return float(ellipse_shape(curvature_ratio, 0.0)[0])
 
 
+def curvature_ratio(axis_ratio: Ratio) -> Ratio:
+    """Ratio R_y/R_x >= 1 for an ellipse of this b/a, in (0, 1] [-]; the inverse of `axis_ratio`."""
+    _, D, N = elliptic_integrals(axis_ratio)
+    return N / (axis_ratio**2 * D)
+
+
+def ellipse_of_axes(load: Newton, rolling: Metre, lateral: Metre, modulus: Pascal) -> ContactEllipse:
+    """Hertz contact whose half lengths along rolling and across are known [m]; either may be the longer.
+
+    The curvatures of the gap are those that give these half lengths under this load [N] with this pair
+    modulus [Pa].
+    """
+    short, long = min(rolling, lateral), max(rolling, lateral)
+    k = short / long
+    K, D, _ = elliptic_integrals(k)
+    flat = 3.0 * load * D / (math.pi * modulus * long**3)
+    curved = flat * curvature_ratio(k)
+    p0 = 1.5 * load / (math.pi * short * long)
+    return ContactEllipse(
+        load=load,
+        semi_major=lateral,
+        semi_minor=rolling,
+        max_pressure=p0,
+        approach=p0 * short * K / modulus,
+        curvature_rolling=curved if rolling <= lateral else flat,
+        curvature_transverse=flat if rolling <= lateral else curved,
+        contact_modulus=modulus,
+    )
+
+
+def ellipse_of_curvatures(
+    load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal
+) -> ContactEllipse:
+    """As `contact_ellipse` of one contact; the gap may curve less along rolling than across [1/m]."""
+    if rolling >= transverse:
+        return contact_ellipse(load, rolling, transverse, modulus)
+    turned = contact_ellipse(load, transverse, rolling, modulus)
+    return ellipse_of_axes(load, turned.semi_major, turned.semi_minor, modulus)
+
+
 def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> None:
     where = "contact_ellipse:"
     if not 0.0 <= load < math.inf:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from separatrix.cli import contact as one_contact
 from separatrix.cli import materials
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
@@ -87,6 +88,18 @@ def _compare(
     return compare(first, second, folder(out), as_json=json)
 
 
+def _contact(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help=one_contact.FILE_HELP)],
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=one_contact.OUT_HELP)] = None,
+    quiet: Quiet = False,
+) -> int:
+    def work() -> int:
+        return one_contact.contact(path, folder(out), as_json=json, quiet=quiet)
+
+    return _interruptible(work, "no file was written.")
+
+
 MAP_HELP = "Column map (TOML) for what the logs do not state."
 PLOTS_HELP = "Folder of a page for each test [default: beside the friction file]."
 RUN_IN_HELP = 'Where running-in ends, for instance "200 m" [default: found].'
@@ -143,6 +156,7 @@ def _application() -> typer.Typer:
         epilog="What is read is shown before it is trusted: without --out nothing is written. A file that "
         "exists is never overwritten.",
     )(_tribometer)
+    app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
@@ -158,7 +172,9 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(["new", *(verb.name for verb in VERBS), "tribometer", "compare", "materials"])
+        verbs = ", ".join(
+            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "materials"]
+        )
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
-from separatrix.figures import chain, map, ranking, sensitivity, simulation, stability
+from separatrix.figures import chain, contact, map, ranking, sensitivity, simulation, stability
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
 __all__ = ["draw", "plot", "save", "save_all"]
@@ -24,6 +24,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
     "sweep": map.sweep_figures,
+    "contact": contact.figures,
 }
 """Verb -> what yields its pictures, each with the name of its file."""
 

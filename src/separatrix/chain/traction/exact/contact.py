@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
@@ -24,9 +24,10 @@ from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells, rough_compliance
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body
-from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure
+from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure, pressed_grid
+from separatrix.chain.traction.exact.images import pair_images
 from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
-from separatrix.chain.traction.exact.normal import film_strain, pressed_contact
+from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
 from separatrix.chain.traction.exact.operator import Operator, rolling_operator
 from separatrix.chain.traction.exact.precondition import SLIP
 from separatrix.chain.traction.profile import Profile
@@ -100,13 +101,15 @@ Vectors = Annotated[Array, "Pa", ("direction", "row", "column")]
 class ContactSolution:
     """Tractions and slip of one contact, and what they sum to; forces act on the ball.
 
-    traction, slip : along x and y; the tractions of cells that the outline cuts are averaged over the whole
-    cell; slip is per rolling speed; stick : cells without slip; stick_share : of the contact's area;
-    dissipation : power per rolling speed; iterations, residual : of the tractions.
+    traction, slip : along x and y; pressure and tractions of cells that the outline cuts are averaged over
+    the whole cell; fraction : share of each cell inside the contact; slip is per rolling speed; stick : cells
+    without slip; stick_share : of the contact's area; dissipation : power per rolling speed; iterations,
+    residual : of the tractions.
     """
 
     along: Annotated[Array, "m", ("column",)]
     across: Annotated[Array, "m", ("row",)]
+    fraction: Annotated[Array, "-", ("row", "column")]
     pressure: Field
     traction: Vectors
     slip: Annotated[Array, "-", ("direction", "row", "column")]
@@ -155,6 +158,39 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
     return contact_on(problem, grid, pressure)
+
+
+def gap_contact(
+    problem: ContactProblem, gap: Array, *, along: Array, across: Array, spacing: tuple[Metre, Metre]
+) -> RollingContact:
+    """Put bodies of any undeformed gap, a cell mean, shape (row, column) [m], on the cells of that gap.
+
+    `spacing` is the width of a row and of a column [m]; a single row is a contact in the plane, of the row's
+    width. The pressure is solved; of the ellipse of the problem only the load and the pair modulus count.
+
+    Raises
+    ------
+    InputError
+        A gap that is not finite or whose cells end inside the contact, or as of `rolling_contact`.
+    ConvergenceError
+        The pressure did not settle.
+    """
+    _check_layers(problem)
+    pressing = press(gap, spacing, pair_images(*problem.bodies), problem.ellipse.load)
+    p = pressing.pressure
+    if p[:, [0, -1]].any() or (across.size > 1 and p[[0, -1]].any()):
+        cure = "Give more cells around it."
+        raise InputError("gap_contact: gap", "must reach beyond the contact on all sides", cure=cure)
+    grid, pressure = pressed_grid(along, across, p, row_width=spacing[0])
+    b, a = extent(grid)
+    found = replace(
+        problem.ellipse,
+        semi_minor=b,
+        semi_major=a,
+        max_pressure=float(pressure.max()),
+        approach=pressing.approach,
+    )
+    return contact_on(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
 
 
 def contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
@@ -309,6 +345,7 @@ def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | No
     return ContactSolution(
         along=grid.x,
         across=grid.y,
+        fraction=fraction,
         pressure=contact.pressure,
         traction=p,
         slip=slip,

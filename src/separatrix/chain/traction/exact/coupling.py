@@ -26,6 +26,8 @@ LARGEST_COUNT = 4096  # of points along a side
 
 def pressure_slip(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Array:
     """W_c at the cell centres, shape (2, row, column) [-]."""
+    if grid.y.size == 1:
+        return _in_the_plane(grid, pressure, bodies)
     contact = np.array([grid.dx * grid.x.size, grid.dy * grid.y.size])
     far = float(_difference(np.zeros(1), bodies)[0])
     # between unlike bases the field of a dipole reaches far: a square box, else one of the contact's shape
@@ -43,6 +45,18 @@ def pressure_slip(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Arr
     places = np.meshgrid((grid.y - y[0]) / dy, (grid.x - x[0]) / dx, indexing="ij")
     fields = [fft.irfft2(wave, s=(ny, nx), workers=1) for wave in (along, across)]
     return np.array([ndimage.map_coordinates(f, places, order=1) for f in fields])
+
+
+def _in_the_plane(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Array:
+    """W_c = F^-1[dc_rz p] of a contact in the plane, shape (2, 1, column) [-]."""
+    width = BOX * grid.dx * grid.x.size
+    count = fft.next_fast_len(int(BOX * FINE[0]), real=True)
+    x = width / count * (np.arange(count) - 0.5 * count) + grid.x.mean()
+    places = np.append(np.append(grid.x[0] - grid.dx, grid.x), grid.x[-1] + grid.dx)
+    p = np.sqrt(np.interp(x, places, np.pad(pressure[0] ** 2, 1)))
+    k = 2.0 * np.pi * fft.rfftfreq(count, width / count)
+    slip = fft.irfft(fft.rfft(p) * _difference(k, bodies), n=count)
+    return np.stack([np.interp(grid.x, x, slip)[None], np.zeros((1, grid.x.size))])
 
 
 def _difference(k: Array, bodies: tuple[Body, Body]) -> Array:

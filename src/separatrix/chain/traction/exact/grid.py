@@ -80,8 +80,12 @@ def elliptic_pressure(grid: Grid, *, semi_minor: Metre, semi_major: Metre, max_p
     return np.asarray(mean * (2.0 / 3.0 * math.pi * a * b * p0 / (mean.sum() * grid.cell_area)))
 
 
-def pressed_grid(x: Array, y: Array, pressure: Array, refined: int = 1) -> tuple[Grid, Array]:
+def pressed_grid(
+    x: Array, y: Array, pressure: Array, refined: int = 1, *, row_width: Metre = 0.0
+) -> tuple[Grid, Array]:
     """Grid of any one patch of contact, cropped to it, with its pressure, shape (row, column) [Pa].
+
+    A single row, of a contact in the plane, needs its width.
 
     Each cell is made of `refined` x `refined` cells of the pressure. Towards the end of a row of these the
     pressure falls with the root of the distance, under a thin soft film with the distance itself: the end is
@@ -97,14 +101,14 @@ def pressed_grid(x: Array, y: Array, pressure: Array, refined: int = 1) -> tuple
     fraction = np.where((p > 0.0) & (shares > SMALLEST_FRACTION), shares, 0.0)
     rows, columns = (np.flatnonzero((fraction > 0.0).any(axis=axis)) for axis in (1, 0))
     window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    dx, dy = float(x[1] - x[0]), float(y[1] - y[0])
+    dx, dy = float(x[1] - x[0]), float(y[1] - y[0]) if y.size > 1 else row_width
     kept = np.where(fraction > 0.0, p, 0.0)[window]
     grid = Grid(x=x[window[1]], y=y[window[0]], dx=dx, dy=dy, fraction=fraction[window])
     return grid, kept * (p.sum() / kept.sum())
 
 
 def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
-    """Ends of the contact in one row [m]."""
+    """Ends of the contact in one row, from its pressure [m]."""
     inside = np.flatnonzero(pressure)
     if inside.size == 0:
         return 0.0, 0.0

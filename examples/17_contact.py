@@ -1,0 +1,34 @@
+"""One contact without a bearing: force against creep with the exact theory, bare and coated."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import separatrix
+
+steel = separatrix.solid(205e9, 0.25)
+film = separatrix.Layer(thickness=2e-6, solid=separatrix.solid(8e9, 0.4))
+ball = separatrix.Body(base=steel)
+races = {"bare": ball, "film of 2 um": separatrix.Body(base=steel, layers=(film,))}
+
+modulus = steel.shear_modulus / (1.0 - steel.poisson_ratio)  # E* of two bodies of one steel
+radius = 10e-3
+ellipse = separatrix.contact_ellipse(150.0, 1 / radius, 1 / radius, modulus)  # a ball of 10 mm on a flat
+friction = separatrix.FrictionLaw(coefficient=0.1)
+creeps = np.append(1e-6, np.linspace(2e-4, 3e-3, 8))
+
+figure, axes = plt.subplots(layout="constrained")
+found = {}
+for name, race in races.items():
+    problem = separatrix.ContactProblem(ellipse=ellipse, bodies=(ball, race), friction=friction)
+    asked = separatrix.rolling_cases(problem, longitudinal=creeps, columns=28, rows=28, title=name)
+    found[name] = separatrix.solve_contact(asked)
+    data = found[name].to_xarray()
+    axes.plot(100 * creeps, -data["force"] / data["load"], "o-", label=name)
+    last = found[name].cases[4].solution
+    print(f"{name}: {100 * last.stick_share:.0f} % of the area sticks at a creep of {100 * creeps[4]:.2f} %")
+axes.set(xlabel="creep [%]", ylabel="traction coefficient [-]")
+axes.legend()
+
+area = ellipse.semi_major * ellipse.semi_minor
+# Kalker's C11 of a circle
+c11 = -found["bare"].cases[0].solution.force / (steel.shear_modulus * area * creeps[0])

@@ -1,0 +1,227 @@
+r"""Cases of one rolling contact, and their solutions.
+
+Signs are those of `separatrix.chain.traction.exact`: forces act on body 1, spin s adds s y to the
+longitudinal creep (Kalker's spin is phi = -s), and a body 1 that is the faster has a force < 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from separatrix.chain.traction.exact.contact import (
+    ContactProblem,
+    ContactSolution,
+    RollingContact,
+    gap_contact,
+    rolling_contact,
+)
+from separatrix.chain.traction.exact.slope import RaceSlope
+from separatrix.errors import InputError
+from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
+
+
+class Motion(Enum):
+    """What the bodies do: roll steadily, shift without rolling, or roll from a start."""
+
+    ROLLING = "rolling"
+    SHIFT = "shift"
+    TRANSIENT = "transient"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Gap:
+    """Undeformed gap on given cells: centres and widths [m], cell means of shape (row, column) [m]."""
+
+    along: Annotated[Array, "m", ("column",)]
+    across: Annotated[Array, "m", ("row",)]
+    row_width: Metre
+    column_width: Metre
+    height: Annotated[Array, "m", ("row", "column")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContactSetup:
+    """What touches what on which grid: cells over the Hertz ellipse, or those of a gap."""
+
+    problem: ContactProblem
+    columns: int = 40
+    rows: int = 40
+    gap: Gap | None = None
+
+    @property
+    def cell_count(self) -> int:
+        """Cells of the grid."""
+        return self.columns * self.rows if self.gap is None else self.gap.height.size
+
+    def contact(self) -> RollingContact:
+        """Pressure and operator; raises as `rolling_contact` and `gap_contact`."""
+        gap = self.gap
+        if gap is None:
+            return rolling_contact(self.problem, columns=self.columns, rows=self.rows)
+        widths = gap.row_width, gap.column_width
+        return gap_contact(self.problem, gap.height, along=gap.along, across=gap.across, spacing=widths)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContactCase:
+    """One motion of one contact.
+
+    The creeps are of rolling, the shifts of a shift; `distance` is rolled in a transient, in whole columns,
+    at least one. `continues`: it starts from the tractions of the case before, not from none. `wanted` are
+    forces along and across over that of sliding; where one is given, its creep or shift is found. `turned`:
+    the bodies roll towards -x, and the gap of the setup has x reversed.
+    """
+
+    number: int
+    setup: ContactSetup
+    motion: Motion
+    longitudinal_creep: Ratio = 0.0
+    lateral_creep: Ratio = 0.0
+    spin: PerMetre = 0.0
+    curvature: PerMetre2 = 0.0
+    longitudinal_shift: Metre = 0.0
+    lateral_shift: Metre = 0.0
+    turn: Radian = 0.0
+    distance: Metre = 0.0
+    continues: bool = False
+    wanted: tuple[Ratio | None, Ratio | None] = (None, None)
+    turned: bool = False
+
+    def moved(self, longitudinal: float, lateral: float) -> ContactCase:
+        """The case with other creeps, or other shifts."""
+        if self.motion is Motion.SHIFT:
+            return replace(self, longitudinal_shift=longitudinal, lateral_shift=lateral)
+        return replace(self, longitudinal_creep=longitudinal, lateral_creep=lateral)
+
+    def reversed(self) -> ContactCase:
+        """The same case with x the other way."""
+        along, across = self.wanted
+        return replace(
+            self,
+            longitudinal_creep=0.0 - self.longitudinal_creep,
+            spin=0.0 - self.spin,
+            curvature=0.0 - self.curvature,
+            wanted=(None if along is None else 0.0 - along, across),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactQuestion:
+    """Cases in the order of their file.
+
+    `slope` asks for the slope of the traction curve at free rolling, under the spin of the first case;
+    `of_contact`: the answer is printed in the units and signs of CONTACT's users.
+    """
+
+    name: str
+    title: str
+    cases: tuple[ContactCase, ...]
+    slope: bool = False
+    of_contact: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolvedCase:
+    """A case with its solution, or why it has none; a creep or shift that was found is in the case."""
+
+    case: ContactCase
+    solution: ContactSolution | None
+    reason: str = ""
+    residual: Ratio | None = None
+
+    @property
+    def sliding_share(self) -> tuple[Ratio, Ratio] | None:
+        """Forces along and across over the friction coefficient times the load, if it is one number > 0."""
+        mu = self.case.setup.problem.friction.coefficient
+        if self.solution is None or not isinstance(mu, float) or mu == 0.0:
+            return None
+        sliding = mu * self.solution.load
+        return self.solution.force / sliding, self.solution.lateral_force / sliding
+
+    @property
+    def cells(self) -> tuple[int, int] | None:
+        """Cells that stick and cells that slip; those that the outline cuts count as whole."""
+        if self.solution is None:
+            return None
+        stick = int(self.solution.stick.sum())
+        return stick, int((self.solution.pressure > 0.0).sum()) - stick
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactAnswer:
+    """The solved cases of a contact file; the slope if it was wanted, or why there is none."""
+
+    question: ContactQuestion
+    cases: tuple[SolvedCase, ...]
+    slope: RaceSlope | None = None
+    slope_reason: str = ""
+
+
+def rolling_cases(
+    problem: ContactProblem,
+    *,
+    longitudinal: ArrayLike = 0.0,
+    lateral: ArrayLike = 0.0,
+    spin: ArrayLike = 0.0,
+    curvature: ArrayLike = 0.0,
+    columns: int = 40,
+    rows: int = 40,
+    slope: bool = False,
+    title: str = "contact",
+) -> ContactQuestion:
+    """Steady rolling of one contact under a batch of creeps, which are broadcast to each other.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        Ellipse, bodies with their layers, friction; its ellipse from `contact_ellipse`, or from
+        `ellipse_of_axes` where the half lengths are known.
+    longitudinal, lateral : array_like
+        Creep ratios [-].
+    spin, curvature : array_like
+        Coefficients of y and y^2 in the longitudinal creep [1/m, 1/m2]; Kalker's spin is -spin.
+    columns, rows : int
+        Cells along rolling and across.
+    slope : bool
+        Also the slope of the traction curve at free rolling, under the spin and curvature of the first case.
+    title : str
+        Heading of the text and the figures.
+
+    Raises
+    ------
+    InputError
+        Creeps that cannot be broadcast, that are not finite, or a ratio above 1e3.
+    """
+    given = {"longitudinal": longitudinal, "lateral": lateral, "spin": spin, "curvature": curvature}
+    arrays = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in given.items()}
+    for name, values in arrays.items():
+        if not np.isfinite(values).all():
+            raise InputError(f"rolling_cases: {name}", "must be finite", "nan or inf")
+    try:
+        together = np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shapes = ", ".join(str(values.shape) for values in arrays.values())
+        raise InputError(
+            "rolling_cases", "needs creeps that can be broadcast to each other", shapes
+        ) from None
+    setup = ContactSetup(problem=problem, columns=columns, rows=rows)
+    cases = tuple(
+        ContactCase(
+            number=number,
+            setup=setup,
+            motion=Motion.ROLLING,
+            longitudinal_creep=xi,
+            lateral_creep=eta,
+            spin=s,
+            curvature=q,
+        )
+        for number, (xi, eta, s, q) in enumerate(
+            zip(*(one.ravel().tolist() for one in together), strict=True), 1
+        )
+    )
+    return ContactQuestion(name=title, title=title, cases=cases, slope=slope)

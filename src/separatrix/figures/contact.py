@@ -1,0 +1,308 @@
+"""Figures of one rolling contact: tractions over its area, slip and dissipated power, and curves of cases.
+
+x points along rolling, and material enters at the right. Each function of an area takes a `ContactSolution`,
+or anything with its fields.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from separatrix.figures.style import BLUE, GREY, PAGE, VERMILION, Look, canvas, colour_bar
+from separatrix.units import Array
+
+MOST_DRAWN = 4
+"""Cases of a file whose areas are drawn, evenly among all."""
+
+ARROWS = 13, 17
+"""Arrows along and across at most."""
+
+LONGEST = 2.5
+"""Ratio of the contact's sides above which its axes have different scales."""
+
+
+class Area(Protocol):
+    """Fields over one contact, as a `ContactSolution` has them."""
+
+    @property
+    def along(self) -> Array:
+        """Cell centres along rolling, shape (column,) [m]."""
+
+    @property
+    def across(self) -> Array:
+        """Cell centres across, shape (row,) [m]."""
+
+    @property
+    def fraction(self) -> Array:
+        """Share of each cell inside the contact, shape (row, column) [-]."""
+
+    @property
+    def pressure(self) -> Array:
+        """Shape (row, column) [Pa]."""
+
+    @property
+    def traction(self) -> Array:
+        """Shape (direction, row, column) [Pa]."""
+
+    @property
+    def slip(self) -> Array:
+        """Per rolling speed, shape (direction, row, column) [-]; of a shift a distance [m]."""
+
+    @property
+    def stick(self) -> Any:
+        """Cells without slip, shape (row, column)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SavedArea:
+    """Fields of one case of a dataset."""
+
+    along: Array
+    across: Array
+    fraction: Array
+    pressure: Array
+    traction: Array
+    slip: Array
+    stick: Any
+
+
+def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the pictures of `contact`."""
+    if "pressure" in data:
+        solved = np.flatnonzero(np.isfinite(data["force"].values))
+        drawn = solved[np.unique(np.linspace(0, solved.size - 1, MOST_DRAWN).round().astype(int))]
+        for i in drawn.tolist():
+            area, name = saved_area(data, i), f"case-{int(data['case'][i])}"
+            is_shift = str(data["motion"].values[i]) == "shift"
+            entry = "" if is_shift else "left" if data["turned"].values[i] else "right"
+            if area.across.size > 1:
+                yield f"contact-tractions-{name}", tractions(area, entry=entry)
+                yield f"contact-slip-{name}", slip_and_power(area, entry=entry, is_shift=is_shift)
+            else:
+                yield f"contact-tractions-{name}", in_the_plane(area, entry=entry)
+    numbers, counts = np.unique(data["contact"].values, return_counts=True)
+    if counts.max() > 2:
+        yield "contact-forces", forces(data.isel(case=data["contact"].values == numbers[counts.argmax()]))
+
+
+def saved_area(data: xr.Dataset, i: int) -> SavedArea:
+    """Fields of case number i of a dataset, without what fills up a smaller grid."""
+    case = data.isel(case=i)
+    columns = np.isfinite(case["along"].values)
+    rows = np.isfinite(case["across"].values)
+    fields = {
+        name: case[name].values[..., rows, :][..., columns]
+        for name in ("fraction", "pressure", "traction", "slip")
+    }
+    stick = case["stick"].values[rows][:, columns] > 0.5
+    return SavedArea(
+        along=case["along"].values[columns], across=case["across"].values[rows], stick=stick, **fields
+    )
+
+
+def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = None) -> Figure:
+    """Return arrows of the tractions over their size, with the area of stick hatched.
+
+    Parameters
+    ----------
+    area : ContactSolution or Area
+        Of at least two rows.
+    entry : str
+        Where material enters, right or left; empty where it does not.
+    stick_line : ndarray, optional
+        End of stick along x of another theory for each row, shape (row,) [m]; NaN where a row slips.
+    """
+    figure, axes = canvas(3.9, 3.3)
+    size = 1e-6 * np.hypot(*area.traction) / _share(area)
+    mesh = _map(axes, area, size, "viridis", entry)
+    colour_bar(mesh, [axes], r"traction $|\tau|$ [MPa]", aspect=30)
+    _stick(axes, area)
+    _arrows(axes, area, 1e-6 * area.traction)
+    if stick_line is not None:
+        axes.plot(1e3 * stick_line, 1e3 * area.across, color=VERMILION, ls=(0, (4, 2)), label="strips")
+        axes.legend(loc="upper left", fontsize=6.5)
+    return figure
+
+
+def slip_and_power(area: Area, *, entry: str = "right", is_shift: bool = False) -> Figure:
+    """Return maps of the slip and of the power that it dissipates; of a shift of distance and work."""
+    figure, (left, right) = canvas(PAGE, 3.1, ncols=2)
+    slip = np.hypot(*area.slip)
+    lost = -(area.slip * area.traction).sum(axis=0) / _share(area)
+    if is_shift:
+        shown = (1e6 * slip, "slip distance [\N{MICRO SIGN}m]"), (1e-3 * lost, "work per area [kJ/m$^2$]")
+    else:
+        shown = (1e2 * slip, "slip over rolling speed [%]"), (1e-6 * lost, _POWER)
+    for axes, letter, name, (field, label) in zip(
+        (left, right), "ab", ("Slip", "Work" if is_shift else "Dissipated power"), shown, strict=True
+    ):
+        mesh = _map(axes, area, field, "magma_r" if axes is right else "cividis", entry)
+        _stick(axes, area, "black" if axes is right else "white")
+        colour_bar(mesh, [axes], label, aspect=30)
+        axes.set_title(f"{letter}  {name}")
+    _arrows(left, area, area.slip)
+    return figure
+
+
+_POWER = "power per area and rolling speed [MPa]"
+
+
+def in_the_plane(area: Area, *, entry: str = "right") -> Figure:
+    """Return pressure and traction along the one row of a contact in the plane."""
+    figure, (upper, lower) = canvas(3.5, 3.4, nrows=2, sharex=True)
+    x = 1e3 * area.along
+    upper.plot(x, 1e-6 * area.pressure[0], color=GREY)
+    upper.set(ylabel="pressure [MPa]", ylim=(0, None))
+    lower.axhline(0.0, color=GREY, lw=0.5)
+    for i, (colour, name) in enumerate(((BLUE, "along"), (VERMILION, "across"))):
+        if area.traction[i].any():
+            lower.plot(x, 1e-6 * area.traction[i, 0], color=colour, label=f"{name} rolling")
+    half = 0.5 * float(x[1] - x[0])
+    for axes in (upper, lower):
+        for place, sticks in zip(x, area.stick[0], strict=True):
+            if sticks:
+                axes.axvspan(place - half, place + half, color=BLUE, alpha=0.12, lw=0)
+    lower.locator_params(axis="x", nbins=5)
+    lower.set(xlabel=_along(entry), ylabel="traction [MPa]")
+    upper.set_title("stick shaded", fontsize=7.5)
+    return figure
+
+
+def forces(data: xr.Dataset) -> Figure:
+    """Return forces over load and the share of stick against what varies from case to case."""
+    figure, (left, right) = canvas(PAGE, 2.7, ncols=2)
+    name, scale, label = _abscissa(data)
+    x = scale * (np.cumsum(data["distance"].values) if name == "distance" else data[name].values)
+    order = np.argsort(x, kind="stable")
+    left.axhline(0.0, color=GREY, lw=0.5)
+    for key, colour, marker, words in (
+        ("force", BLUE, "o", "along rolling"),
+        ("lateral_force", VERMILION, "s", "across"),
+    ):
+        share = (data[key] / data["load"]).values
+        left.plot(x[order], share[order], color=colour, marker=marker, ms=3, label=words)
+    right.plot(x[order], 100.0 * data["stick_share"].values[order], color=BLUE, marker="o", ms=3)
+    left.set(title="a  Forces on body 1", xlabel=label, ylabel="force over load [-]")
+    right.set(title="b  Stick", xlabel=label, ylabel="area of stick [%]", ylim=(-3, 103))
+    left.legend(loc="best", handlelength=1.8)
+    return figure
+
+
+def _abscissa(data: xr.Dataset) -> tuple[str, float, str]:
+    """Name, scale and label of what varies: rolled distance, or the first input that is not constant."""
+    names = {
+        "longitudinal_creep": (1e2, "longitudinal creep [%]"),
+        "lateral_creep": (1e2, "lateral creep [%]"),
+        "spin": (1e-3, "spin [1/mm]"),
+        "longitudinal_shift": (1e6, "longitudinal shift [\N{MICRO SIGN}m]"),
+        "lateral_shift": (1e6, "lateral shift [\N{MICRO SIGN}m]"),
+        "turn": (1e3, "turn [mrad]"),
+        "curvature": (1e-6, "curvature of the creep [1/mm$^2$]"),
+    }
+    if np.isfinite(data["distance"].values).all():
+        return "distance", 1e3, "distance rolled [mm]"
+    for name, (scale, label) in names.items():
+        values = data[name].values
+        if np.isfinite(values).all() and np.ptp(values) > 0.0:
+            return name, scale, label
+    return "case", 1.0, "case"
+
+
+def _along(entry: str) -> str:
+    return f"x along rolling [mm]\nmaterial enters at the {entry}" if entry else "x [mm]"
+
+
+def _edges(centres: Array) -> Array:
+    half = 0.5 * (centres[1] - centres[0])
+    return 1e3 * np.append(centres - half, centres[-1] + half)
+
+
+def outline(area: Area) -> Array:
+    """Places around the contact, shape (place, 2) [m], from what of the cells at the row ends is inside."""
+    x, f = area.along, area.fraction
+    dx, dy = float(x[1] - x[0]), float(area.across[1] - area.across[0])
+    rows = []
+    for y, share in zip(area.across, f, strict=True):
+        inside = np.flatnonzero(share)
+        if inside.size > 1:
+            first, last = inside[0], inside[-1]
+            rows.append((y, x[first] + (0.5 - share[first]) * dx, x[last] + (share[last] - 0.5) * dx))
+    low, high = rows[0], rows[-1]
+    first = [(0.5 * (low[1] + low[2]), low[0] - 0.5 * dy)]
+    last = [(0.5 * (high[1] + high[2]), high[0] + 0.5 * dy)]
+    right = [(end, y) for y, _, end in rows]
+    left = [(start, y) for y, start, _ in rows[::-1]]
+    return np.array([*first, *right, *last, *left])
+
+
+def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> Any:
+    """Colours over the contact, its outline, and axes that show it large."""
+    around = 1e3 * outline(area)
+    patch = Polygon(around, closed=True, fill=False, lw=0.9, ec="black", joinstyle="round")
+    mesh = axes.pcolormesh(
+        _edges(area.along), _edges(area.across), field, cmap=colours, vmin=0.0, rasterized=True
+    )
+    axes.add_patch(patch)
+    mesh.set_clip_path(patch)
+    (x0, y0), (x1, y1) = around.min(axis=0), around.max(axis=0)
+    wide, high = x1 - x0, y1 - y0
+    axes.set(xlim=(x0 - 0.07 * wide, x1 + 0.07 * wide), ylim=(y0 - 0.07 * high, y1 + 0.07 * high))
+    ratio = max(high / wide, wide / high)
+    if ratio <= LONGEST:
+        axes.set_aspect("equal", adjustable="datalim")
+    note = "" if ratio <= LONGEST else "; x and y to different scales"
+    axes.set(xlabel=_along(entry) + note, ylabel="y across [mm]")
+    axes.locator_params(axis="x", nbins=6)
+    return mesh
+
+
+def _share(area: Area) -> Array:
+    """Share of each cell inside, 1 outside: fields of cut cells are averages over whole cells."""
+    return np.where(area.fraction > 0.0, area.fraction, 1.0)
+
+
+def _stick(axes: Axes, area: Area, colour: str = "white") -> None:
+    """Hatch the area of stick and draw its edge."""
+    inside = area.fraction > 0.0
+    if not (area.stick & inside).any() or not (~area.stick & inside).any():
+        axes.set_title("no slip" if area.stick.any() else "slip everywhere", fontsize=7.5, loc="right")
+        return
+    x, y = 1e3 * area.along, 1e3 * area.across
+    sticks = area.stick.astype(float)
+    for row, within in zip(sticks, inside, strict=True):  # beyond the outline as at it: no edge there
+        if within.any():
+            row[:] = np.interp(np.arange(row.size), np.flatnonzero(within), row[within])
+    patch = axes.patches[-1]
+    edge = axes.contour(x, y, sticks, levels=[0.5], colors=colour, linewidths=1.1)
+    hatched = axes.contourf(x, y, sticks, levels=[0.5, 1.5], colors="none", hatches=["////"])
+    hatched.set_edgecolor(colour)
+    hatched.set_linewidth(0.0)
+    for lines in (edge, hatched):
+        lines.set_clip_path(patch)
+    axes.set_title("hatched: stick", fontsize=7.5, loc="right")
+
+
+def _arrows(axes: Axes, area: Area, field: Array) -> None:
+    """Arrows in the middle of blocks of cells, along the field and as long as it is large."""
+    steps = [-(-n // most) for n, most in zip((area.along.size, area.across.size), ARROWS, strict=True)]
+    places = np.ix_(
+        np.arange(steps[1] // 2, area.across.size, steps[1]),
+        np.arange(steps[0] // 2, area.along.size, steps[0]),
+    )
+    u, v = field[0][places], field[1][places]
+    inside = (area.fraction[places] > 0.3) & (np.hypot(u, v) > 0.04 * np.hypot(*field).max())
+    x, y = np.meshgrid(1e3 * area.along, 1e3 * area.across)
+    if not inside.any():
+        return
+    look: Look = {"angles": "uv", "pivot": "mid", "color": "black", "width": 0.005, "headwidth": 4.5}
+    axes.quiver(
+        x[places][inside], y[places][inside], u[inside], v[inside], scale=13.0 * np.hypot(u, v).max(), **look
+    )
