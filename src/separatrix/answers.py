@@ -12,6 +12,7 @@ from separatrix.chain.contacts import BearingState
 from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
 from separatrix.chain.models import ModelComparison
+from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
@@ -45,6 +46,8 @@ class TractionAnswer:
     outer_strips: TractionCurve
     inner_exact: TractionCurve | None
     outer_exact: TractionCurve | None
+    inner_area: ExactArea | None
+    outer_area: ExactArea | None
     inner_others: tuple[TractionCurve, ...]
     outer_others: tuple[TractionCurve, ...]
     inner_shear: ShearField

@@ -31,7 +31,7 @@ from separatrix.chain.contacts import BearingState, race_track
 from separatrix.chain.film_curves import exact_films, wear_curve
 from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
-from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, shear
+from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
 from separatrix.chain.solution import Solution, solve
 from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
@@ -125,6 +125,7 @@ def traction(study: Study) -> TractionAnswer:
         warnings.simplefilter("ignore", ValidityWarning)
         inner_strips, inner_exact = curves_by_model(inner, study.traction, used.inner)
         outer_strips, outer_exact = curves_by_model(outer, study.traction, used.outer)
+        inner_area, outer_area = (exact_area(one, study.traction) for one in (inner, outer))
         comparison = compare_models(solution)
     is_exact = study.traction.model is TractionModel.EXACT
     return TractionAnswer(
@@ -137,6 +138,8 @@ def traction(study: Study) -> TractionAnswer:
         outer_strips=outer_strips,
         inner_exact=inner_exact,
         outer_exact=outer_exact,
+        inner_area=inner_area,
+        outer_area=outer_area,
         inner_others=curves_by_ratio(inner, inner_strips),
         outer_others=curves_by_ratio(outer, outer_strips),
         inner_shear=shear(inner),

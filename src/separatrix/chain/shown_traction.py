@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.chain.race_curve import RaceTrack, exact_curve, strips
-from separatrix.chain.traction import ShearField, TractionCurve, shear_field, track_of
+from separatrix.chain.race_curve import RaceTrack, exact_curve, exact_slope, strips
+from separatrix.chain.traction import ShearField, TractionCurve, exact, shear_field, track_of
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import ContactPressure, TractionModel, TractionSettings
-from separatrix.units import Ratio
+from separatrix.units import Array, Ratio
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
@@ -24,6 +24,37 @@ STRIPS = 5
 
 INCREMENTS = 101
 """Creep increments of a curve."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExactArea:
+    """The exact contact in free rolling, and where the stick of strips ends in its rows, shape (row,) [m].
+
+    NaN where a strip slips throughout; None where the strips have another ellipse.
+    """
+
+    solution: exact.ContactSolution
+    stick_line: Array | None
+
+
+def exact_area(track: RaceTrack, settings: TractionSettings) -> ExactArea | None:
+    """Fields of one race in free rolling; None if the exact contact has no answer."""
+    if track.is_idle:
+        return None
+    try:
+        found = exact_slope(track, replace(settings, model=TractionModel.EXACT)).solution
+    except (InputError, ConvergenceError):
+        return None
+    rows = found.across.size
+    whole = found.across[-1] - found.across[0] + found.across[1] - found.across[0]
+    if abs(whole - 2.0 * track.ellipse.semi_major) > 1e-9 * whole:  # not the ellipse of Hertz
+        return ExactArea(solution=found, stick_line=None)
+    field = _shear(track, rows)
+    ends = [
+        np.nan if slip[0] else x[slip.argmax()] if slip.any() else x[-1]
+        for x, slip in zip(field.along, field.slip != 0, strict=True)
+    ]
+    return ExactArea(solution=found, stick_line=np.array(ends))
 
 
 def curves_by_model(
@@ -73,7 +104,11 @@ def _saturation(track: RaceTrack, curve: TractionCurve) -> Ratio:
 
 def shear(track: RaceTrack) -> ShearField:
     """Shear in a few strips of a contact in free rolling (the paper's Fig. 6)."""
+    return _shear(track, STRIPS)
+
+
+def _shear(track: RaceTrack, strips: int) -> ShearField:
     friction, compliance = track_of(track.film, track.race, track.ellipse.semi_major)
     return shear_field(
-        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=STRIPS
+        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=strips
     )

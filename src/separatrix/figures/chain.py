@@ -10,6 +10,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from separatrix.figures.contact import SavedArea, saved_area, slip_and_power, tractions
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -21,6 +22,7 @@ from separatrix.figures.style import (
     label_lines,
     study_of,
 )
+from separatrix.units import Array
 
 RACES = (("inner", BLUE, "o"), ("outer", VERMILION, "s"))
 DASHED = (0, (4, 2))
@@ -97,6 +99,11 @@ def traction(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     yield "traction-curves", curves(data)
     if "exact_traction_coefficient" in data:
         yield "traction-models", models(data)
+    if "area_along" in data:
+        for race, *_ in RACES:
+            area, line = _area(data.sel(race=race))
+            yield f"traction-contact-{race}", tractions(area, stick_line=line)
+            yield f"traction-slip-{race}", slip_and_power(area)
     yield "traction-shear", shear(data)
 
 
@@ -122,6 +129,14 @@ def curves(data: xr.Dataset) -> Figure:
         axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
     panels[0].set_ylabel("traction coefficient $C_T$ [-]")
     return figure
+
+
+def _area(data: xr.Dataset) -> tuple[SavedArea, Array | None]:
+    """Fields of one exact contact, and the end of stick by strips."""
+    names = {str(name): str(name).removeprefix("area_") for name in data if str(name).startswith("area_")}
+    case = data[[*names]].rename(names)
+    line = case["stick_line"].values[np.isfinite(case["across"].values)]
+    return saved_area(case), line if np.isfinite(line).any() else None
 
 
 def models(data: xr.Dataset) -> Figure:

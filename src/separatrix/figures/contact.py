@@ -80,7 +80,7 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         solved = np.flatnonzero(np.isfinite(data["force"].values))
         drawn = solved[np.unique(np.linspace(0, solved.size - 1, MOST_DRAWN).round().astype(int))]
         for i in drawn.tolist():
-            area, name = saved_area(data, i), f"case-{int(data['case'][i])}"
+            area, name = saved_area(data.isel(case=i)), f"case-{int(data['case'][i])}"
             is_shift = str(data["motion"].values[i]) == "shift"
             entry = "" if is_shift else "left" if data["turned"].values[i] else "right"
             if area.across.size > 1:
@@ -93,9 +93,8 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield "contact-forces", forces(data.isel(case=data["contact"].values == numbers[counts.argmax()]))
 
 
-def saved_area(data: xr.Dataset, i: int) -> SavedArea:
-    """Fields of case number i of a dataset, without what fills up a smaller grid."""
-    case = data.isel(case=i)
+def saved_area(case: xr.Dataset) -> SavedArea:
+    """Fields of one case of a dataset, without what fills up a smaller grid."""
     columns = np.isfinite(case["along"].values)
     rows = np.isfinite(case["across"].values)
     fields = {

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from separatrix.present.arranged import arranged
 from separatrix.present.container import DAMAGE, check_container, damaged
 from separatrix.present.json import null_if_not_finite, plain
-from separatrix.present.shapes import all_notes, arranged
+from separatrix.present.shapes import all_notes
 from separatrix.present.walk import Group, Leaf, Node, Table
 from separatrix.units import Rows
 

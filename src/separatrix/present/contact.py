@@ -142,19 +142,20 @@ def _fields(solutions: Sequence[ContactSolution | None]) -> dict[str, Any]:
     )
     found: dict[str, Any] = {}
     for name, dim in (("along", "column"), ("across", "row")):
-        values = np.stack([_padded(None if x is None else getattr(x, name), (size[dim],)) for x in solutions])
+        values = np.stack([padded(None if x is None else getattr(x, name), (size[dim],)) for x in solutions])
         long = {"units": "m", "long_name": f"{'x' if name == 'along' else 'y'}, {name}"}
         found[name] = (dim, getattr(known[0], name), long) if is_one else (("case", dim), values, long)
     for name, unit in FIELDS.items():
         vector = name in ("traction", "slip")
         shape = (2,) * vector + (size["row"], size["column"])
-        values = np.stack([_padded(None if x is None else getattr(x, name), shape) for x in solutions])
+        values = np.stack([padded(None if x is None else getattr(x, name), shape) for x in solutions])
         dims = ("case", *(("direction",) if vector else ()), "row", "column")
         found[name] = (dims, values, {"units": unit} if unit else {"long_name": "1 where the surfaces stick"})
     return found
 
 
-def _padded(values: Any, shape: tuple[int, ...]) -> Any:
+def padded(values: Any, shape: tuple[int, ...]) -> Any:
+    """Values in the first places of an array of this shape, NaN in the others."""
     full = np.full(shape, np.nan)
     if values is not None:
         full[tuple(slice(n) for n in values.shape)] = values
