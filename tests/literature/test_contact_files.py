@@ -13,7 +13,10 @@ from contact_inputs import (
     BENTALL,
     CARTER,
     CATTANEO,
+    MATERIALS,
     TRACTION_CURVE,
+    case,
+    end,
     fastsim,
     from_cattaneo_to_carter,
 )
@@ -117,3 +120,31 @@ def test_rolling_the_other_way_is_the_mirror_image(solved):
     ahead, behind = (solved(from_cattaneo_to_carter(3, turned=turned))[1:] for turned in (False, True))
     creeps = [row["longitudinal_creep"] for row in ahead]
     assert [-row["longitudinal_creep"] for row in behind] == pytest.approx(creeps, rel=1e-4)
+
+
+def extra(slip, *, chi="0.0", creeps="0. 0. 0."):
+    """A rolling ellipse of 12 x 10 elements with a rigid slip of each, given at its centre [mm]."""
+    x, y = (side * (2.0 * (np.arange(n) + 0.5) / n - 1.0) for side, n in ((8.0, 12), (4.0, 10)))
+    lines = [f"{u:.12g} {v:.12g}" for b in y for u, v in (slip(a, b) for a in x)]
+    given = f"82000. {creeps}", "0.3 0.3", f"{chi} 0.4 3.", MATERIALS, "-3", "12 10 8. 4. 1."
+    return end(case("203100 022029 0000341", *given, *lines))
+
+
+@pytest.mark.parametrize("chi", ["0.0", "180d"])
+def test_extra_slip_adds_to_that_of_the_creeps(solved, chi):
+    """E = 9: slip of each element that makes up creeps and spin is as good as these; 1e-7: Newton's end."""
+    xi, eta, phi = 4e-4, -6.25e-4, 6.25e-4
+    (plain,) = solved(
+        end(
+            case(
+                "203100 022020 0000341",
+                f"82000. {xi} {eta} {phi}",
+                *("0.3 0.3", f"{chi} 0.4 3.", MATERIALS, "-3", "12 10 8. 4. 1."),
+            )
+        )
+    )
+    (alone,) = solved(extra(lambda x, y: (xi - phi * y, eta + phi * x), chi=chi))
+    (half,) = solved(extra(lambda x, y: (-phi * y, phi * x), chi=chi, creeps=f"{xi} {eta} 0."))
+    for name in ("force", "lateral_force", "spin_moment"):
+        assert alone[name] == pytest.approx(plain[name], rel=1e-7)
+        assert half[name] == pytest.approx(plain[name], rel=1e-7)

@@ -242,6 +242,25 @@ def test_too_many_cells_are_refused_before_the_work(capsys):
     assert "ball: its 500 cases must have at most 5000000 cells together; got 32768000." in said
 
 
+def test_rough_surfaces_and_the_pressure_under_tractions(capsys):
+    """Roughness softens the contact; two ways move its pressure; each as from Python."""
+    creep = ("longitudinal = [-0.001, 0, 0.001]", "longitudinal = 0.0002")
+    layer = '[[body_2.layers]]\nthickness = "0.5 um"\nshear_modulus = "3 GPa"\npoisson_ratio = 0.38\n'
+    plain = document(capsys, "contact", write(creep, (layer, "")))["cases"][0]
+    rough = write(creep, (layer, ""), ("[grid]", '[film]\nroughness = "1 um"\n[grid]'))
+    assert abs(document(capsys, "contact", rough)["cases"][0]["force"]) < 0.9 * abs(plain["force"])
+    ways = [
+        document(capsys, "contact", write(creep, ("own = false", f"own = true\ncoupled = true\n{more}")))
+        for more in ("", "two_way = true")
+    ]
+    pressures = [one["cases"][0]["max_pressure"] for one in ways]
+    assert pressures[0] != pressures[1]
+    assert pressures[1] == pytest.approx(pressures[0], rel=0.02)  # of the order of beta mu
+    one_way = write(("own = false", "own = true\ntwo_way = true"))
+    said = refused(capsys, "contact", one_way)
+    assert "two_way needs own = true, coupled = true and steady rolling" in said
+
+
 def test_every_mistake_has_its_line(capsys):
     """Three mistakes, three lines."""
     path = write(

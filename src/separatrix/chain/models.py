@@ -7,12 +7,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Annotated
 
+import numpy as np
+
 from separatrix.chain.contacts import RaceContact, race_track
 from separatrix.chain.race_curve import RaceTrack, contact_problem, exact_slope, strips
 from separatrix.chain.restitution import contact_damping, race_damping, restitution
 from separatrix.chain.solution import Solution
-from separatrix.chain.traction.exact import RaceSlope
+from separatrix.chain.traction.exact import RaceSlope, rolling_contact
 from separatrix.chain.traction.exact.normal import film_strain
+from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.study import ContactPressure, PressureSlip, Race, TractionModel, TractionSettings
 from separatrix.units import Newton, NewtonMetre, NewtonSecondPerMetre, Pascal, Ratio, Rows, Watt
@@ -22,6 +25,9 @@ STRAINED: Ratio = 0.1
 
 SQUEEZED: Ratio = 0.01
 """Film strain times thickness over the approach from which a film may change the pressure."""
+
+NOTICED: Ratio = 0.2
+"""Slip by the pressure over the saturation creep that is named: it moves free rolling by that."""
 
 CLOSE: Ratio = 0.03
 """Difference of slopes that is named: a bearing's contacts without a soft film are closer."""
@@ -50,7 +56,9 @@ class ModelSlopes:
 class FreeRolling:
     """The exact contact of one race in free rolling; force and moment act on the ball.
 
-    `lateral_share` is the lateral force over friction times load; `dissipation` is the power of the slip.
+    `lateral_share` is the lateral force over friction times load; `pressure_slip` the largest slip that the
+    pressure causes between unlike or coated bodies, over the saturation creep 2 mu p0/E*; `dissipation` is
+    the power of the slip.
     """
 
     lateral_force: Newton
@@ -59,6 +67,7 @@ class FreeRolling:
     stick_share: Ratio
     max_pressure: Pascal
     film_strain: Ratio
+    pressure_slip: Ratio
     dissipation: Watt
 
 
@@ -92,7 +101,7 @@ def compare_models(solution: Solution) -> ModelComparison:
     except (InputError, ConvergenceError):  # the row of this model has the reason
         return ModelComparison(models=tuple(rows), inner=None, outer=None, outside=())
     inner, outer = (_free_rolling(found[race], contacts[race], tracks[race]) for race in contacts)
-    outside = tuple(_outside(rows, inner, outer))
+    outside = tuple(_outside(rows, inner, outer, slip))
     return ModelComparison(models=tuple(rows), inner=inner, outer=outer, outside=outside)
 
 
@@ -167,11 +176,22 @@ def _free_rolling(found: RaceSlope, at: RaceContact, track: RaceTrack) -> FreeRo
         stick_share=one.stick_share,
         max_pressure=one.max_pressure,
         film_strain=film_strain(bodies, one.max_pressure),
+        pressure_slip=_pressure_slip(track),
         dissipation=one.dissipation * abs(at.rolling_speed),
     )
 
 
-def _outside(rows: list[ModelSlopes], inner: FreeRolling, outer: FreeRolling) -> Iterator[str]:
+def _pressure_slip(track: RaceTrack) -> Ratio:
+    """Largest slip by the pressure over the saturation creep."""
+    settings = TractionSettings(model=TractionModel.EXACT, pressure_slip=PressureSlip.INCLUDED)
+    contact = rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
+    saturation = 2.0 * track.film.race_friction * track.ellipse.max_pressure / track.ellipse.contact_modulus
+    return float(np.abs(contact.coupling).max()) / saturation
+
+
+def _outside(
+    rows: list[ModelSlopes], inner: FreeRolling, outer: FreeRolling, asked: PressureSlip
+) -> Iterator[str]:
     """Where the strips leave their range: a sentence each."""
     slopes = {(one.model, one.pressure): (one.inner_slope, one.outer_slope) for one in rows}
     exact = slopes[TractionModel.EXACT, ContactPressure.HERTZ]
@@ -189,6 +209,12 @@ def _outside(rows: list[ModelSlopes], inner: FreeRolling, outer: FreeRolling) ->
         yield (
             f"The pressure compresses the film by {strain:.0%} of its thickness: above {STRAINED:.0%} it is "
             "not linearly elastic, as every model here takes it to be."
+        )
+    slip = max(inner.pressure_slip, outer.pressure_slip)
+    if slip > NOTICED and asked is PressureSlip.NEGLECTED:
+        yield (
+            f"The pressure alone makes the surfaces slip by up to {slip:.2g} of the saturation creep: "
+            'consider [traction] model = "exact" with pressure_slip = "included".'
         )
     lateral = max(abs(inner.lateral_share), abs(outer.lateral_share))
     if lateral > LATERAL:

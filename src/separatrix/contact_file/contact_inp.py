@@ -7,9 +7,8 @@ creep has a negative force, as here; its spin is Kalker's, with the opposite sig
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +17,18 @@ from separatrix.chain.hertz import ContactEllipse, curvature_ratio, ellipse_of_a
 from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import LARGEST_SIDE, ContactProblem
 from separatrix.chain.traction.exact.flexibility import Body, Solid
-from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Gap, Motion
+from separatrix.contact_file.inp_lines import InpLines
+from separatrix.contact_file.question import (
+    ContactCase,
+    ContactQuestion,
+    ContactSetup,
+    ExtraSlip,
+    Gap,
+    Motion,
+)
 from separatrix.errors import InputError
 from separatrix.toml_text import Kind, label_of, read_text
-from separatrix.units import NUMBER, Array, shown
+from separatrix.units import Array
 
 MM = 1e-3
 MPA = 1e6
@@ -32,7 +39,7 @@ LARGEST_REST = 0.02  # of a column, by which a step in transient rolling may dif
 WORDS = ("CPBTNFS", "VLDCMZE", "XHGIAOWR")
 READ: Mapping[str, tuple[int, ...]] = {
     "P": (0, 2), "B": (0, 2), "T": (0, 1, 2, 3), "N": (0, 1), "F": (0, 1, 2), "S": (0,), "V": (0,),
-    "L": (0, 1), "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1), "X": (0,),
+    "L": (0, 1), "D": (0, 1, 2), "C": (0, 1, 2), "M": (0, 4), "Z": (0, 1, 2), "E": (0, 1, 9), "X": (0,),
     "H": (0,), "G": (0, 1, 2, 3, 4, 5),
 }  # fmt: skip
 """Values of the control digits that are read; I, A, O, W and R do not change the answer."""
@@ -40,7 +47,6 @@ READ: Mapping[str, tuple[int, ...]] = {
 CURES = {
     "B": "Other bounds belong to simplified theories.",
     "C": "Only half-spaces are computed.",
-    "E": "Extra rigid slip is not read.",
     "H": "Temperatures are not computed.",
     "L": "Friction that depends on slip or temperature is not computed.",
     "M": "Viscoelastic and simplified materials are not computed.",
@@ -50,70 +56,6 @@ CURES = {
 }
 ITERATIONS = {0: 5, 1: 0, 2: 9, 3: 9, 4: 7, 5: 13}
 """Numbers on the solver's lines by digit G; they are read and not used."""
-
-
-@dataclass(slots=True)
-class _Lines:
-    """Numbers of the file in order; comments begin with %."""
-
-    label: str
-    lines: Iterator[tuple[int, list[str]]]
-    line: int = 0
-    case: int = 1
-    rest: list[str] = field(default_factory=list)
-    """Words of the line after those that were read."""
-
-    def wrong(self, what: str, rule: str, got: str = "", cure: str = "") -> InputError:
-        """Refusal of what is on this line."""
-        return InputError(f"{self.label}, line {self.line}: case {self.case}, {what}", rule, got, cure)
-
-    def words(self, what: str) -> list[str]:
-        """Words of the next line that has some."""
-        found = next(self.lines, None)
-        if found is not None:
-            self.line, words = found
-            return words
-        raise InputError(f"{self.label}: case {self.case}, {what}", "is missing: the file ends before it")
-
-    def numbers(self, *names: str) -> list[float]:
-        """So many numbers, on as many lines as they take."""
-        found: list[float] = []
-        while len(found) < len(names):
-            words, missing = self.words(names[len(found)]), len(names) - len(found)
-            for word in words[:missing]:
-                found.append(self._number(word, names[len(found)]))
-            self.rest = words[missing:]
-        return found
-
-    def _number(self, word: str, name: str) -> float:
-        angle = math.pi / 180.0 if name == "CHI" and word[-1:] in "dD" else 1.0
-        plain = word.rstrip("dDrR") if name == "CHI" else word
-        try:
-            value = float(re.sub("[dD]", "e", plain)) * angle
-        except ValueError:
-            raise self.wrong(name, "must be a number", shown(word)) from None
-        if not math.isfinite(value):
-            raise self.wrong(name, "must be finite", shown(word))
-        return value
-
-    def refuse_more(self, what: str) -> None:
-        """Refuse a number other than 0 that follows, which CONTACT reads if it is there."""
-        more = self.rest[0] if self.rest else ""
-        if re.fullmatch(NUMBER, more) and float(more) != 0.0:
-            raise self.wrong(what, "must be 0 or left out", shown(more))
-
-    def whole(self, value: float, name: str) -> int:
-        """The number as an integer."""
-        if value != int(value):
-            raise self.wrong(name, "must be a whole number", f"{value:g}")
-        return int(value)
-
-    def digits(self, names: str) -> dict[str, int]:
-        """Digits of a control word by their letters; those in front that are left out are 0."""
-        word, *self.rest = self.words(f"control digits {names}")
-        if not word.isdecimal() or len(word) > len(names):
-            raise self.wrong(f"control digits {names}", "must be one number of these digits", shown(word))
-        return dict(zip(names, map(int, word.zfill(len(names))), strict=True))
 
 
 @dataclass(slots=True)
@@ -127,6 +69,7 @@ class _Kept:
     layer: tuple[float, ...] | None = None
     area: tuple[float, ...] | None = None  # IPOTCN and its numbers
     gap: tuple[float, ...] = ()
+    extra: Array | None = None  # rigid slip of the elements [-], in a shift [mm], shape (2, row, column)
 
 
 def read_inp(path: Path) -> ContactQuestion:
@@ -139,7 +82,7 @@ def read_inp(path: Path) -> ContactQuestion:
     """
     label, text = label_of(path), read_text(path, FILE)
     lines = ((n, line.partition("%")[0].split()) for n, line in enumerate(text.split("\n"), 1))
-    at, kept, cases = _Lines(label, iter([one for one in lines if one[1]])), _Kept(), list[ContactCase]()
+    at, kept, cases = InpLines(label, iter([one for one in lines if one[1]])), _Kept(), list[ContactCase]()
     while True:
         at.case = len(cases) + 1
         module = at.whole(at.numbers("MODULE")[0], "MODULE")
@@ -155,7 +98,7 @@ def read_inp(path: Path) -> ContactQuestion:
     return ContactQuestion(name=path.stem, title=path.stem, cases=tuple(cases), of_contact=True)
 
 
-def _case(at: _Lines, kept: _Kept) -> ContactCase:
+def _case(at: InpLines, kept: _Kept) -> ContactCase:
     digit = _control(at)
     at.numbers(*["solver's number"] * ITERATIONS[digit["G"]])
     second, third = (("CKSI", "CETA"), ("FX", "CETA"), ("FX", "FY"))[digit["F"]]
@@ -181,6 +124,10 @@ def _case(at: _Lines, kept: _Kept) -> ContactCase:
         kept.area = _area(at)
     if digit["Z"] == 2 and kept.area is not None and kept.area[0] > 0:
         kept.gap = _gap_numbers(at)
+    if digit["E"] == 9:
+        kept.extra = _extra_slip(at, kept)
+    elif digit["E"] == 0:
+        kept.extra = None
     chi, step = (kept.rolling or (0.0, 0.0)) if rolls else (0.0, 0.0)
     turned = abs(abs(chi) - math.pi) < 1e-3
     if not turned and abs(chi) > 1e-3:
@@ -190,10 +137,11 @@ def _case(at: _Lines, kept: _Kept) -> ContactCase:
             raise at.wrong("control digit N", "must be 1 with a gap on cells", "0", "Prescribe the force.")
         load = -load
     setup = _setup(at, kept, load, is_coated=digit["M"] == 4, turned=turned)
-    return _motion(at, setup, digit, (along, across, spin), step, turned=turned)
+    case = _motion(at, setup, digit, (along, across, spin), step, turned=turned)
+    return case if kept.extra is None else replace(case, extra=_placed(at, kept, setup, case.motion))
 
 
-def _control(at: _Lines) -> dict[str, int]:
+def _control(at: InpLines) -> dict[str, int]:
     digit: dict[str, int] = {}
     for names in WORDS:
         found = at.digits(names)
@@ -209,7 +157,7 @@ def _control(at: _Lines) -> dict[str, int]:
     return digit
 
 
-def _friction(at: _Lines) -> float:
+def _friction(at: InpLines) -> float:
     still, moving = at.numbers("FSTAT", "FKIN")
     if still != moving:
         cure = "Friction that depends on slip is not computed."
@@ -219,7 +167,7 @@ def _friction(at: _Lines) -> float:
     return still
 
 
-def _area(at: _Lines) -> tuple[float, ...]:
+def _area(at: InpLines) -> tuple[float, ...]:
     kind = at.whole(at.numbers("IPOTCN")[0], "IPOTCN")
     names = {
         -3: ("AA", "BB", "SCALE"),
@@ -251,7 +199,7 @@ def _area(at: _Lines) -> tuple[float, ...]:
     return (min(kind, 1), mx, my, *rest)
 
 
-def _gap_numbers(at: _Lines) -> tuple[float, ...]:
+def _gap_numbers(at: InpLines) -> tuple[float, ...]:
     base, plan = at.numbers("IBASE", "IPLAN")
     if base != 1:
         raise at.wrong("IBASE", "must be 1, a quadratic gap", f"{base:g}")
@@ -260,7 +208,35 @@ def _gap_numbers(at: _Lines) -> tuple[float, ...]:
     return tuple(at.numbers("B1", "B2", "B3", "B4", "B5", "B6"))
 
 
-def _setup(at: _Lines, kept: _Kept, load: float, *, is_coated: bool, turned: bool) -> ContactSetup:
+def _extra_slip(at: InpLines, kept: _Kept) -> Array:
+    """Rigid slip of every element, x fastest, along and across in turn."""
+    if kept.area is None:
+        raise at.wrong("control digit D", "keeps what no case before has given")
+    mx, my = int(kept.area[1]), int(kept.area[2])
+    values = at.numbers(*["extra rigid slip"] * (2 * mx * my))
+    return np.array(values).reshape(my, mx, 2).transpose(2, 0, 1)
+
+
+def _placed(at: InpLines, kept: _Kept, setup: ContactSetup, motion: Motion) -> ExtraSlip:
+    """The extra slip at the centres of CONTACT's elements, in our units."""
+    kind, mx, my, *rest = kept.area or ()
+    if kept.extra is None or kept.extra.shape[1:] != (int(my), int(mx)):
+        raise at.wrong("control digit E", "keeps slip of another number of elements")
+    if kind > 0:
+        xl, yl, dx, dy = (value * MM for value in rest)
+    else:  # the box of the ellipse, SCALE times as large
+        a, b = (
+            rest[2] * half for half in (setup.problem.ellipse.semi_minor, setup.problem.ellipse.semi_major)
+        )
+        xl, yl, dx, dy = -a, -b, 2.0 * a / mx, 2.0 * b / my
+    return ExtraSlip(
+        along=xl + dx * (np.arange(mx) + 0.5),
+        across=yl + dy * (np.arange(my) + 0.5),
+        slip=kept.extra * (MM if motion is Motion.SHIFT else 1.0),
+    )
+
+
+def _setup(at: InpLines, kept: _Kept, load: float, *, is_coated: bool, turned: bool) -> ContactSetup:
     """The contact of a case, under a load [N], or an approach [mm] with a minus sign.
 
     One that was there before is the same object, so that cases start each other.
@@ -282,7 +258,7 @@ def _setup(at: _Lines, kept: _Kept, load: float, *, is_coated: bool, turned: boo
 
 
 def _built(
-    at: _Lines, kept: _Kept, load: float, layer: tuple[float, ...] | None, *, turned: bool
+    at: InpLines, kept: _Kept, load: float, layer: tuple[float, ...] | None, *, turned: bool
 ) -> ContactSetup:
     friction, materials, area = kept.friction or 0.0, kept.materials or (), kept.area or ()
     nu1, nu2, g1, g2 = materials
@@ -344,7 +320,7 @@ def _gap(mx: int, my: int, place: list[float], b: tuple[float, ...], *, turned: 
 
 
 def _motion(
-    at: _Lines,
+    at: InpLines,
     setup: ContactSetup,
     digit: Mapping[str, int],
     given: tuple[float, float, float],

@@ -109,10 +109,11 @@ SECTIONS: Mapping[str, Mapping[str, Reader]] = {
         "across": list_of(quantity("m")),
         "thicknesses": list_of(within(quantity("m"), 0.0, 1e3, "m")),
         "shear_modulus": _MODULUS,
+        "roughness": within(quantity("m"), 0.0, 1e-3, "m"),
     },
     "motion": {"kind": choice(Motion)},
     "grid": {"columns": _CELLS, "rows": _CELLS},
-    "pressure": {"own": logical, "coupled": logical},
+    "pressure": {"own": logical, "coupled": logical, "two_way": logical},
 }
 """Sections of a contact file and how each key is read; the keys of [motion] depend on its kind."""
 

@@ -20,6 +20,7 @@ from separatrix.chain.traction.exact.contact import (
     gap_contact,
     rolling_contact,
 )
+from separatrix.chain.traction.exact.grid import Grid
 from separatrix.chain.traction.exact.slope import RaceSlope
 from separatrix.errors import InputError
 from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
@@ -45,13 +46,38 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ExtraSlip:
+    """Rigid slip that is added to that of the creeps, at places of its own: [-], in a shift [m]."""
+
+    along: Annotated[Array, "m", ("column",)]
+    across: Annotated[Array, "m", ("row",)]
+    slip: Annotated[Array, "-", ("direction", "row", "column")]
+
+    def on(self, grid: Grid) -> Array:
+        """Linear between its places and constant beyond them, shape (2, row, column)."""
+        x = np.clip(grid.x, self.along[0], self.along[-1])
+        y = np.clip(grid.y, self.across[0], self.across[-1])
+        across = np.array([[np.interp(y, self.across, column) for column in part.T] for part in self.slip])
+        return np.array([[np.interp(x, self.along, row) for row in part.T] for part in across])
+
+    def reversed(self) -> ExtraSlip:
+        """The same with x the other way."""
+        slip = np.array([-1.0, 1.0])[:, None, None] * self.slip[:, :, ::-1]
+        return ExtraSlip(along=-self.along[::-1], across=self.across, slip=slip)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactSetup:
-    """What touches what on which grid: cells over the Hertz ellipse, or those of a gap."""
+    """What touches what on which grid: cells over the Hertz ellipse, or those of a gap.
+
+    `is_two_way`: pressure and tractions are solved each under the other, in steady rolling.
+    """
 
     problem: ContactProblem
     columns: int = 40
     rows: int = 40
     gap: Gap | None = None
+    is_two_way: bool = False
 
     @property
     def cell_count(self) -> int:
@@ -91,6 +117,7 @@ class ContactCase:
     continues: bool = False
     wanted: tuple[Ratio | None, Ratio | None] = (None, None)
     turned: bool = False
+    extra: ExtraSlip | None = None
 
     def moved(self, longitudinal: float, lateral: float) -> ContactCase:
         """The case with other creeps, or other shifts."""
@@ -106,6 +133,7 @@ class ContactCase:
             longitudinal_creep=0.0 - self.longitudinal_creep,
             spin=0.0 - self.spin,
             curvature=0.0 - self.curvature,
+            extra=None if self.extra is None else self.extra.reversed(),
             wanted=(None if along is None else 0.0 - along, across),
         )
 

@@ -18,6 +18,7 @@ from separatrix.chain.traction.exact.contact import (
 )
 from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.traction.exact.two_way import solve_two_way
 from separatrix.contact_file.question import (
     ContactAnswer,
     ContactCase,
@@ -128,7 +129,19 @@ class _State:
             way = rigid_slip(
                 grid, longitudinal=case.longitudinal_shift, lateral=case.lateral_shift, spin=case.turn
             )
+            way = way if case.extra is None else way + case.extra.on(grid)
             return shift(contact, way, start=start)
+        if case.setup.is_two_way:
+            setup = case.setup
+            return solve_two_way(
+                setup.problem,
+                longitudinal=case.longitudinal_creep,
+                lateral=case.lateral_creep,
+                spin=case.spin,
+                curvature=case.curvature,
+                columns=setup.columns,
+                rows=setup.rows,
+            )[1]
         slip = rigid_slip(
             grid,
             longitudinal=case.longitudinal_creep,
@@ -136,6 +149,7 @@ class _State:
             spin=case.spin,
             curvature=case.curvature,
         )
+        slip = slip if case.extra is None else slip + case.extra.on(grid)
         if case.motion is Motion.TRANSIENT:
             return transient(contact, [slip] * round(case.distance / grid.dx), start=start)[-1]
         solution = solve(contact, slip, start=secant(self.known, slip))

@@ -91,7 +91,7 @@ def read_contact_toml(path: Path) -> ContactQuestion:
         title = text(data.get("title", path.stem), "title")
     with using(with_files(beside(path.parent, besides=path)), None, path.parent):
         bodies = _body(file, "body_1"), _body(file, "body_2")
-    friction, film = _friction(file), _film(file)
+    friction, (film, roughness) = _friction(file), _film(file)
     grid = file.section("grid", SECTIONS["grid"])
     pressure = file.section("pressure", SECTIONS["pressure"])
     ellipse = _ellipse(file, bodies)
@@ -104,10 +104,17 @@ def read_contact_toml(path: Path) -> ContactQuestion:
         bodies=(bodies[0], bodies[1]),
         friction=friction,
         film_compliance=film,
+        roughness=roughness,
         own_pressure=pressure.get("own", False),
         coupled=pressure.get("coupled", False),
     )
-    setup = ContactSetup(problem=problem, columns=grid.get("columns", 40), rows=grid.get("rows", 40))
+    is_two_way = pressure.get("two_way", False)
+    if is_two_way and not (problem.own_pressure and problem.coupled and motion is Motion.ROLLING):
+        rule = "needs own = true, coupled = true and steady rolling"
+        file.problems.append(InputError("[pressure] two_way", rule))
+    setup = ContactSetup(
+        problem=problem, columns=grid.get("columns", 40), rows=grid.get("rows", 40), is_two_way=is_two_way
+    )
     with noted(file.problems):
         _check_size(problem, moves)
     file.refuse()
@@ -190,11 +197,14 @@ def _friction(file: _File) -> FrictionLaw | None:
     return FrictionLaw(coefficient=mu, **limits)
 
 
-def _film(file: _File) -> float | Profile:
-    """Compliance L = h/G of a film in series [m/Pa]; 0 without one."""
+def _film(file: _File) -> tuple[float | Profile, float]:
+    """Compliance L = h/G of a film in series [m/Pa], and length of roughness [m]; 0 without."""
     given = file.section("film", SECTIONS["film"])
-    if not given:
-        return 0.0
+    roughness = given.pop("roughness", 0.0) or 0.0
+    return (_compliance(file, given) if given else 0.0), roughness
+
+
+def _compliance(file: _File, given: dict[str, Any]) -> float | Profile:
     modulus = given.pop("shear_modulus", 0.0)
     if modulus == 0.0:
         file.lacks("[film]", "shear_modulus")

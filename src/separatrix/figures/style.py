@@ -213,9 +213,9 @@ def study_of(data: xr.Dataset) -> dict[str, Any]:
 
 def headed(figure: Figure, data: xr.Dataset) -> Figure:
     """Write above a figure what it was made from; nothing if the dataset does not record it."""
-    lines = heading(data)
+    width, height = figure.get_size_inches()
+    lines = heading(data, int(WIDTH * min(1.0, width / PAGE)))
     if lines:
-        width, height = figure.get_size_inches()
         figure.set_size_inches(width, height + LINE * len(lines))
         figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
     return figure

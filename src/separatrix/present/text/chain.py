@@ -55,6 +55,7 @@ ROLLING = {
     "stick_share": "Share of the area that sticks",
     "max_pressure": "Maximum pressure",
     "film_strain": "Strain of the film",
+    "pressure_slip": "Slip by the pressure over saturation creep",
     "dissipation": "Power of the slip",
 }
 DAMPING = {"load": "Load", "slope": "Slope alpha", "rolling_speed": "Rolling speed"}
