@@ -24,7 +24,7 @@ AREA = {
     "pressure": ("Pa", ("row", "column")),
     "traction": ("Pa", ("direction", "row", "column")),
     "slip": ("-", ("direction", "row", "column")),
-    "stick": (None, ("row", "column")),
+    "stick": ("-", ("row", "column")),
     "stick_line": ("m", ("row",)),
 }
 """Fields of an exact contact with their units and axes."""
