@@ -5,7 +5,8 @@ from commands import document
 from test_study_refusals import VALID, refusal
 
 from separatrix.cli import main
-from separatrix.limits.map_parameters import varied
+from separatrix.errors import InputError
+from separatrix.limits.map_parameters import value_in, varied
 from separatrix.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
 from separatrix.study_file import read_study
 from separatrix.study_file.provenance import resolved
@@ -38,6 +39,7 @@ def test_each_form_of_wear_is_read(section, wear, tmp_path):
     study = read_study(written(tmp_path, section))
     assert study.film.wear == wear
     found = resolved(study)["film"]
+    assert found["wear.races"]["value"] == wear.races.value
     assert found["wear.friction"]["value"] == 0.3
     assert found["wear.friction"]["origin"].startswith("study.toml, line ")
 
@@ -133,6 +135,11 @@ def test_numbers_of_wear_may_be_uncertain_and_varied(tmp_path):
     assert study.distributions["film.wear.width"].mean == pytest.approx(2e-4)
     for change in (with_values, varied):
         assert change(study, {"film.wear.width": 3e-4}).film.wear.width == 3e-4
+    assert value_in(study, "film.wear.width") == pytest.approx(2e-4)
+    whole = read_study(written(tmp_path, ""))
+    assert value_in(whole, "film.wear.width") is None
+    with pytest.raises(InputError, match=r"\[film\] has no wear that could vary"):
+        varied(whole, {"film.wear.share": 0.1})
 
 
 def test_the_answers_name_models_and_wear(tmp_path, capsys, monkeypatch):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
 from separatrix.errors import InputError
-from separatrix.study import Study
+from separatrix.study import Study, Wear
 from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
@@ -42,6 +42,7 @@ def parameters() -> dict[str, Parameter]:
     names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"} | _MADE
     for section, record in SECTIONS.items():
         names |= {f"{section}.{key}": unit for key, unit in numbers_of(record).items()}
+    names |= {f"film.wear.{key}": unit for key, unit in numbers_of(Wear).items()}
     left = {name: unit for name, unit in names.items() if name not in (*SETTINGS, *SHORT)}
     return {name: Parameter(name, unit) for name, unit in left.items()}
 
@@ -69,6 +70,8 @@ def varied(study: Study, values: Mapping[str, float]) -> Study:
         section = key.partition(".")[0]
         if section == "film" and key in _MADE and study.film.material is None:
             raise InputError("[film]", "has no material whose properties could vary")
+        if key.startswith("film.wear.") and study.film.wear is None:
+            raise InputError("[film]", "has no wear that could vary")
         if getattr(study, section, study) is None:
             raise InputError(f"[{section}]", "is missing")
     if keys.get(THICKNESS) == 0.0:
@@ -81,6 +84,7 @@ def varied(study: Study, values: Mapping[str, float]) -> Study:
 
 def value_in(study: Study, name: str) -> float | None:
     """Value of a key in the study; None where it has none, or is not one of its keys."""
-    section, _, key = name.partition(".")
-    value = getattr(getattr(study, section, None), key, None)
+    value: object = study
+    for step in name.split("."):
+        value = getattr(value, step, None)
     return value if isinstance(value, int | float) else None

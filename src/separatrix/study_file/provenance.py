@@ -27,6 +27,8 @@ _WITHOUT = {
     "film.wear": "default: not worn",
     "film.wear.width": "not given",
     "film.wear.share": "not given",
+    "film.wear.across": "not given",
+    "film.wear.thicknesses": "not given",
     "cage.material": "not given",
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
     "cage.impact_speed": f"default: {_SCALED}",

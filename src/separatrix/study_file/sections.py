@@ -347,7 +347,8 @@ def _origins(document: Document) -> dict[str, str]:
             inside = value.items() if (section, key) == ("film", "wear") and isinstance(value, dict) else ()
             for part, one in inside:
                 place = document.places.of(f"[film] wear.{part}")
-                origins[f"film.wear.{part}"] = f"{place}: {values.written(one)}"
+                for name in ("across", "thicknesses") if part == "profile" else (part,):
+                    origins[f"film.wear.{name}"] = f"{place}: {values.written(one)}"
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"
     return origins
