@@ -36,8 +36,9 @@ _PUBLIC = {
     "ranking": "Ranking",
     "present": "dataset document load report save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
-    "study": "BallBearing CageDesign Candidate Film Friction Guidance KinematicModel Material Operation "
-    "PocketContact PocketShape Race RankingQuestion StabilitySettings Study",
+    "study": "BallBearing CageDesign Candidate ContactPressure Film Friction Guidance KinematicModel "
+    "Material Operation PocketContact PocketShape PressureSlip Race RankingQuestion StabilitySettings Study "
+    "TractionModel TractionSettings Wear Worn",
     "study_file": "read_study resolved shipped_studies template",
 }
 """Module -> the public names it holds."""

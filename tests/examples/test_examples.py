@@ -41,6 +41,8 @@ ANSWERS = {
     "15_compare_designs.py": ("tight", 9 / 16),
     # Kalker's published 4.12 of a circle at nu 0.25: half a digit, and 0.5 % of 28 columns
     "17_contact.py": ("c11", pytest.approx(4.12, abs=0.005 + 0.005 * 4.12)),
+    # strips know neither the coupling across the edges of the band: 0.05 (docs/theory/strips-or-exact.md)
+    "18_worn_track.py": ("farthest", pytest.approx(0.025, abs=0.025)),
     # rad/s, the digits printed
     "16_saved_data.py": ("spread", pytest.approx(2.48, abs=0.005)),
 }

@@ -35,7 +35,7 @@ class Profile:
 
 
 def worn_band(half_width: Metre, *, worn: float, film: float) -> Profile:
-    """Profile of a film that is worn off over |y| < half_width."""
+    """Profile of a film that is worn off less than `half_width` from the middle."""
     w = half_width
     return Profile(across=(-w, -w, w, w), values=(film, worn, worn, film))
 
