@@ -17,7 +17,7 @@ from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.orbit import mean_speed
-from separatrix.chain.race_curve import RaceTrack, exact_slope, race_curve
+from separatrix.chain.race_curve import RaceTrack, race_curve, race_slope
 from separatrix.chain.traction import TractionCurve
 from separatrix.chain.traction.exact import RaceSlope
 from separatrix.errors import InputError
@@ -154,7 +154,7 @@ def race_slopes(
         for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
     ]
     with ThreadPoolExecutor(2) as pool:
-        inner, outer = pool.map(lambda track: exact_slope(track, settings), tracks)
+        inner, outer = pool.map(lambda track: race_slope(track, settings), tracks)
     return RaceSlopes(inner=inner, outer=outer)
 
 

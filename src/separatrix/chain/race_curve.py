@@ -109,6 +109,13 @@ def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.Conta
     )
 
 
+def race_slope(track: RaceTrack, settings: TractionSettings) -> TractionCurve | exact.RaceSlope:
+    """Slope at free rolling and its error by the model of the settings."""
+    if settings.model is TractionModel.STRIPS or track.is_idle:
+        return strips(track, settings.pressure)
+    return exact_slope(track, settings)
+
+
 @lru_cache(maxsize=REMEMBERED)
 def exact_slope(track: RaceTrack, settings: TractionSettings) -> exact.RaceSlope:
     """Slope at free rolling, its error, and the solution there; remembered by the value of the records."""

@@ -82,9 +82,9 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
     cage, settings = cages[sorted(cages)[len(cages) // 2]]
     curves = len(cages) * expected_curve(cage, settings, jobs=jobs, band=False)
     verdicts = expected_verdicts(cage, settings, [friction for _, friction in keys], jobs=jobs)
-    return (
-        PICTURES + curves + (2.0 if study.distributions else 1.0) * verdicts
-    )  # central, and over the inputs
+    if not study.distributions:
+        return PICTURES + curves + verdicts
+    return PICTURES + curves + 2.0 * verdicts + _expected_chains(study, settings.runs)
 
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
@@ -93,7 +93,8 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
-    total = PICTURES
+    smooth = SOBOL_DRAWS * (2 + sum(1 for key in study.distributions if not key.startswith("ranking.")))
+    total = PICTURES + _expected_chains(study, bearings + smooth)
     for candidate in asked.candidates:
         solution = solve(study, candidate)
         known = [found.mean for found in solution.frictions.values() if found is not None]
@@ -102,6 +103,30 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
         total += SHARE_RUN * whole
     return total
 
+
+def _expected_chains(study: Study, count: int) -> Second:
+    """Time of the chains of as many drawn bearings; none where only frictions are drawn."""
+    from separatrix.chain.contacts import race_track
+    from separatrix.chain.race_curve import exact_slope, strips
+    from separatrix.chain.solution import solve
+    from separatrix.study import Race, TractionModel
+
+    if all(key.startswith("ranking.") for key in study.distributions):
+        return 0.0
+    state = solve(study).bearing
+    pairs = (Race.INNER, state.inner), (Race.OUTER, state.outer)
+    start = time.perf_counter()
+    for race, at in pairs:
+        track = race_track(study.bearing, study.film, race, at)
+        if study.traction.model is TractionModel.STRIPS:
+            strips(track, study.traction.pressure)
+        else:
+            exact_slope.__wrapped__(track, study.traction)  # not the one that is remembered
+    return count * (time.perf_counter() - start)
+
+
+SOBOL_DRAWS = 256
+"""Draws of each matrix behind the shares of what the chain computes smoothly (`shares`)."""
 
 SHARE_RUN = 0.7
 """Of the runs of all cases, those that are made, with what the inverse questions take."""
