@@ -20,7 +20,7 @@ from separatrix.limits.map import (
     stability_map,
 )
 from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill, near_a_change, rounds
-from separatrix.limits.map_parameters import parameters, varied
+from separatrix.limits.map_parameters import parameters, value_in, varied
 from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion
 from separatrix.limits.map_rule import (
     AGREEING,
@@ -35,7 +35,7 @@ from separatrix.limits.map_rule import (
     wrong_side_probability,
 )
 from separatrix.runner import Interrupted, Runner
-from separatrix.study import Guidance, PocketShape
+from separatrix.study import Guidance, PocketShape, Wear
 from separatrix.study_file import read_study
 
 KICKS = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))
@@ -271,8 +271,11 @@ def test_every_parameter_reaches_the_study(name, study):
     """Each parameter changes the study, but those that belong to the cage in the plane alone."""
     slot = {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 2e-4}
     study = replace(study, cage=replace(study.cage, **slot))
-    section, _, key = name.partition(".")
-    here = getattr(getattr(study, section, None), key, None)
+    if name.startswith("film.wear."):
+        form = {"share": 0.1} if name.endswith("share") else {"width": 2e-4}
+        worn = replace(study.film, wear=Wear(friction=0.3, thickness=1e-8, **form))
+        study = replace(study, film=worn)
+    here = value_in(study, name)
     value = 3 if parameters()[name].is_whole else 1.02 * (here or 1e-6)
     value = {"cage.land_count": 2, "film.elastic_modulus": 2e9}.get(name, value)
     assert (varied(study, {name: value}) == study) == (name in ("restitution_factor", "kick"))

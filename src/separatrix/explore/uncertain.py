@@ -42,7 +42,7 @@ from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
-from separatrix.runner import Runner
+from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array, Ratio
@@ -86,16 +86,17 @@ def uncertain_study(
         raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
     drawn, runner = drawn_bearings(study, bearings), runner or Runner()
     inverse = _inverse(drawn, runner)
-    pieces: dict[Case | str, Callable[[], object]] = {
-        case: partial(counted, drawn, case, drawn.kicks, runner) for case in drawn.friction
-    }
+    pieces: dict[Case | str, Callable[[], object]] = {SHARES: partial(_smooth, study, drawn, runner)}
+    pieces |= {case: partial(counted, drawn, case, drawn.kicks, runner) for case in drawn.friction}
     pieces.update(inverse)
 
     def answer(found: Mapping[Case | str, object]) -> UncertainStudy:
         judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
         answered = [found[key] for key in inverse if key in found]
         complete = len(found) == len(pieces)
-        return replace(_answer(study, drawn, judged, answered, bearings), complete=complete)
+        shares = found.get(SHARES, ())
+        whole = _answer(study, drawn, judged, answered, bearings)
+        return replace(whole, shares=shares if isinstance(shares, tuple) else (), complete=complete)
 
     return runner.work_out(lambda key: pieces[key](), pieces, into=answer)
 
@@ -131,7 +132,7 @@ def _answer(
         convergence=tuple(_convergence(case, *one) for case, one in judged.items()),
         clouds=tuple(_cloud(drawn, case, *one) for case, one in judged.items() if case.environment),
         drivers=tuple(decided.values()),
-        shares=_smooth(study, drawn),
+        shares=(),
         undecided=tuple(map(_words, undecided)),
         next_tests=_next_tests(drawn, open_cases),
         allowed_friction=tuple(one for one in inverse if isinstance(one, AllowedFriction)),
@@ -291,7 +292,11 @@ def _words(case: Case) -> str:
     return f"{case.candidate} in {case.environment}"
 
 
-def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
+SHARES = "shares"
+"""Names the piece of work behind what the chain computes smoothly."""
+
+
+def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothShares, ...]:
     """Sobol indices of restitution factor and race damping of the cage's own candidate."""
     own, numbers = reference_candidate(study, ranking_question(study)), study_numbers(drawn.study)
     inputs = [
@@ -309,6 +314,8 @@ def _smooth(study: Study, drawn: DrawnBearings) -> tuple[SmoothShares, ...]:
         values = np.column_stack([one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)])
         rows = []
         for row in values.tolist():
+            if runner.stop.is_set():
+                raise Interrupted
             found = central
             with suppress(SeparatrixError):  # a draw that makes no bearing counts as the central one
                 changed = put(row)
