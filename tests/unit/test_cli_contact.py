@@ -261,6 +261,15 @@ def test_rough_surfaces_and_the_pressure_under_tractions(capsys):
     assert "two_way needs own = true, coupled = true and steady rolling" in said
 
 
+def test_the_text_says_what_bounds_the_tractions(capsys):
+    """Cohesion, strength and roughness beside the coefficient."""
+    more = 'coefficient = 0.1\ncohesion = "5 MPa"\nshear_strength = "80 MPa"\n[film]\nroughness = "1 um"'
+    assert main(["contact", write(("coefficient = 0.1", more)), "--out", "out"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Friction coefficient 0.1, and 5 MPa of cohesion, at most 80 MPa" in said
+    assert "Rough surfaces compliance 1 um over the pressure" in said
+
+
 def test_every_mistake_has_its_line(capsys):
     """Three mistakes, three lines."""
     path = write(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -74,11 +75,20 @@ def _contact(setup: ContactSetup, answer: ContactAnswer) -> list[tuple[str, str]
         found.append((f"Body {number}", "; ".join([base, *(f"layer of {one}" for one in layers)])))
     mu = problem.friction.coefficient
     values = f"{min(mu.values):g} to {max(mu.values):g} across" if isinstance(mu, Profile) else f"{mu:g}"
+    law = problem.friction
+    if law.cohesion > 0.0:
+        values += f", and {quantity(law.cohesion, 'Pa', 3)} of cohesion"
+    if math.isfinite(law.shear_strength):
+        values += f", at most {quantity(law.shear_strength, 'Pa', 3)}"
     found.append(("Friction coefficient", values))
     L = problem.film_compliance
     if isinstance(L, Profile) or L > 0.0:
         compliance = f"up to {max(L.values):.3g}" if isinstance(L, Profile) else f"{L:.3g}"
         found.append(("Film in series h/G", f"{compliance} m/Pa"))
+    if problem.roughness > 0.0:
+        found.append(
+            ("Rough surfaces", f"compliance {quantity(problem.roughness, 'm', 3)} over the pressure")
+        )
     strain = next((one.solution.film_strain for one in answer.cases if one.solution is not None), 0.0)
     if strain:
         found.append(("Strain of the softest layer", significant(strain, 2)))
