@@ -16,7 +16,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.special import stdtrit
-from scipy.stats import qmc
 
 from separatrix.explore.records import Share
 from separatrix.units import Array
@@ -58,6 +57,8 @@ def sobol_shares(
 
 
 def _points(dimensions: int, seed: tuple[int, int]) -> Array:
+    from scipy.stats import qmc  # dear to import, and only this needs it
+
     engine = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
     return np.asarray(engine.random(EACH)) + HALF_STEP
 
