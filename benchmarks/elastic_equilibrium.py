@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import root
 
-from separatrix.chain.contacts import RaceContact, race_track
+from separatrix.chain.contacts import RaceContact, race_tracks
 from separatrix.chain.equilibrium.balance import inertia_loads, slip_coefficients
 from separatrix.chain.equilibrium.groove import Touch, touch
 from separatrix.chain.equilibrium.problem import problem
@@ -62,7 +62,7 @@ class Ball:
         key = side < 0.0, elastic
         if key not in self.made:  # the load changes by a few per cent: tractions are scaled with it
             film = self.study.film if elastic else Film(race_friction=p.friction)
-            track = race_track(self.study.bearing, film, race, at)
+            track = race_tracks(self.study.bearing, film, self.state)[race is Race.OUTER]
             self.made[key] = exact.rolling_contact(contact_problem(track, EXACT), columns=COLUMNS, rows=ROWS)
         made = self.made[key]
         grid = made.grid
@@ -143,7 +143,8 @@ def report(ball: Ball, u: Array, elastic: bool) -> None:
         lateral = c[3] * 0.5 * p.ball_diameter / abs(at.rolling_speed)
         M, _, _, _, Fy = ball.friction(side, at, c, t.load, elastic=elastic)
         creep = replace(at.creep, spin=math.copysign(spin, at.creep.spin))
-        track = replace(race_track(study.bearing, study.film, race, at), creep=creep)
+        track = race_tracks(study.bearing, study.film, ball.state)[race is Race.OUTER]
+        track = replace(track, creep=creep)
         slope = exact_slope(track, EXACT).slope
         damping += contact_damping(slope, t.load, at.rolling_speed)
         words.append(

@@ -8,9 +8,9 @@ from __future__ import annotations
 import warnings
 from dataclasses import replace
 
-from separatrix.chain.contacts import race_track
+from separatrix.chain.contacts import race_tracks
 from separatrix.chain.race_curve import RaceTrack, exact_slope, strips
-from separatrix.chain.restitution import contact_damping, restitution
+from separatrix.chain.restitution import restitution
 from separatrix.chain.solution import Solution, solve
 from separatrix.chain.traction import bonded_layer, traction_slope
 from separatrix.errors import SeparatrixError, ValidityWarning
@@ -19,7 +19,6 @@ from separatrix.study import (
     Film,
     KinematicModel,
     Material,
-    Race,
     TractionModel,
     TractionSettings,
     Wear,
@@ -37,15 +36,6 @@ FILMS = (
 
 EXACT = TractionSettings(model=TractionModel.EXACT)
 OWN = replace(EXACT, pressure=ContactPressure.COATED)
-
-
-def tracks(solution: Solution, film: Film) -> list[RaceTrack]:
-    """Both races under a film."""
-    state, bearing = solution.bearing, solution.study.bearing
-    return [
-        race_track(bearing, film, race, at)
-        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
-    ]
 
 
 def by_layer(track: RaceTrack) -> float:
@@ -69,18 +59,15 @@ WAYS = {
 def cells(solution: Solution, film: Film, ways: list[str]) -> list[str]:
     """Inner slopes, outer slopes, C_mu and eta, each by every way."""
     found: list[list[str]] = [[], [], [], []]
+    bearing = solution.study.bearing
     for way in ways:
         try:
-            slopes = [WAYS[way](track) for track in tracks(solution, film)]
+            slopes = [WAYS[way](track) for track in race_tracks(bearing, film, solution.bearing)]
         except SeparatrixError:
             for column in found:
                 column.append("-")
             continue
-        state = solution.bearing
-        dampings = [
-            contact_damping(slope, at.load, at.rolling_speed)
-            for slope, at in zip(slopes, (state.inner, state.outer), strict=True)
-        ]
+        dampings = solution.bearing.dampings(*slopes)
         eta = restitution(*dampings, ball_cage_stiffness=3e6, cage_mass=0.025).restitution_factor
         for column, value in zip(
             found, (f"{slopes[0]:.2f}", f"{slopes[1]:.2f}", f"{sum(dampings):.0f}", f"{eta:.3f}"), strict=True

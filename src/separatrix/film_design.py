@@ -150,3 +150,8 @@ class TractionSettings:
             cure = 'Write model = "exact", or leave it out.'
             rule = 'must be "neglected" in strips'
             raise InputError("TractionSettings.pressure_slip", rule, '"included"', cure)
+
+    def by(self, model: TractionModel, pressure: ContactPressure | None = None) -> TractionSettings:
+        """The same by another model, perhaps under another pressure; strips know no slip by the pressure."""
+        slip = self.pressure_slip if model is TractionModel.EXACT else PressureSlip.NEGLECTED
+        return TractionSettings(model=model, pressure=pressure or self.pressure, pressure_slip=slip)

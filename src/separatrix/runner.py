@@ -28,7 +28,7 @@ class Progress(Protocol):
     """Hears how far a long job is."""
 
     def __call__(self, done: int, total: int, /) -> None:
-        """So many points of those known so far are done."""
+        """Take in how many points of those known so far are done."""
 
 
 @runtime_checkable

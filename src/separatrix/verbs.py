@@ -27,7 +27,7 @@ from separatrix.cage_choice import (
     reference_candidate,
     required_environment,
 )
-from separatrix.chain.contacts import BearingState, race_track
+from separatrix.chain.contacts import BearingState, race_tracks
 from separatrix.chain.film_curves import exact_films, wear_curve
 from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
@@ -53,7 +53,7 @@ from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.runner import Progress, Runner, made_into
-from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Race, Study, TractionModel
+from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
 from separatrix.units import MetrePerSecond, format_quantity, parse
 
 SAMPLES_A_WHIRL = 15
@@ -116,21 +116,18 @@ def bearing(study: Study) -> BearingState:
 def traction(study: Study) -> TractionAnswer:
     """Traction curves by both models, and by strips at other pivoting-to-rolling ratios."""
     solution = solve(study)
-    contacts, used = solution.bearing, solution.traction
-    inner, outer = (
-        race_track(study.bearing, study.film, race, at)
-        for race, at in ((Race.INNER, contacts.inner), (Race.OUTER, contacts.outer))
-    )
+    _ = solution.slopes  # refused, and warned of, as everything after them
+    inner, outer = race_tracks(study.bearing, study.film, solution.bearing)
     with warnings.catch_warnings():  # the comparison says where its models leave their range
         warnings.simplefilter("ignore", ValidityWarning)
-        inner_strips, inner_exact = curves_by_model(inner, study.traction, used.inner)
-        outer_strips, outer_exact = curves_by_model(outer, study.traction, used.outer)
+        inner_strips, inner_exact = curves_by_model(inner, study.traction)
+        outer_strips, outer_exact = curves_by_model(outer, study.traction)
         inner_area, outer_area = (exact_area(one, study.traction) for one in (inner, outer))
         comparison = compare_models(solution)
     is_exact = study.traction.model is TractionModel.EXACT
     return TractionAnswer(
         race_friction=study.film.race_friction,
-        bearing=contacts,
+        bearing=solution.bearing,
         comparison=comparison,
         inner=(is_exact and inner_exact) or inner_strips,
         outer=(is_exact and outer_exact) or outer_strips,

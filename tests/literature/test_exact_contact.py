@@ -49,7 +49,7 @@ PUBLISHED = {
 
 
 def coefficients(b, nu, cells):
-    """C11, C22, C23 from the force, C23 from the moment, C33, on so many columns and rows."""
+    """C11, C22, C23 from the force, C23 from the moment, C33, on `cells` columns and rows."""
     made, e = contact(b, nu, columns=cells, rows=cells, friction=1e6), 1e-6
     along, across, spun = (kalker(made, *creep, tolerance=1e-7) for creep in np.eye(3) * -e)
     return (

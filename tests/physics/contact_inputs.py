@@ -85,7 +85,7 @@ TRACTION_CURVE = end(
 
 
 def fastsim(cells=44):
-    """Case 1 of the example, on so many elements over 1.1 times the contact."""
+    """Case 1 of the example, on `cells` elements a side over 1.1 times the contact."""
     return end(
         case(
             "203100 022020 0001341",

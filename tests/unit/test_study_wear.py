@@ -1,11 +1,15 @@
 """[film.wear] and [traction] in study files: every form, and what is refused where."""
 
+import itertools
+
 import pytest
 from commands import document
 from test_study_refusals import VALID, refusal
+from test_workbook import workbook
 
 from separatrix.cli import main
 from separatrix.errors import InputError
+from separatrix.explore import expected
 from separatrix.limits.map_parameters import value_in, varied
 from separatrix.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
 from separatrix.study_file import read_study
@@ -140,6 +144,32 @@ def test_numbers_of_wear_may_be_uncertain_and_varied(tmp_path):
     assert value_in(whole, "film.wear.width") is None
     with pytest.raises(InputError, match=r"\[film\] has no wear that could vary"):
         varied(whole, {"film.wear.share": 0.1})
+
+
+def test_wear_is_typed_into_a_workbook(tmp_path):
+    """A row for each key, with its unit beside it; lists in one cell; the same study as from text."""
+    heads = ["key", "value", "+-", "unit", "meaning"]
+    places = [heads, ["wear.across", "-0.1; 0.1", None, "mm"], ["wear.thicknesses", "0; 0.2", None, "um"]]
+    band = [heads, ["wear.width", 0.2, "10 %", "mm"]]
+    for rows, section in ((places, PLACES), (band, BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"'))):
+        plain = read_study(written(tmp_path, section))
+        (tmp_path / "study.toml").write_text(VALID)
+        film = [*rows, ["wear.friction", 0.3]]
+        (tmp_path / "worn.xlsx").write_bytes(
+            workbook({"study": [heads, ["extends", "study.toml"]], "film": film})
+        )
+        found = read_study(tmp_path / "worn.xlsx")
+        assert found.film == plain.film
+        assert set(found.distributions) == set(plain.distributions)
+
+
+def test_drawn_chains_are_in_the_estimate(tmp_path, monkeypatch):
+    """As many as are asked for, each as long as one takes by the study's model; none for frictions alone."""
+    ticks = itertools.count()
+    monkeypatch.setattr(expected.time, "perf_counter", lambda: next(ticks))
+    study = read_study(written(tmp_path, BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"')))
+    assert expected._expected_chains(study, 7) == 7.0
+    assert expected._expected_chains(read_study(written(tmp_path, BAND)), 7) == 0.0
 
 
 def test_the_answers_name_models_and_wear(tmp_path, capsys, monkeypatch):

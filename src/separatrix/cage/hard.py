@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 MOST_IMPACTS = 2_000_000
 STALL = 1_000
-"""So many events in a billionth of the run each, one after the other, are an inelastic collapse."""
+"""This number of events, each within a billionth of the run of the one before, is an inelastic collapse."""
 
 STILL = 1e-12
 """Share of the cage's speed at which a pocket slides along its ball instead of striking it."""

@@ -5,6 +5,7 @@ Each is dear to solve, and is remembered by the value of the records that it dep
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -18,6 +19,7 @@ from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.orbit import mean_speed
 from separatrix.chain.race_curve import RaceTrack, race_curve, race_slope
+from separatrix.chain.restitution import contact_damping
 from separatrix.chain.traction import TractionCurve
 from separatrix.chain.traction.exact import RaceSlope
 from separatrix.errors import InputError
@@ -31,12 +33,13 @@ from separatrix.study import (
     TractionModel,
     TractionSettings,
 )
-from separatrix.units import MetrePerSecond, Newton, Radian, RadianPerSecond, Ratio
+from separatrix.units import MetrePerSecond, Newton, NewtonSecondPerMetre, Radian, RadianPerSecond, Ratio
 
 REMEMBERED = 1024
 """Solutions of a stage that are kept, by the records it takes."""
 
 Solved = TypeVar("Solved", Equilibrium, TractionCurve)
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +68,16 @@ class BearingState:
     def cage_speed(self) -> RadianPerSecond:
         """Mean orbital speed of the balls [rad/s]."""
         return mean_speed(self.equilibrium.orbital_speed)
+
+    def dampings(
+        self, inner_slope: Ratio, outer_slope: Ratio
+    ) -> tuple[NewtonSecondPerMetre, NewtonSecondPerMetre]:
+        """Shares of the inner and the outer race in C_mu, from the slopes of their traction curves."""
+        inner, outer = self.inner, self.outer
+        return (
+            contact_damping(inner_slope, inner.load, inner.rolling_speed),
+            contact_damping(outer_slope, outer.load, outer.rolling_speed),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,6 +119,14 @@ def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceC
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaceSlopes:
+    """Slopes of the traction curves at free rolling, with their errors and offsets."""
+
+    inner: TractionCurve | RaceSlope
+    outer: TractionCurve | RaceSlope
+
+
 @lru_cache(maxsize=REMEMBERED)
 def race_traction(
     bearing: BallBearing,
@@ -116,24 +137,8 @@ def race_traction(
 ) -> RaceTraction:
     """Traction curves of both races, remembered by the value of these records."""
     state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    tracks = [
-        race_track(bearing, film, race, at)
-        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
-    ]
-    if settings.model is TractionModel.STRIPS:
-        inner, outer = (race_curve(track, settings) for track in tracks)
-    else:
-        with ThreadPoolExecutor(2) as pool:
-            inner, outer = pool.map(lambda track: race_curve(track, settings), tracks)
+    inner, outer = of_both_races(lambda track: race_curve(track, settings), race_tracks(bearing, film, state))
     return RaceTraction(inner=_unchangeable(inner), outer=_unchangeable(outer))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RaceSlopes:
-    """Slopes of the traction curves at free rolling, with their errors and offsets."""
-
-    inner: TractionCurve | RaceSlope
-    outer: TractionCurve | RaceSlope
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -149,19 +154,27 @@ def race_slopes(
         curves = race_traction(bearing, operation, kinematics, film, settings)
         return RaceSlopes(inner=curves.inner, outer=curves.outer)
     state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    tracks = [
-        race_track(bearing, film, race, at)
-        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
-    ]
-    with ThreadPoolExecutor(2) as pool:
-        inner, outer = pool.map(lambda track: race_slope(track, settings), tracks)
+    inner, outer = of_both_races(lambda track: race_slope(track, settings), race_tracks(bearing, film, state))
     return RaceSlopes(inner=inner, outer=outer)
 
 
-def race_track(bearing: BallBearing, film: Film, race: Race, at: RaceContact) -> RaceTrack:
-    """What rolls on what at one race."""
+def race_tracks(bearing: BallBearing, film: Film, state: BearingState) -> tuple[RaceTrack, RaceTrack]:
+    """What rolls on what at the inner and at the outer race."""
     ball, ring = bearing.ball_material, bearing.ring_material
-    return RaceTrack(ellipse=at.ellipse, creep=at.creep, race=race, ball=ball, ring=ring, film=film)
+    inner, outer = (
+        RaceTrack(ellipse=at.ellipse, creep=at.creep, race=race, ball=ball, ring=ring, film=film)
+        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer))
+    )
+    return inner, outer
+
+
+def of_both_races(
+    compute: Callable[[RaceTrack], Result], tracks: tuple[RaceTrack, RaceTrack]
+) -> tuple[Result, Result]:
+    """Compute something of the inner and of the outer race, side by side."""
+    with ThreadPoolExecutor(2) as pool:
+        inner, outer = pool.map(compute, tracks)
+    return inner, outer
 
 
 def _unchangeable(solved: Solved) -> Solved:

@@ -9,12 +9,12 @@ from typing import Annotated
 
 import numpy as np
 
-from separatrix.chain.contacts import race_track
-from separatrix.chain.race_curve import exact_slope, strips
-from separatrix.chain.restitution import Restitution, contact_damping, restitution
+from separatrix.chain.contacts import race_tracks
+from separatrix.chain.race_curve import race_slope
+from separatrix.chain.restitution import Restitution, restitution
 from separatrix.chain.solution import Solution
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import Film, Race, TractionModel, TractionSettings
+from separatrix.study import Film, TractionModel
 from separatrix.units import Array, Ratio
 
 SHARES = (*np.linspace(0.0, 0.2, 21).tolist(), *np.linspace(0.25, 1.0, 16).tolist())
@@ -104,21 +104,17 @@ def _found(at: Sequence[float], results: Sequence[Restitution | None]) -> dict[f
 def _factors(solution: Solution, films: Sequence[Film], model: TractionModel) -> list[Restitution | None]:
     """Restitution under each film; None where the exact contact has no answer."""
     study, state = solution.study, solution.bearing
-    settings: TractionSettings = replace(study.traction, model=model)
+    settings = study.traction.by(model)
 
     def under(film: Film) -> Restitution | None:
-        dampings = []
-        for race, at in ((Race.INNER, state.inner), (Race.OUTER, state.outer)):
-            track = race_track(study.bearing, film, race, at)
+        try:
+            inner, outer = (race_slope(one, settings) for one in race_tracks(study.bearing, film, state))
+        except (InputError, ConvergenceError):
             if model is TractionModel.STRIPS:
-                slope = strips(track, settings.pressure).slope
-            else:
-                try:
-                    slope = exact_slope(track, settings).slope
-                except (InputError, ConvergenceError):
-                    return None
-            dampings.append(contact_damping(slope, at.load, at.rolling_speed))
+                raise
+            return None
         k, mass = solution.ball_cage_stiffness, solution.design.mass
+        dampings = state.dampings(inner.slope, outer.slope)
         return restitution(*dampings, ball_cage_stiffness=k, cage_mass=mass)
 
     with ThreadPoolExecutor(2) as pool:

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
 
-from separatrix.chain.contacts import RaceContact, race_track
-from separatrix.chain.race_curve import RaceTrack, contact_problem, exact_slope, strips
-from separatrix.chain.restitution import contact_damping, race_damping, restitution
+from separatrix.chain.contacts import RaceContact, of_both_races, race_tracks
+from separatrix.chain.race_curve import RaceTrack, contact_problem, exact_slope, race_slope
+from separatrix.chain.restitution import race_damping, restitution
 from separatrix.chain.solution import Solution
-from separatrix.chain.traction.exact import RaceSlope, rolling_contact
-from separatrix.chain.traction.exact.normal import film_strain
+from separatrix.chain.traction import exact
 from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import ContactPressure, PressureSlip, Race, TractionModel, TractionSettings
+from separatrix.study import ContactPressure, PressureSlip, TractionModel, TractionSettings
 from separatrix.units import Newton, NewtonMetre, NewtonSecondPerMetre, Pascal, Ratio, Rows, Watt
 
 STRAINED: Ratio = 0.1
@@ -88,31 +86,33 @@ def compare_models(solution: Solution) -> ModelComparison:
     squeezed by more than a hundredth of the approach.
     """
     study, state = solution.study, solution.bearing
-    contacts = {Race.INNER: state.inner, Race.OUTER: state.outer}
-    tracks = {race: race_track(study.bearing, study.film, race, at) for race, at in contacts.items()}
-    slip = study.traction.pressure_slip
+    tracks, asked = race_tracks(study.bearing, study.film, state), study.traction
     choices = [(model, ContactPressure.HERTZ) for model in TractionModel]
-    if study.film.wear is None and any(_squeeze(track) > SQUEEZED for track in tracks.values()):
+    is_soft = study.film.wear is None and any(_squeeze(track) > SQUEEZED for track in tracks)
+    if is_soft or asked.pressure is ContactPressure.COATED:
         choices += [(model, ContactPressure.COATED) for model in TractionModel]
-    rows = [_slopes(solution, tracks, *choice, slip=slip) for choice in choices]
-    used = TractionSettings(model=TractionModel.EXACT, pressure=study.traction.pressure, pressure_slip=slip)
+    rows = [_slopes(solution, tracks, *choice) for choice in choices]
     try:
-        found = {race: exact_slope(track, used) for race, track in tracks.items()}
+        found = [exact_slope(track, asked.by(TractionModel.EXACT)) for track in tracks]
     except (InputError, ConvergenceError):  # the row of this model has the reason
         return ModelComparison(models=tuple(rows), inner=None, outer=None, outside=())
-    inner, outer = (_free_rolling(found[race], contacts[race], tracks[race]) for race in contacts)
-    outside = tuple(_outside(rows, inner, outer, slip))
+    inner, outer = map(_free_rolling, found, (state.inner, state.outer), tracks)
+    outside = tuple(_outside(rows, inner, outer, asked.pressure_slip))
     return ModelComparison(models=tuple(rows), inner=inner, outer=outer, outside=outside)
+
+
+def _strain(track: RaceTrack, pressure: Pascal) -> Ratio:
+    """Compression of the film by a pressure over its thickness; 0 without a film."""
+    material = track.film.material
+    if material is None:
+        return 0.0
+    return pressure / exact.solid(material.elastic_modulus, material.poisson_ratio).compression_modulus
 
 
 def _squeeze(track: RaceTrack) -> Ratio:
     """Compression of the film by the largest pressure over the approach of the bodies."""
-    material, thickness, ellipse = track.film.material, track.film.thickness, track.ellipse
-    if material is None or thickness is None:
-        return 0.0
-    nu = material.poisson_ratio
-    confined = material.elastic_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) if nu < 0.5 else 0.0
-    return ellipse.max_pressure * thickness / (confined * ellipse.approach) if confined > 0.0 else 0.0
+    ellipse = track.ellipse
+    return _strain(track, ellipse.max_pressure) * (track.film.thickness or 0.0) / ellipse.approach
 
 
 def _apart(one: tuple[Ratio | None, ...], other: tuple[Ratio | None, ...]) -> Ratio:
@@ -122,60 +122,39 @@ def _apart(one: tuple[Ratio | None, ...], other: tuple[Ratio | None, ...]) -> Ra
 
 
 def _slopes(
-    solution: Solution,
-    tracks: dict[Race, RaceTrack],
-    model: TractionModel,
-    pressure: ContactPressure,
-    *,
-    slip: PressureSlip,
+    solution: Solution, tracks: tuple[RaceTrack, RaceTrack], model: TractionModel, pressure: ContactPressure
 ) -> ModelSlopes:
-    asked = solution.study.traction
-    row = ModelSlopes(
-        model=model, pressure=pressure, is_used=(model, pressure) == (asked.model, asked.pressure)
-    )
-
-    def found(track: RaceTrack) -> tuple[Ratio, Ratio]:
-        if model is TractionModel.STRIPS:
-            curve = strips(track, pressure)
-            return curve.slope, curve.slope_error
-        own = exact_slope(track, TractionSettings(model=model, pressure=pressure, pressure_slip=slip))
-        return own.slope, own.slope_error
-
+    asked, state = solution.study.traction, solution.bearing
+    used = (model, pressure) == (asked.model, asked.pressure)
+    row = ModelSlopes(model=model, pressure=pressure, is_used=used)
     try:
-        with ThreadPoolExecutor(2) as pool:
-            (inner, inner_error), (outer, outer_error) = pool.map(found, tracks.values())
+        inner, outer = of_both_races(lambda track: race_slope(track, asked.by(model, pressure)), tracks)
     except (InputError, ConvergenceError) as error:
         return replace(row, reason=str(error))
-    state = solution.bearing
-    dampings = [
-        contact_damping(slope, at.load, at.rolling_speed)
-        for slope, at in ((inner, state.inner), (outer, state.outer))
-    ]
-    factor = None
+    dampings, factor = state.dampings(inner.slope, outer.slope), None
     if solution.study.cage is not None:
         k, mass = solution.ball_cage_stiffness, solution.design.mass
         factor = restitution(*dampings, ball_cage_stiffness=k, cage_mass=mass).restitution_factor
     return replace(
         row,
-        inner_slope=inner,
-        inner_slope_error=inner_error,
-        outer_slope=outer,
-        outer_slope_error=outer_error,
+        inner_slope=inner.slope,
+        inner_slope_error=inner.slope_error,
+        outer_slope=outer.slope,
+        outer_slope_error=outer.slope_error,
         race_damping=race_damping(*dampings),
         restitution_factor=factor,
     )
 
 
-def _free_rolling(found: RaceSlope, at: RaceContact, track: RaceTrack) -> FreeRolling:
-    one, whole = found.solution, replace(track, film=replace(track.film, wear=None))
-    bodies = contact_problem(whole, TractionSettings()).bodies
+def _free_rolling(found: exact.RaceSlope, at: RaceContact, track: RaceTrack) -> FreeRolling:
+    one = found.solution
     return FreeRolling(
         lateral_force=one.lateral_force,
         lateral_share=one.lateral_force / (track.film.race_friction * at.load),
         spin_moment=one.spin_moment,
         stick_share=one.stick_share,
         max_pressure=one.max_pressure,
-        film_strain=film_strain(bodies, one.max_pressure),
+        film_strain=_strain(track, one.max_pressure),
         pressure_slip=_pressure_slip(track),
         dissipation=one.dissipation * abs(at.rolling_speed),
     )
@@ -184,7 +163,7 @@ def _free_rolling(found: RaceSlope, at: RaceContact, track: RaceTrack) -> FreeRo
 def _pressure_slip(track: RaceTrack) -> Ratio:
     """Largest slip by the pressure over the saturation creep."""
     settings = TractionSettings(model=TractionModel.EXACT, pressure_slip=PressureSlip.INCLUDED)
-    contact = rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
+    contact = exact.rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
     saturation = 2.0 * track.film.race_friction * track.ellipse.max_pressure / track.ellipse.contact_modulus
     return float(np.abs(contact.coupling).max()) / saturation
 

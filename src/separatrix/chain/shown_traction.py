@@ -42,7 +42,7 @@ def exact_area(track: RaceTrack, settings: TractionSettings) -> ExactArea | None
     if track.is_idle:
         return None
     try:
-        found = exact_slope(track, replace(settings, model=TractionModel.EXACT)).solution
+        found = exact_slope(track, settings.by(TractionModel.EXACT)).solution
     except (InputError, ConvergenceError):
         return None
     rows = found.across.size
@@ -58,18 +58,18 @@ def exact_area(track: RaceTrack, settings: TractionSettings) -> ExactArea | None
 
 
 def curves_by_model(
-    track: RaceTrack, settings: TractionSettings, curve: TractionCurve
+    track: RaceTrack, settings: TractionSettings
 ) -> tuple[TractionCurve, TractionCurve | None]:
     """Curves of one contact by strips and by the exact contact; None if that has no answer.
 
     The creep increments go a quarter beyond those at which the contact's own curve is saturated.
     """
-    increments = np.linspace(-1.0, 1.0, INCREMENTS) * _saturation(track, curve)
+    increments = np.linspace(-1.0, 1.0, INCREMENTS) * _saturation(track)
     plain = strips(track, settings.pressure, increments)
     if track.is_idle:
         return plain, None
     try:
-        return plain, exact_curve(track, replace(settings, model=TractionModel.EXACT), plain)
+        return plain, exact_curve(track, settings.by(TractionModel.EXACT), plain)
     except (InputError, ConvergenceError):
         if settings.model is TractionModel.EXACT:
             raise
@@ -90,9 +90,9 @@ def curves_by_ratio(track: RaceTrack, curve: TractionCurve) -> tuple[TractionCur
     )
 
 
-def _saturation(track: RaceTrack, curve: TractionCurve) -> Ratio:
-    """Creep increment a quarter beyond the one at which a curve has its whole friction, either way."""
-    widest = float(curve.creep_increment[-1])
+def _saturation(track: RaceTrack) -> Ratio:
+    """Creep increment a quarter beyond the one at which the curve has its whole friction, either way."""
+    widest = float(strips(track, ContactPressure.HERTZ).creep_increment[-1])
     finer = strips(
         track, ContactPressure.HERTZ, widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0)
     )

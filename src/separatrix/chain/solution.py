@@ -35,7 +35,6 @@ from separatrix.chain.pocket import (
 from separatrix.chain.restitution import (
     Restitution,
     ball_pocket_stiffness,
-    contact_damping,
     hertz_coefficient_for,
     restitution,
 )
@@ -199,11 +198,7 @@ class Solution:
     def restitution(self) -> Restitution:
         """Restitution factor of the cage's impacts, with the race damping behind it."""
         mass = self.design.mass  # refused before anything is computed
-        slopes, contacts = self.slopes, self.bearing
-        inner, outer = (
-            contact_damping(curve.slope, at.load, at.rolling_speed)
-            for curve, at in ((slopes.inner, contacts.inner), (slopes.outer, contacts.outer))
-        )
+        inner, outer = self.bearing.dampings(self.slopes.inner.slope, self.slopes.outer.slope)
         return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
 
     @cached_property

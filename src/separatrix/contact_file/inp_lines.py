@@ -35,7 +35,7 @@ class InpLines:
         raise InputError(f"{self.label}: case {self.case}, {what}", "is missing: the file ends before it")
 
     def numbers(self, *names: str) -> list[float]:
-        """So many numbers, on as many lines as they take."""
+        """A number for each name, on as many lines as they take."""
         found: list[float] = []
         while len(found) < len(names):
             words, missing = self.words(names[len(found)]), len(names) - len(found)

@@ -106,18 +106,16 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
 
 def _expected_chains(study: Study, count: int) -> Second:
     """Time of the chains of as many drawn bearings; none where only frictions are drawn."""
-    from separatrix.chain.contacts import race_track
+    from separatrix.chain.contacts import race_tracks
     from separatrix.chain.race_curve import exact_slope, strips
     from separatrix.chain.solution import solve
-    from separatrix.study import Race, TractionModel
+    from separatrix.study import TractionModel
 
     if all(key.startswith("ranking.") for key in study.distributions):
         return 0.0
-    state = solve(study).bearing
-    pairs = (Race.INNER, state.inner), (Race.OUTER, state.outer)
+    tracks = race_tracks(study.bearing, study.film, solve(study).bearing)
     start = time.perf_counter()
-    for race, at in pairs:
-        track = race_track(study.bearing, study.film, race, at)
+    for track in tracks:
         if study.traction.model is TractionModel.STRIPS:
             strips(track, study.traction.pressure)
         else:

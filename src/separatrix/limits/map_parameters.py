@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
 from separatrix.errors import InputError
-from separatrix.study import Study, Wear
+from separatrix.study import Film, Study, Wear
 from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
@@ -78,7 +78,7 @@ def varied(study: Study, values: Mapping[str, float]) -> Study:
         keys = {
             key: value for key, value in keys.items() if not key.startswith("film.") or key == RACE_FRICTION
         }
-        study = replace(study, film=replace(study.film, material=None, thickness=None))
+        study = replace(study, film=Film(race_friction=study.film.race_friction))
     return with_values(study, keys) if keys else study
 
 

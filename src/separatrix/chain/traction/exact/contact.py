@@ -132,7 +132,7 @@ class ContactSolution:
 
 
 def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 40) -> RollingContact:
-    """Put a problem on a grid of so many cells along rolling and across.
+    """Put a problem on a grid of `columns` along rolling and `rows` across.
 
     Raises
     ------

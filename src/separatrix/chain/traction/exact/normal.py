@@ -128,7 +128,7 @@ def pressed_box(
 
 
 def _cells_of(half: Array, count: tuple[int, int]) -> tuple[Array, Array]:
-    """Centres of so many cells along x and y in a box of these half lengths."""
+    """Centres of the cells along x and y in a box of these half lengths."""
     widths = (float(2.0 * h / n) for h, n in zip(half, count, strict=True))
     x, y = (width * np.arange(0.5 - 0.5 * n, 0.5 * n) for width, n in zip(widths, count, strict=True))
     return x, y
