@@ -13,7 +13,7 @@ from itertools import chain
 import numpy as np
 from exact_cases import MU, body, contact, kalker, saturation, strip_force
 from test_exact_contact import GALIN, given
-from test_exact_normal import COATED, RIGID, coated_sphere
+from test_exact_normal import COATED, spheres_on_two_grids
 from test_exact_rolling import (
     CREEPS,
     ORDER,
@@ -29,8 +29,6 @@ from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact
 from separatrix.chain.traction.exact.flexibility import Layer, solid
-from separatrix.chain.traction.exact.images import pair_images
-from separatrix.chain.traction.exact.normal import press
 from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.profile import worn_band
@@ -114,16 +112,7 @@ def spheres_table():
     """Coated spheres: approach and pressure at the centre."""
     print("## coated sphere: approach, centre pressure, radius; per cent, extrapolated over 32 and 64 cells")
     for ratio, h, a, d, p0 in COATED:
-        coated, load, top = coated_sphere(ratio, h)
-        found = []
-        for n in (32, 64):
-            dx = 2.4 * a / n
-            x = dx * (np.arange(n) + 0.5 - 0.5 * n)
-            gap = 0.5 * (x * x + dx * dx / 12.0) + 0.5 * (x * x + dx * dx / 12.0)[:, None]
-            pressing = press(gap, (dx, dx), pair_images(RIGID, coated), load)
-            centre = pressing.pressure[n // 2 - 1 : n // 2 + 1, n // 2 - 1 : n // 2 + 1].mean()
-            radius = math.sqrt((pressing.pressure > 0.0).sum() * dx * dx / math.pi)
-            found.append(np.array([pressing.approach, centre / top, radius]))
+        found = spheres_on_two_grids(ratio, h, a)
         best = (4.0 * found[1] - found[0]) / 3.0
         say(ratio, h, best[:2], (d, p0), percent(best[:2], (d, p0)), found[1][2], a)
 

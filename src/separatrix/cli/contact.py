@@ -5,9 +5,13 @@ from __future__ import annotations
 import contextlib
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from separatrix.cli.console import answer, harmless, progress_bar
 from separatrix.cli.files import staged, writable_folder
+
+if TYPE_CHECKING:
+    from separatrix.contact_file.question import ContactAnswer
 
 HELP = "Tractions and slip of one rolling contact, without a bearing."
 EPILOG = (
@@ -53,18 +57,16 @@ def contact(path: Path, folder: Path | None, *, as_json: bool, quiet: bool) -> i
     return 0
 
 
-def _write(found: object, notes: list[str], texts: dict[str, str], folder: Path) -> None:
+def _write(found: ContactAnswer, notes: list[str], texts: dict[str, str], folder: Path) -> None:
     import logging
 
     from separatrix import figures
-    from separatrix.contact_file.question import ContactAnswer
     from separatrix.present import save
     from separatrix.present.contact import contact_dataset
 
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     for name, content in texts.items():
         (folder / name).write_text(harmless(content), encoding="utf-8")
-    if isinstance(found, ContactAnswer):
-        data = contact_dataset(found, notes)
-        save(data, folder / "contact.nc")
-        figures.save_all(figures.draw("contact", data), folder)
+    data = contact_dataset(found, notes)
+    save(data, folder / "contact.nc")
+    figures.save_all(figures.draw("contact", data), folder)

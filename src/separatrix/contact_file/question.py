@@ -62,8 +62,12 @@ class ExtraSlip:
 
     def reversed(self) -> ExtraSlip:
         """The same with x the other way."""
-        slip = np.array([-1.0, 1.0])[:, None, None] * self.slip[:, :, ::-1]
-        return ExtraSlip(along=-self.along[::-1], across=self.across, slip=slip)
+        return ExtraSlip(along=-self.along[::-1], across=self.across, slip=mirrored(self.slip))
+
+
+def mirrored(vectors: Array) -> Array:
+    """A field of vectors, shape (2, row, column), with x the other way."""
+    return np.array([-1.0, 1.0])[:, None, None] * vectors[:, :, ::-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

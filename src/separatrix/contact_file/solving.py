@@ -26,6 +26,7 @@ from separatrix.contact_file.question import (
     ContactSetup,
     Motion,
     SolvedCase,
+    mirrored,
 )
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.units import Array
@@ -85,7 +86,7 @@ class _State:
             return SolvedCase(case=case, solution=None, reason=FAILED_BEFORE)
         start = self.traction if case.continues else None
         if start is not None and case.turned:
-            start = _mirrored(start)
+            start = mirrored(start)
         try:
             contact = self._contact(case.setup)
             if start is not None and start.shape[1:] != contact.grid.shape:
@@ -205,11 +206,6 @@ def _zero_of(excess: Callable[[float], float], scale: float) -> float:
     raise ConvergenceError("No creep gives the wanted force.", DOUBLINGS, abs(there))
 
 
-def _mirrored(vectors: Array) -> Array:
-    """A field of vectors, shape (2, row, column), with x the other way."""
-    return np.array([-1.0, 1.0])[:, None, None] * vectors[:, :, ::-1]
-
-
 def _reversed(found: ContactSolution) -> ContactSolution:
     """The same solution with x the other way."""
     return replace(
@@ -217,8 +213,8 @@ def _reversed(found: ContactSolution) -> ContactSolution:
         along=-found.along[::-1],
         fraction=found.fraction[:, ::-1],
         pressure=found.pressure[:, ::-1],
-        traction=_mirrored(found.traction),
-        slip=_mirrored(found.slip),
+        traction=mirrored(found.traction),
+        slip=mirrored(found.slip),
         stick=found.stick[:, ::-1],
         force=0.0 - found.force,
         spin_moment=0.0 - found.spin_moment,
