@@ -14,7 +14,7 @@ from separatrix.errors import InputError
 from separatrix.units import Array, Kilogram, MetrePerSecond, Newton, NewtonSecondPerMetre
 
 MOST_ELEMENTS = 4
-"""Elements of a law, at most: four follow the traction of a bearing to a fraction of a percent of its capacity."""
+"""Elements of a law, at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,9 +57,8 @@ class BallTraction:
     def force(self, speed: Array) -> Array:
         """F(u) at speeds beyond the free orbit, same shape [N]."""
         u = np.asarray(speed, dtype=np.float64)[..., None]
-        return np.asarray(
-            np.sum(np.array(self.slopes) * u / np.hypot(1.0, u / np.array(self.speeds)), axis=-1)
-        )
+        slopes, speeds = np.array(self.slopes), np.array(self.speeds)
+        return np.asarray(np.sum(slopes * u / np.hypot(1.0, u / speeds), axis=-1))
 
 
 def _refused_elements(law: BallTraction) -> Iterator[InputError]:
