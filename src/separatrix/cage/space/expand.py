@@ -1,0 +1,239 @@
+r"""The motion of one mode in space as power series.
+
+Beside the planar equations, along the axis :math:`M\ddot z = F_z + M g_z`, and for the tilt :math:`\tau =
+\tau_x + i\tau_y` in the frame that turns at :math:`\Omega`, with :math:`\omega = \Omega + \dot\theta`:
+
+.. math:: J_t\ddot\tau + i(2J_t\Omega - J_p\omega)\dot\tau + (J_p\omega\Omega - J_t\Omega^2 + iJ_t\dot\Omega)
+   \tau = m.
+"""
+
+from __future__ import annotations
+
+import math
+
+from separatrix.cage.motion import frame_angle
+from separatrix.cage.records import ORDER, Pace
+from separatrix.cage.space.ball import move_ball
+from separatrix.cage.space.land import dent_strip, press_strip, strip_forces
+from separatrix.cage.space.pocket import place_pocket, press_pockets, rub_pockets, slide_pockets, sum_pockets
+from separatrix.cage.space.records import (
+    CLEAR,
+    COS,
+    FORCE_X,
+    FORCE_Y,
+    FRAME,
+    FT,
+    FZ,
+    GA,
+    GB,
+    GONE,
+    GX,
+    GY,
+    LEAN,
+    NONE,
+    PRESSED,
+    RUB_Q,
+    RUB_R,
+    SIN,
+    SPIN,
+    VA,
+    VB,
+    VS,
+    VX,
+    VY,
+    VZ,
+    A,
+    B,
+    Motion,
+    Numbers,
+    Parts,
+    S,
+    X,
+    Y,
+    Z,
+)
+from separatrix.compiled import inlined_kernel, inner_kernel
+from separatrix.units import Array
+
+
+@inlined_kernel
+def ramped(c: Array, column: int, first: float, rise: float, n: int) -> float:
+    """Coefficient n of a series times `first` + `rise` t."""
+    total = first * c[n, column]
+    if n > 0:
+        total += rise * c[n - 1, column]
+    return total
+
+
+@inlined_kernel
+def ramped_twice(c: Array, column: int, first: float, rise: float, n: int) -> float:
+    """Coefficient n of a series times the square of `first` + `rise` t."""
+    total = first * first * c[n, column]
+    if n > 0:
+        total += 2.0 * first * rise * c[n - 1, column]
+    if n > 1:
+        total += rise * rise * c[n - 2, column]
+    return total
+
+
+@inner_kernel
+def load(p: Numbers, parts: Parts, state: Motion) -> None:
+    """First coefficients of the series of the cage."""
+    cage = parts.cage
+    cage[0, X], cage[0, Y], cage[0, Z], cage[0, S] = state.x, state.y, state.z, state.s
+    cage[0, A], cage[0, B] = state.a, state.b
+    cage[0, VX], cage[0, VY], cage[0, VZ], cage[0, VS] = state.vx, state.vy, state.vz, state.vs
+    cage[0, VA], cage[0, VB] = state.va, state.vb
+    if p.needs_rotation:
+        cage[0, COS], cage[0, SIN] = math.cos(state.s / p.radius), math.sin(state.s / p.radius)
+    place_geometry(p, cage, 0)
+    if p.needs_frame:
+        angle = frame_angle(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
+        for h in range(max(1, p.harmonics)):
+            cage[0, FRAME + 2 * h] = math.cos((h + 1) * angle)
+            cage[0, FRAME + 2 * h + 1] = math.sin((h + 1) * angle)
+            cage[0, GONE + 2 * h] = cage[0, GONE + 2 * h + 1] = 0.0
+
+
+@inlined_kernel
+def place_geometry(p: Numbers, cage: Array, n: int) -> None:
+    """Coefficient n of the geometric centre and axis, which an unbalance parts from those of the mass."""
+    cage[n, GX], cage[n, GY], cage[n, GA], cage[n, GB] = cage[n, X], cage[n, Y], cage[n, A], cage[n, B]
+    if p.needs_rotation:
+        cage[n, GX] -= p.eccentricity * cage[n, COS]
+        cage[n, GY] -= p.eccentricity * cage[n, SIN]
+        cage[n, GA] += p.leaning * cage[n, SIN]
+        cage[n, GB] -= p.leaning * cage[n, COS]
+
+
+@inlined_kernel
+def turn(p: Numbers, cage: Array, now: Pace, n: int) -> None:
+    """Coefficients n + 1 of the rotation, of the turning of the frame and of the ways of free balls."""
+    after = 1.0 / (n + 1.0)
+    if p.needs_rotation:
+        cosine = sine = 0.0
+        for m in range(n + 1):
+            cosine -= cage[m, VS] * cage[n - m, SIN]
+            sine += cage[m, VS] * cage[n - m, COS]
+        cage[n + 1, COS], cage[n + 1, SIN] = cosine * after / p.radius, sine * after / p.radius
+    if p.needs_frame:
+        for k in range(0, max(2, 2 * p.harmonics), 2):
+            scale = (1 + k // 2) * after * p.turning
+            cage[n + 1, FRAME + k] = -scale * ramped(cage, FRAME + k + 1, now.share, now.rise, n)
+            cage[n + 1, FRAME + k + 1] = scale * ramped(cage, FRAME + k, now.share, now.rise, n)
+        for k in range(2 * p.harmonics):
+            cage[n + 1, GONE + k] = ramped(cage, FRAME + k, now.share, now.rise, n) * after
+
+
+@inlined_kernel
+def expand(p: Numbers, parts: Parts, now: Pace) -> None:
+    """Fill the series of the motion from the state in their first coefficients."""
+    cage = parts.cage
+    for n in range(ORDER + 1):
+        after = 1.0 / (n + 1.0)
+        for k in range(6):
+            cage[n + 1, X + k] = cage[n, VX + k] * after
+        turn(p, cage, now, n)
+        place_geometry(p, cage, n + 1)
+        fx, fy, fz, ts, ta, tb = pocket_forces(p, parts, now, n)
+        for i in range(parts.mode.size):
+            if parts.mode[i] == CLEAR:
+                continue
+            if n == 0:
+                dent_strip(p, parts, i, 0)
+            dent_strip(p, parts, i, n + 1)
+            if parts.mode[i] == PRESSED:
+                press_strip(p, parts, i, now, n)
+                lx, ly, lz, ls, la, lb = strip_forces(p, parts, i, n)
+                fx, fy, fz, ts, ta, tb = fx + lx, fy + ly, fz + lz, ts + ls, ta + la, tb + lb
+        accelerate(p, cage, now, fx, fy, fz, ts, ta, tb, n)
+
+
+@inlined_kernel
+def pocket_forces(
+    p: Numbers, parts: Parts, now: Pace, n: int
+) -> tuple[float, float, float, float, float, float]:
+    """Coefficient n of the pockets' forces on the cage and of their moments over R; and of balls' motion."""
+    fx = fy = fz = ts = ta = tb = 0.0
+    for b in range(parts.count[1]):
+        place_pocket(p, parts, parts.active[b], n)
+    if parts.count[0] > 0:
+        press_pockets(p, parts, n)
+        slide_pockets(p, parts, now, n)
+        rub_pockets(p, parts, n)
+        sum_pockets(p, parts, n)
+    for b in range(parts.count[1]):
+        j = parts.active[b]
+        along = axial = 0.0
+        cos, sin = parts.cosine[j], parts.sine[j]
+        for i in range(2 * j, 2 * j + 2):
+            if parts.kind[i] == NONE:
+                continue
+            c = parts.contact[i, n]
+            f_r, f_t, f_z = c[RUB_R], c[FT], c[FZ]
+            fx += f_r * cos - f_t * sin
+            fy += f_r * sin + f_t * cos
+            fz += f_z
+            ts += f_t + p.lever * c[SPIN]
+            # m = -F_z e_t + h (F_r p_z e_t - F_q e_r), over R
+            lean, roll = p.lever * c[LEAN] - f_z, -p.lever * c[RUB_Q]
+            ta += roll * cos - lean * sin
+            tb += roll * sin + lean * cos
+            along -= f_t
+            axial -= f_z
+        move_ball(p, parts, j, now, along, axial, n)
+    return fx, fy, fz, ts, ta, tb
+
+
+@inlined_kernel
+def accelerate(
+    p: Numbers,
+    cage: Array,
+    now: Pace,
+    fx: float,
+    fy: float,
+    fz: float,
+    ts: float,
+    ta: float,
+    tb: float,
+    n: int,
+) -> None:
+    """Coefficient n + 1 of the speeds, from the forces and what the turning frame adds."""
+    W, rise, after = p.turning * now.share, p.turning * now.rise, 1.0 / (n + 1.0)
+    # 2 v x Omega + Omega^2 r + r x dOmega/dt
+    ax = 2.0 * ramped(cage, VY, W, rise, n) + ramped_twice(cage, X, W, rise, n) + rise * cage[n, Y]
+    ay = -2.0 * ramped(cage, VX, W, rise, n) + ramped_twice(cage, Y, W, rise, n) - rise * cage[n, X]
+    if p.gravity != 0.0:
+        ax += p.gravity * cage[n, FRAME]
+        ay -= p.gravity * cage[n, FRAME + 1]
+    if p.eccentricity != 0.0:
+        # T = -epsilon (cos theta, sin theta) x F
+        cage[n, FORCE_X], cage[n, FORCE_Y] = fx, fy
+        for m in range(n + 1):
+            cross = cage[m, COS] * cage[n - m, FORCE_Y] - cage[m, SIN] * cage[n - m, FORCE_X]
+            ts -= p.eccentricity * cross / p.radius
+    twist, axial = 0.0, 0.0
+    if n == 0:
+        twist, axial = -rise * p.radius, p.axial_gravity
+    cage[n + 1, VX], cage[n + 1, VY] = (fx + ax) * after, (fy + ay) * after
+    cage[n + 1, VZ] = (fz * p.axial_swiftness + axial) * after
+    cage[n + 1, VS] = (ts / p.spin_inertia + twist) * after
+    if p.tilt_swiftness == 0.0:
+        return
+    spun_a = spun_b = lean_a = lean_b = 0.0
+    for m in range(n + 1):
+        spun_a += cage[m, VS] * cage[n - m, VA]
+        spun_b += cage[m, VS] * cage[n - m, VB]
+        lean_a += cage[m, VS] * (now.share * cage[n - m, A])
+        lean_b += cage[m, VS] * (now.share * cage[n - m, B])
+    for m in range(n):
+        lean_a += cage[m, VS] * (now.rise * cage[n - 1 - m, A])
+        lean_b += cage[m, VS] * (now.rise * cage[n - 1 - m, B])
+    jt, jp = p.tilt_inertia, p.spin_inertia
+    gyro, pull = 2.0 * jt - jp, jp - jt
+    slip = jp / p.radius
+    ta += gyro * ramped(cage, VB, W, rise, n) - slip * spun_b + jt * rise * cage[n, B]
+    tb -= gyro * ramped(cage, VA, W, rise, n) - slip * spun_a + jt * rise * cage[n, A]
+    ta -= pull * ramped_twice(cage, A, W, rise, n) + slip * p.turning * lean_a
+    tb -= pull * ramped_twice(cage, B, W, rise, n) + slip * p.turning * lean_b
+    cage[n + 1, VA], cage[n + 1, VB] = ta * p.tilt_swiftness * after, tb * p.tilt_swiftness * after

@@ -1,0 +1,254 @@
+"""Motion of the cage in space from event to event, each mode by its series."""
+
+from __future__ import annotations
+
+from separatrix.cage.motion import LONGEST, MOST_STEPS, PRECISION, pace_at
+from separatrix.cage.records import ORDER, POWERS, Whole
+from separatrix.cage.series import ROUNDING
+from separatrix.cage.space.events import (
+    LEAVE,
+    MEET,
+    NOTHING,
+    REGION,
+    STRIP,
+    at_time,
+    pocket_event,
+    strip_event,
+)
+from separatrix.cage.space.expand import expand, load
+from separatrix.cage.space.land import dent_strip
+from separatrix.cage.space.records import (
+    AXIAL,
+    BALL_COLUMNS,
+    CAGE_COLUMNS,
+    CLEAR,
+    DEPTH,
+    DEPTH_L,
+    DZ,
+    FAR_L,
+    FLAT_BACK,
+    FLAT_FRONT,
+    FORCE_X,
+    FT,
+    FZ,
+    GONE,
+    LEAD,
+    NONE,
+    PRESSED,
+    PUSH,
+    RELEASED,
+    ROUND_END,
+    RUB_R,
+    SPEED,
+    STATE,
+    STRIP_COLUMNS,
+    VA,
+    VB,
+    VS,
+    VX,
+    VY,
+    VZ,
+    A,
+    B,
+    Motion,
+    Numbers,
+    Parts,
+    S,
+    SpaceLook,
+    Works,
+    X,
+    Y,
+    Z,
+)
+from separatrix.cage.space.tally import enter_step, kinetic
+from separatrix.compiled import inlined_kernel, inner_kernel
+from separatrix.units import Array
+
+
+@inlined_kernel
+def list_contacts(parts: Parts) -> None:
+    """List the contacts that touch and the balls that move."""
+    touching = active = 0
+    for j in range(parts.moving.size):
+        if parts.moving[j] == 0:
+            continue
+        parts.active[active] = j
+        active += 1
+        for i in range(2 * j, 2 * j + 2):
+            if parts.kind[i] != NONE:
+                parts.touching[touching] = i
+                touching += 1
+    parts.count[0], parts.count[1] = touching, active
+
+
+@inlined_kernel
+def step_length(p: Numbers, parts: Parts) -> float:
+    """Time for which the last two terms of the series stay below `PRECISION` of the speeds."""
+    first, one, two = parts.cage[0], parts.cage[ORDER], parts.cage[ORDER - 1]
+    scale, last, before = p.slowest, 0.0, 0.0
+    for k in range(VX, VB + 1):
+        scale += abs(first[k])
+        last, before = max(last, abs(one[k])), max(before, abs(two[k]))
+    for b in range(parts.count[1]):
+        ball = parts.ball[parts.active[b]]
+        last = max(last, abs(ball[ORDER, SPEED]), ORDER * abs(ball[ORDER, AXIAL]))
+        before = max(before, abs(ball[ORDER - 1, SPEED]), (ORDER - 1) * abs(ball[ORDER - 1, AXIAL]))
+    for a in range(parts.count[0]):
+        c = parts.contact[parts.touching[a]]
+        for k in (PUSH, RUB_R, FT, FZ):
+            last = max(last, abs(c[ORDER - 1, k]) / ORDER)
+            before = max(before, abs(c[ORDER - 2, k]) / (ORDER - 1))
+    for i in range(parts.mode.size):
+        if parts.mode[i] != CLEAR:
+            last = max(last, ORDER * abs(parts.strip[i, ORDER, FAR_L]))
+            before = max(before, (ORDER - 1) * abs(parts.strip[i, ORDER - 1, FAR_L]))
+    h, scale = LONGEST, PRECISION * scale
+    if last > 0.0:
+        h = min(h, (scale / last) ** (1.0 / ORDER))
+    if before > 0.0:
+        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
+    return h
+
+
+@inlined_kernel
+def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
+    """State at the end of a step that lasts for t."""
+    cage, here = parts.here[0], parts.here[1]
+    at_time(parts.cage, t, CAGE_COLUMNS if p.needs_frame else FORCE_X, cage)
+    state.x, state.y, state.z, state.s, state.a, state.b = (
+        cage[X],
+        cage[Y],
+        cage[Z],
+        cage[S],
+        cage[A],
+        cage[B],
+    )
+    state.vx, state.vy, state.vz, state.vs = cage[VX], cage[VY], cage[VZ], cage[VS]
+    state.va, state.vb = cage[VA], cage[VB]
+    state.clock += t
+    for a in range(parts.count[0]):
+        i = parts.touching[a]
+        at_time(parts.contact[i], t, DEPTH + 1, here)
+        parts.contact[i, 0, DEPTH] = here[DEPTH]
+    for b in range(parts.count[1]):
+        j = parts.active[b]
+        at_time(parts.ball[j], t, STATE, here)
+        ball = parts.ball[j, 0]
+        ball[LEAD], ball[SPEED], ball[AXIAL] = here[LEAD], here[SPEED], here[AXIAL]
+    if p.harmonics > 0:
+        for j in range(parts.moving.size):
+            for k in range(2 * p.harmonics):
+                parts.ball[j, 0, LEAD] += parts.drive[k, j] * cage[GONE + k]
+    for i in range(parts.mode.size):
+        if parts.mode[i] != CLEAR:
+            at_time(parts.strip[i], t, STRIP_COLUMNS, here)
+            parts.strip[i, 0, DEPTH_L] = here[DEPTH_L]
+
+
+@inlined_kernel
+def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
+    """Balls that touch nothing and hardly move come to rest in their orbit and their groove."""
+    for b in range(parts.count[1]):
+        j = parts.active[b]
+        if parts.kind[2 * j] != NONE or parts.kind[2 * j + 1] != NONE:
+            continue
+        ball = parts.ball[j]
+        lead, speed, axial = ball[0, LEAD], ball[0, SPEED], ball[0, AXIAL]
+        if abs(speed) > p.still or abs(axial) > p.resting:
+            continue
+        gone = 0.5 * (p.groove_stiffness * axial**2 + p.ball_mass * speed**2)
+        works.races -= gone
+        works.gross += gone
+        for n in range(POWERS):
+            for k in range(BALL_COLUMNS):
+                ball[n, k] = 0.0
+        ball[0, LEAD] = lead
+        parts.moving[j] = 0
+
+
+@inlined_kernel
+def change(
+    p: Numbers, parts: Parts, event: int, which: int, becomes: int, look: SpaceLook, hits: Whole
+) -> None:
+    """Change the mode of what ended a step."""
+    if event == LEAVE:
+        parts.kind[which] = NONE
+    elif event == MEET:
+        j = which // 2
+        if parts.moving[j] == 0:
+            lead = parts.ball[j, 0, LEAD]
+            for n in range(POWERS):
+                for k in range(BALL_COLUMNS):
+                    parts.ball[j, n, k] = 0.0
+            parts.ball[j, 0, LEAD] = lead
+        parts.kind[which], parts.moving[j] = becomes, 1
+        hits[j] += 1
+        look.strikes += 1.0
+    elif event == REGION:
+        parts.region[which] = becomes
+        one, two = 2 * which, 2 * which + 1
+        if becomes == 0 and parts.kind[one] != NONE:
+            parts.kind[two] = FLAT_FRONT if parts.ball[which, 0, DZ] > 0.0 else FLAT_BACK
+            parts.kind[one] = NONE
+        elif becomes != 0 and parts.kind[two] != NONE:
+            parts.kind[one], parts.kind[two] = ROUND_END, NONE
+    elif becomes == PRESSED:
+        look.land_hits += parts.mode[which] == CLEAR
+        parts.mode[which] = PRESSED
+    else:
+        if becomes != CLEAR:
+            dent_strip(p, parts, which, 0)
+            becomes = RELEASED if parts.strip[which, 0, DEPTH_L] > ROUNDING * p.land_gap else CLEAR
+        parts.mode[which] = becomes
+
+
+@inner_kernel
+def advance(
+    p: Numbers,
+    parts: Parts,
+    state: Motion,
+    works: Works,
+    step: Works,
+    look: SpaceLook,
+    hits: Whole,
+    heat: Array,
+    length: float,
+    ceiling: float,
+) -> bool:
+    """Advance the cage by a time, in place; False if more events came than any motion has.
+
+    Parameters
+    ----------
+    p, parts, state
+        The cage, its parts and their modes, and its state.
+    works, step, look, hits, heat
+        Work since the start, room for that of a step, tally of this look, impacts of every pocket and the
+        integral of force times sliding speed there.
+    length, ceiling : float
+        Time to advance, and the kinetic energy above which to stop.
+    """
+    done, taken = 0.0, 0
+    most = MOST_STEPS * (1.0 + length * p.fastest)
+    while done < length and kinetic(p, state) < ceiling:
+        taken += 1
+        if taken > most:
+            return False
+        now = pace_at(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
+        list_contacts(parts)
+        load(p, parts, state)
+        expand(p, parts, now)
+        h = min(step_length(p, parts), length - done)
+        if state.clock < p.ramp_time:
+            h = min(h, p.ramp_time - state.clock)
+        end, event, which, becomes = pocket_event(p, parts, h)
+        end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
+        enter_step(p, parts, now, h, end, works, step, look, heat)
+        finish(p, parts, state, end * h)
+        done = length if event == NOTHING and h == length - done else done + end * h
+        if event == STRIP:
+            load(p, parts, state)
+        if event != NOTHING:
+            change(p, parts, event, which, becomes, look, hits)
+        settle_balls(p, parts, works)
+    look.steps += taken
+    return True
