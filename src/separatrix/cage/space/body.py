@@ -22,6 +22,7 @@ from separatrix.units import (
     NewtonSecondPerMetre,
     Radian,
     RadianPerSecond,
+    Ratio,
 )
 
 
@@ -60,6 +61,8 @@ class SpaceCage:
         Angle between the axis of the cage and its principal axis [rad], in the plane of the static unbalance.
     added_mass : float
         Of the fluid that moves with the cage across the axis [kg].
+    axial_kick, tilt_kick : float
+        Share of a run's kick that its start has along the axis, and at the rim by tilting [-].
     is_tilt_held, is_axially_held : bool
         The cage may not tilt, or not move along the axis.
 
@@ -84,6 +87,8 @@ class SpaceCage:
     axial_gravity: MetrePerSecond2 = 0.0
     dynamic_unbalance: Radian = 0.0
     added_mass: Kilogram = 0.0
+    axial_kick: Ratio = 0.0
+    tilt_kick: Ratio = 0.0
     is_tilt_held: bool = False
     is_axially_held: bool = False
 
@@ -117,7 +122,7 @@ class SpaceCage:
         return half, 0.0, self.axial_play
 
 
-_NOT_NEGATIVE = ("groove_stiffness", "pivot_speed", "land_width", "added_mass")
+_NOT_NEGATIVE = ("groove_stiffness", "pivot_speed", "land_width", "added_mass", "axial_kick", "tilt_kick")
 
 
 def _refused_inertia(cage: SpaceCage) -> Iterator[InputError]:

@@ -15,8 +15,8 @@ import numpy as np
 
 from separatrix.ball_traction import MOST_ELEMENTS
 from separatrix.cage.closed_forms import rebound_damping, time_unit
-from separatrix.cage.ending import Look
-from separatrix.cage.records import HARMONICS, POWERS, Whole, dtype_of, records
+from separatrix.cage.ending import Look, Memory
+from separatrix.cage.records import HARMONICS, POWERS, Evidence, Whole, dtype_of, records
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
 from separatrix.units import Array, MetrePerSecond
@@ -208,6 +208,34 @@ class SpaceLook(Look):
     land_heat: float
 
 
+class SpaceEvidence(Evidence):
+    """Evidence of a run in space in SI units, but for forces, energies and powers, which are over the mass."""
+
+    largest_tilt: float
+    mean_tilt: float
+    cone_speed: float
+    cone_phase: float
+    axial_low: float
+    axial_high: float
+    axial_place: float
+    axial_spread: float
+    strike_rate: float
+
+
+class Books(NamedTuple):
+    """What runs keep while they run: the last row of each, and one more of the looks, stays zero."""
+
+    state: Sequence[Motion]  # 2
+    works: Sequence[Works]  # of the run and of a step, and zero
+    memory: Sequence[Memory]  # 2
+    looks: Sequence[SpaceLook]
+
+
+def books_for(most: int) -> Books:
+    """Books of runs with at most `most` looks."""
+    return Books(records(Motion, 2), records(Works, 3), records(Memory, 2), records(SpaceLook, most + 2))
+
+
 def land_strips(cage: SpaceCage) -> tuple[Array, Array]:
     """Heights of the strips of all lands, and the share of a land's stiffness that each has."""
     if cage.plane.guidance is Guidance.BALL:
@@ -336,8 +364,3 @@ def parts_of(cage: SpaceCage) -> Parts:
         c=np.zeros(POWERS),
         here=np.zeros((4, CAGE_COLUMNS)),
     )
-
-
-def motion() -> Motion:
-    """State of one run, all zero."""
-    return cast("Sequence[Motion]", records(Motion, 1))[0]
