@@ -50,6 +50,20 @@ class PocketContact(Enum):
     HERTZ = "hertz"
 
 
+class BallModel(Enum):
+    """What a ball does that its pocket pushes: a damper as in the paper, or one with mass and traction."""
+
+    DAMPER = "damper"
+    TRACTION = "traction"
+
+
+class MotionModel(Enum):
+    """Where the cage moves: in the bearing plane as in the paper, or in space."""
+
+    PLANE = "plane"
+    SPACE = "space"
+
+
 class Cage(Pocket, Protocol):
     """A record with pockets and land: `CageDesign`, or `PlanarCage`."""
 
@@ -137,7 +151,14 @@ _SAME = POCKET_AND_LAND
 class CageDesign:
     """The cage: inertia, pockets and guidance."""
 
-    mass: Kilogram = field(metadata=must(positive, 1e-9, 1e4))
+    mass: Kilogram | None = field(default=None, metadata=must(positive, 1e-9, 1e4))
+    """None: that of its shape, with the density of its material."""
+
+    ball: BallModel = field(default=BallModel.DAMPER, metadata=must(one_of, BallModel))
+    motion: MotionModel = field(default=MotionModel.PLANE, metadata=must(one_of, MotionModel))
+    inner_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
+    outer_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
+    width: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
     pocket_clearance: Metre = field(metadata=_SAME["pocket_clearance"])
     material: Material | None = None
     material_name: str | None = None
@@ -165,13 +186,32 @@ class CageDesign:
     land_out_of_round: Metre = field(default=0.0, metadata=_SAME["land_out_of_round"])
     land_lobes: int = field(default=2, metadata=_SAME["land_lobes"])
     moment_of_inertia: KilogramMetre2 | None = field(default=None, metadata=must(positive, 1e-18, 1e4))
+    transverse_inertia: KilogramMetre2 | None = field(default=None, metadata=must(positive, 1e-18, 1e4))
+    """About a diameter; None: of its shape, or of a thin ring."""
+
+    land_spacing: Metre | None = field(default=None, metadata=must(positive, 1e-9, 10.0))
+    """From the middle of one land to that of the other."""
+
+    land_width: Metre = field(default=0.0, metadata=must(not_negative, 10.0))
+    land_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
+    """Where the land's friction acts in space; None: of its shape, or the pitch diameter."""
+
     unbalance: KilogramMetre = field(default=0.0, metadata=must(not_negative, 1e2))
+    dynamic_unbalance: Radian = field(default=0.0, metadata=must(between, 0.0, 0.1))
     gravity: MetrePerSecond2 = field(default=0.0, metadata=must(not_negative, 1e4))
+    axial_gravity: MetrePerSecond2 = field(default=0.0, metadata=must(between, -1e4, 1e4))
+    added_mass: Kilogram = field(default=0.0, metadata=must(not_negative, 1e4))
+    """Of the fluid that moves with the cage across its axis."""
 
     def __post_init__(self) -> None:
         _check.settle(_check.each_field(self))
         hertz = self.pocket_contact is PocketContact.HERTZ
-        _check.settle(_land(self), *together(self, hertz=hertz))
+        _check.settle(_shape(self), _land(self), _space(self), *together(self, hertz=hertz))
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether the ring's diameters and width are given."""
+        return None not in (self.inner_diameter, self.outer_diameter, self.width)
 
 
 def pocket_and_land_fields(cage: Cage) -> Iterator[_check.Problems]:
@@ -206,6 +246,47 @@ def least_step(angles: Sequence[Radian]) -> tuple[Radian, int]:
     """Smallest angle from a pocket to the next around the cage, and the number of that pocket."""
     around = [*angles, angles[0] + _FULL_TURN]
     return min((b - a, i) for i, (a, b) in enumerate(pairwise(around)))
+
+
+def _shape(cage: CageDesign) -> _check.Problems:
+    """The shape of the ring is whole or not given; without it the mass is given."""
+    sizes = {name: getattr(cage, name) for name in ("inner_diameter", "outer_diameter", "width")}
+    missing = [name for name, size in sizes.items() if size is None]
+    if 0 < len(missing) < 3:
+        yield _check.problem(cage, missing[0], "is missing", f"Give all of {', '.join(sizes)}, or none.")
+    if cage.mass is None and missing:
+        cure = "Give it, or inner_diameter, outer_diameter and width and a material with its density."
+        yield _check.problem(cage, "mass", "is missing", cure)
+    if not missing and not (cage.inner_diameter or 0.0) < (cage.outer_diameter or 0.0):
+        rule = f"must be larger than inner_diameter, {format_quantity(cage.inner_diameter or 0.0, 'm')}"
+        yield _check.problem(cage, "outer_diameter", rule)
+
+
+def _space(cage: CageDesign) -> _check.Problems:
+    """What only a cage in space has, and lands on the cage."""
+    flat, cure = cage.motion is MotionModel.PLANE, 'Give motion = "space", or leave it out.'
+    for name in ("land_spacing", "land_diameter", "transverse_inertia"):
+        if flat and getattr(cage, name) is not None:
+            yield _check.problem(cage, name, "has no meaning for a cage in the plane", cure)
+    for name in ("land_width", "dynamic_unbalance", "axial_gravity", "added_mass"):
+        if flat and getattr(cage, name) != 0.0:
+            yield _check.problem(cage, name, "has no meaning for a cage in the plane", cure)
+    if flat:
+        return
+    if cage.pocket_contact is PocketContact.HERTZ:
+        rule = "must be linear for a cage in space"
+        yield _check.problem(cage, "pocket_contact", rule, 'Give "linear", or motion = "plane".')
+    if cage.land_out_of_round != 0.0:
+        rule = "has no meaning for a cage in space"
+        yield _check.problem(cage, "land_out_of_round", rule, 'Leave it out, or give motion = "plane".')
+    if cage.guidance is not Guidance.BALL and (cage.land_count == 2) != (cage.land_spacing is not None):
+        rule = "is missing: two lands have a distance" if cage.land_count == 2 else "has no meaning for one land"
+        yield _check.problem(cage, "land_spacing", rule, "Give it with land_count = 2.")
+    reach = (cage.land_spacing or 0.0) + cage.land_width
+    if cage.width is not None and reach > cage.width:
+        rule = f"and the lands' distance, {format_quantity(reach, 'm')} together, must stay on the cage"
+        got = f"width {format_quantity(cage.width, 'm')}"
+        yield InputError("CageDesign.land_width", rule, got)
 
 
 def _land(cage: CageDesign) -> _check.Problems:

@@ -17,7 +17,9 @@ from separatrix._check import between, increasing, must, not_negative, positive,
 from separatrix.bearing_design import MOST_BALLS as MOST_BALLS
 from separatrix.bearing_design import BallBearing as BallBearing
 from separatrix.bearing_design import Material as Material
+from separatrix.cage_design import BallModel as BallModel
 from separatrix.cage_design import CageDesign as CageDesign
+from separatrix.cage_design import MotionModel as MotionModel
 from separatrix.cage_design import Guidance as Guidance
 from separatrix.cage_design import PocketContact as PocketContact
 from separatrix.distribution import Distribution
@@ -137,6 +139,12 @@ class StabilitySettings:
         default=0.3, metadata=must(positive, 1e-9, 1e4, hint="Some tenths of a second show the motion.")
     )
     ball_scatter: Ratio = field(default=0.3, metadata=must(between, 0.0, 1.0))
+    axial_kick: Ratio = field(default=0.0, metadata=must(between, 0.0, 10.0))
+    """Speed along the axis at the start of a run in space, over its kick."""
+
+    tilt_kick: Ratio = field(default=0.0, metadata=must(between, 0.0, 10.0))
+    """Speed of the rim by tilting at the start of a run in space, over its kick."""
+
     restitution_factors: tuple[Ratio, ...] = field(default=(), metadata=must(increasing, 0.0, 1.0, most=1000))
     seed: int = field(default=1, metadata=must(whole, 0, 2**63 - 1))
 
@@ -262,10 +270,32 @@ def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
         rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield _check.problem(cage, "land_clearance", rule, cure)
-    most = cage.mass * bearing.pitch_diameter / 2.0
+    yield from _ring_between_rings(cage, bearing)
+    most = math.inf if cage.mass is None else cage.mass * bearing.pitch_diameter / 2.0
     if cage.unbalance >= most:
         rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
         yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
+
+
+def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """The cage's ring holds the balls at their equator, lies between the grooves, and has whole pockets."""
+    if not cage.has_shape:
+        return
+    inner, outer, width = cage.inner_diameter or 0.0, cage.outer_diameter or 0.0, cage.width or 0.0
+    pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
+    low, middle, high = (format_quantity(size, "m") for size in (pitch - ball, pitch, pitch + ball))
+    if not pitch - ball < inner < pitch:
+        rule = f"must lie between the bottom of the inner groove, {low}, and the pitch diameter, {middle}"
+        yield _check.problem(cage, "inner_diameter", rule, "The pocket's wall reaches the ball's equator.")
+    if not pitch < outer < pitch + ball:
+        rule = f"must lie between the pitch diameter, {middle}, and the bottom of the outer groove, {high}"
+        yield _check.problem(cage, "outer_diameter", rule, "The pocket's wall reaches the ball's equator.")
+    if width <= ball + cage.pocket_clearance:
+        least = format_quantity(ball + cage.pocket_clearance, "m")
+        yield _check.problem(cage, "width", f"must be larger than a pocket, {least}", "Pockets are holes.")
+    if cage.mass is None and (cage.material is None or cage.material.density is None):
+        cure = "Give it, or a cage material with its density."
+        yield _check.problem(cage, "mass", "is missing, and the density of the cage is not known", cure)
 
 
 def _pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:

@@ -8,11 +8,12 @@ from separatrix.cage.closed_forms import (
     linear_whirl_frequency,
     turning_critical_friction,
 )
-from separatrix.cage.ensemble import Ensemble, run_ensemble, settings_for
+from separatrix.cage.ensemble import Ensemble, settings_for
 from separatrix.cage.hard import run_hard_ensemble
 from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion
+from separatrix.cage.runs import run_ensemble
 from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability, wilson_interval
 
 __all__ = [

@@ -135,7 +135,7 @@ class Ensemble:
         return np.asarray(np.count_nonzero(self.outcome == outcome, axis=1), dtype=np.int64)
 
 
-def run_ensemble(
+def run_in_plane(
     cage: PlanarCage,
     settings: StabilitySettings,
     *,
@@ -144,7 +144,7 @@ def run_ensemble(
     first_run: int = 0,
     jobs: int = 1,
 ) -> Ensemble:
-    """Run the cage from every kick and seed; one that turns backward as its mirror image.
+    """Run the cage in the plane from every kick and seed; one that turns backward as its mirror image.
 
     Parameters
     ----------

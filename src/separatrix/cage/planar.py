@@ -8,6 +8,7 @@ from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check, cage_design, pocket_shape
+from separatrix.cage.space_body import SpaceBody, refused_in_space
 from separatrix.errors import InputError
 from separatrix.study import Guidance, PocketShape
 from separatrix.units import (
@@ -68,7 +69,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanarCage:
-    """A cage that moves in the bearing plane among balls that the races guide.
+    """A cage that moves in the bearing plane, or with a `space` in space, among balls that the races guide.
 
     Parameters
     ----------
@@ -111,6 +112,8 @@ class PlanarCage:
     ramp_time, ramp_start : float
         All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is
         no ramp.
+    space : SpaceBody or None
+        What it has beyond the plane when it moves in space; None moves in the plane.
 
     Raises
     ------
@@ -151,6 +154,7 @@ class PlanarCage:
     orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
     ramp_time: Second = 0.0
     ramp_start: Ratio = 0.1
+    space: SpaceBody | None = None
 
     def __post_init__(self) -> None:
         _check.settle(
@@ -170,6 +174,7 @@ class PlanarCage:
             _refused_orbits(self),
             cage_design.angles_for(self, self.ball_count),
             *cage_design.together(self, hertz=self.hertz_coefficient is not None),
+            refused_in_space(self),
         )
 
     @property

@@ -27,7 +27,7 @@ from separatrix.cage.ensemble import (
 from separatrix.cage.planar import turned_forward
 from separatrix.cage.records import dtype_of
 from separatrix.cage.run import random_start
-from separatrix.cage.space.records import SpaceEvidence, books_for, fastest_in_space, numbers, parts_of
+from separatrix.cage.space.records import SpaceEvidence, body_of, books_for, fastest_in_space, numbers, parts_of
 from separatrix.cage.space.run import AXIAL_WAY, DIRECTION, FIRST_LEAD, TILT_WAY, run_chunk
 from separatrix.errors import InputError
 from separatrix.units import Array
@@ -35,7 +35,7 @@ from separatrix.units import Array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from separatrix.cage.space.body import SpaceCage
+    from separatrix.cage.planar import PlanarCage
     from separatrix.study import StabilitySettings
     from separatrix.units import MetrePerSecond, Second
 
@@ -71,8 +71,8 @@ class SpaceEnsemble(Ensemble):
     pocket_rubbing: Array
 
 
-def run_space_ensemble(
-    cage: SpaceCage,
+def run_in_space(
+    cage: PlanarCage,
     settings: StabilitySettings,
     *,
     kicks: Sequence[MetrePerSecond] | None = None,
@@ -84,24 +84,23 @@ def run_space_ensemble(
 
     Parameters
     ----------
-    cage : SpaceCage
+    cage : PlanarCage
         The cage.
     settings, kicks, runs, first_run, jobs
-        As in `cage.run_ensemble`, with the same starts in the plane.
+        As in `cage.run_ensemble`, with the same starts in the cage.
 
     Raises
     ------
     InputError
         No kick or no run, or a run would need more steps than can be waited for.
     """
-    forward = cage.plane.rotation_sense > 0
+    forward = cage.rotation_sense > 0
     cage = turned_forward_in_space(cage)
-    plane = cage.plane
-    speeds, runs = chosen(settings_for(settings, plane), kicks, runs)
+    speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
     check_length(cage, settings.duration)
     starts = random_starts(cage, settings, first_run, runs)
     evidence = np.zeros((len(speeds), runs), dtype_of(SpaceEvidence))
-    hits = np.zeros((len(speeds), runs, plane.ball_count), dtype=np.int64)
+    hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
     heat = np.zeros(hits.shape)
 
     def work(i: int, rows: slice) -> None:
@@ -123,7 +122,7 @@ def run_space_ensemble(
 
 
 def run_rows(
-    cage: SpaceCage,
+    cage: PlanarCage,
     settings: StabilitySettings,
     kick: MetrePerSecond,
     starts: Array,
@@ -132,31 +131,32 @@ def run_rows(
     heat: Array,
 ) -> None:
     """Run from one kick and every row of `starts`, into rows of `evidence`, `hits` and `heat`."""
-    limits = run_limits(cage.plane, kick, settings.duration)
+    limits = run_limits(cage, kick, settings.duration)
     run_chunk(
         numbers(cage, kick),
         parts_of(cage),
         starts,
         kick_speeds(cage, kick),
-        cage.plane.pocket_axial_offset,
+        cage.pocket_axial_offset,
         books_for(limits.most),
         limits,
         cast("Sequence[SpaceEvidence]", evidence),
         hits,
         heat,
     )
-    mass = cage.plane.mass + cage.added_mass
+    mass = cage.mass + body_of(cage).added_mass
     for name in PER_MASS:
         evidence[name] *= mass
-    heat *= mass / time_unit(cage.plane) ** 2
+    heat *= mass / time_unit(cage) ** 2
 
 
-def kick_speeds(cage: SpaceCage, kick: MetrePerSecond) -> Array:
+def kick_speeds(cage: PlanarCage, kick: MetrePerSecond) -> Array:
     """Speeds of the kick across the axis, along it and of the rim's tilt, in metres by the unit of time."""
-    return np.array([1.0, cage.axial_kick, cage.tilt_kick]) * kick * time_unit(cage.plane)
+    body = body_of(cage)
+    return np.array([1.0, body.axial_kick, body.tilt_kick]) * kick * time_unit(cage)
 
 
-def check_length(cage: SpaceCage, duration: Second) -> None:
+def check_length(cage: PlanarCage, duration: Second) -> None:
     """Refuse a run that would take longer than anyone waits.
 
     Raises
@@ -171,37 +171,38 @@ def check_length(cage: SpaceCage, duration: Second) -> None:
         raise InputError("[stability] duration", rule, f"{duration:g}", cure)
 
 
-def turned_forward_in_space(cage: SpaceCage) -> SpaceCage:
+def turned_forward_in_space(cage: PlanarCage) -> PlanarCage:
     """Return the cage, or its mirror image where its ball set turns backward, as `cage.planar`."""
-    if cage.plane.rotation_sense > 0:
+    if cage.rotation_sense > 0:
         return cage
-    axial, outward, along = cage.ball_spin
-    return replace(cage, plane=turned_forward(cage.plane), ball_spin=(0.0 - axial, 0.0 - outward, along))
+    body = body_of(cage)
+    axial, outward, along = body.ball_spin
+    mirrored = replace(body, ball_spin=(0.0 - axial, 0.0 - outward, along))
+    return replace(turned_forward(cage), space=mirrored)
 
 
-def random_starts(cage: SpaceCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
+def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
     """Start of every run, shape (run, 3 + 3 ball).
 
     Directions of the kick and of the tilt's [rad] and sense of the axial one; then by pocket the lead of its
     ball [m], what half its clearance has more than the nominal [m], and its angle [rad]. In the plane they
     are those of `cage.ensemble.random_starts`.
     """
-    plane = cage.plane
-    angles, half, pitch = np.array(plane.ball_angles), plane.half_play, 2.0 * math.pi / plane.ball_count
-    free = free_leads(plane, angles)
-    starts = np.empty((runs, FIRST_LEAD + 3 * plane.ball_count))
+    angles, half, pitch = np.array(cage.ball_angles), cage.half_play, 2.0 * math.pi / cage.ball_count
+    free = free_leads(cage, angles)
+    starts = np.empty((runs, FIRST_LEAD + 3 * cage.ball_count))
     for i in range(runs):
-        drawn = random_start(settings.seed, first_run + i, plane.ball_count)
-        more = -0.5 * plane.ball_diameter_scatter * drawn[2]
+        drawn = random_start(settings.seed, first_run + i, cage.ball_count)
+        more = -0.5 * cage.ball_diameter_scatter * drawn[2]
         lead = (
-            settings.ball_scatter * (half + more) * drawn[1] + free - plane.pocket_position_scatter * drawn[3]
+            settings.ball_scatter * (half + more) * drawn[1] + free - cage.pocket_position_scatter * drawn[3]
         )
         starts[i, DIRECTION] = drawn[0, 0]
         starts[i, TILT_WAY], starts[i, AXIAL_WAY] = tilt_start(settings.seed, first_run + i)
         by_pocket = starts[i, FIRST_LEAD:].reshape(3, -1)
         by_pocket[0] = np.clip(lead, -half - more, half + more)
         by_pocket[1] = more
-        by_pocket[2] = angles + plane.pocket_spacing_scatter * pitch * drawn[4]
+        by_pocket[2] = angles + cage.pocket_spacing_scatter * pitch * drawn[4]
     return starts
 
 

@@ -77,14 +77,14 @@ def press_strip(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
     cage, strip = parts.cage, parts.strip[i]
     strip[n, PUSH_L] = parts.strip_stiffness[i] * strip[n, DEPTH_L]
     strip[n, PUSH_L] += parts.strip_damping[i] * (n + 1) * strip[n + 1, DEPTH_L]
-    # v_t = n_x dy/dt - n_y dx/dt + q (ds/dt - slide), v_z = dz/dt - q (n_x db/dt - n_y da/dt)
-    around, beside = p.land_side * cage[n, VS], cage[n, VZ]
+    # v_t = n_x dy/dt - n_y dx/dt + q l ds/dt - slide, v_z = dz/dt - q l (n_x db/dt - n_y da/dt), l = R_L/R
+    around, beside = p.land_lever * cage[n, VS], cage[n, VZ]
     if n < 2:
-        around -= p.land_side * p.ring_slide * now[n]
+        around -= p.ring_slide * now[n]
     for m in range(n + 1):
         k = n - m + 1
         around += k * (strip[m, NX] * strip[k, LY] - strip[m, NY] * strip[k, LX])
-        beside -= p.land_side * k * (strip[m, NX] * cage[k, GB] - strip[m, NY] * cage[k, GA])
+        beside -= p.land_lever * k * (strip[m, NX] * cage[k, GB] - strip[m, NY] * cage[k, GA])
     strip[n, AROUND], strip[n, BESIDE] = around, beside
     if n == 0:
         strip[0, SLIDE_L] = math.sqrt(around * around + beside * beside + p.pivoting)
@@ -111,8 +111,8 @@ def press_strip(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
 @inlined_kernel
 def strip_forces(p: Numbers, parts: Parts, i: int, n: int) -> tuple[float, float, float, float, float, float]:
     """Coefficient n of a strip's force on the cage (x, y, z), and its moments about z, x and y over R."""
-    # F = -P n + F_t t, t = (-n_y, n_x); moments: q F_t, height e_z x F - q F_z t
-    strip, side = parts.strip[i], p.land_side
+    # F = -P n + F_t t, t = (-n_y, n_x); moments: q l F_t, height e_z x F - q l F_z t
+    strip, side = parts.strip[i], p.land_lever
     fx = fy = mx = my = 0.0
     for m in range(n + 1):
         nx, ny = strip[n - m, NX], strip[n - m, NY]

@@ -17,12 +17,14 @@ from separatrix.ball_traction import MOST_ELEMENTS
 from separatrix.cage.closed_forms import rebound_damping, time_unit
 from separatrix.cage.ending import Look, Memory
 from separatrix.cage.records import HARMONICS, POWERS, Evidence, Whole, dtype_of, records
+from separatrix.cage.space_body import SpaceBody, pocket_plays
+from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
 from separatrix.units import Array, MetrePerSecond
 
 if TYPE_CHECKING:
-    from separatrix.cage.space.body import SpaceCage
+    from separatrix.cage.planar import PlanarCage
 
 X, Y, Z, S, A, B, VX, VY, VZ, VS, VA, VB = range(12)
 """Of the cage: centre of mass, slip of rotation, tilt about x and y times R; and their rates."""
@@ -117,10 +119,10 @@ class Numbers(NamedTuple):
     axial_gravity: float
     eccentricity: float
     leaning: float  # dynamic unbalance times R
-    land_side: float  # q: 1 outer, -1 inner, 0 without a land
     land_gap: float
     land_friction: float
-    ring_slide: float
+    land_lever: float  # q R_L / R
+    ring_slide: float  # q (omega_ring - Omega) R_L
     harmonics: int
     ramp_time: float
     ramp_start: float
@@ -236,68 +238,84 @@ def books_for(most: int) -> Books:
     return Books(records(Motion, 2), records(Works, 3), records(Memory, 2), records(SpaceLook, most + 2))
 
 
-def land_strips(cage: SpaceCage) -> tuple[Array, Array]:
+def body_of(cage: PlanarCage) -> SpaceBody:
+    """What the cage has in space.
+
+    Raises
+    ------
+    InputError
+        It has none.
+    """
+    if cage.space is None:
+        raise InputError("PlanarCage.space", "is missing: the cage has no body in space")
+    return cage.space
+
+
+def land_strips(cage: PlanarCage) -> tuple[Array, Array]:
     """Heights of the strips of all lands, and the share of a land's stiffness that each has."""
-    if cage.plane.guidance is Guidance.BALL:
+    if cage.guidance is Guidance.BALL:
         return np.zeros(0), np.zeros(0)
-    heights = np.array(cage.land_heights)
-    if cage.land_width == 0.0:
+    body = body_of(cage)
+    heights = np.array(body.land_heights)
+    if body.land_width == 0.0:
         return heights, np.ones(heights.size)
     at, weight = np.polynomial.legendre.leggauss(STRIPS)
-    strips = heights[:, None] + 0.5 * cage.land_width * at
+    strips = heights[:, None] + 0.5 * body.land_width * at
     return strips.ravel(), np.tile(0.5 * weight, heights.size)
 
 
-def numbers(cage: SpaceCage, kick: MetrePerSecond) -> Numbers:
+def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
     """Numbers of a cage as a record that kernels take by its address."""
-    plane, T, R = cage.plane, time_unit(cage.plane), cage.plane.pitch_radius
-    M, D = plane.mass + cage.added_mass, cage.ball_diameter
-    around, apart, beside = cage.pocket_plays
-    law, harmonics = plane.traction, len(plane.orbital_cosines)
-    round_, spin = plane.pocket_shape is not PocketShape.SQUARE, [0.5 * D * T * w for w in cage.ball_spin]
+    body, T, R = body_of(cage), time_unit(cage), cage.pitch_radius
+    M, D = cage.mass + body.added_mass, body.ball_diameter
+    around, apart, beside = pocket_plays(cage, body)
+    law, harmonics = cage.traction, len(cage.orbital_cosines)
+    round_, spin = cage.pocket_shape is not PocketShape.SQUARE, [0.5 * D * T * w for w in body.ball_spin]
+    side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
+    reach = R if body.land_radius is None else body.land_radius
     given = Numbers(
         unit=T,
         radius=R,
-        turning=plane.cage_speed * T,
-        spin_inertia=plane.moment_of_inertia / (M * R * R),
-        tilt_inertia=cage.transverse_inertia / (M * R * R),
-        axial_swiftness=0.0 if cage.is_axially_held else M / plane.mass,
-        tilt_swiftness=0.0 if cage.is_tilt_held else M * R * R / cage.transverse_inertia,
-        stiffness=plane.ball_cage_stiffness * T * T / M,
+        turning=cage.cage_speed * T,
+        spin_inertia=cage.moment_of_inertia / (M * R * R),
+        tilt_inertia=body.transverse_inertia / (M * R * R),
+        axial_swiftness=0.0 if body.is_axially_held else M / cage.mass,
+        tilt_swiftness=0.0 if body.is_tilt_held else M * R * R / body.transverse_inertia,
+        stiffness=cage.ball_cage_stiffness * T * T / M,
         around=around,
         apart=apart,
         beside=beside,
         is_round=round_,
-        is_slot=plane.pocket_shape is PocketShape.ELONGATED,
+        is_slot=cage.pocket_shape is PocketShape.ELONGATED,
         grips=not round_ and around == 0.0,
         grips_axially=not round_ and beside == 0.0,
-        friction=plane.ball_cage_friction,
+        friction=cage.ball_cage_friction,
         spin_z=spin[0],
         spin_r=spin[1],
         spin_t=spin[2],
-        pivoting=(cage.pivot_speed * T) ** 2,
-        lever=cage.lever / R,
-        yielding=M / (plane.race_damping * T) if law is None else 0.0,
-        groove_yielding=M / (cage.groove_damping * T),
-        groove_stiffness=cage.groove_stiffness * T * T / M,
+        pivoting=(body.pivot_speed * T) ** 2,
+        lever=body.lever / R,
+        yielding=M / (cage.race_damping * T) if law is None else 0.0,
+        groove_yielding=M / (body.groove_damping * T),
+        groove_stiffness=body.groove_stiffness * T * T / M,
         ball_mass=0.0 if law is None else law.mass / M,
         elements=0 if law is None else len(law.slopes),
-        still=STILL_PLAY * max(plane.pocket_clearance, 1e-9) * (law.slope / law.mass if law else 0.0) * T,
-        resting=STILL_PLAY * max(plane.pocket_clearance, 1e-9),
+        still=STILL_PLAY * max(cage.pocket_clearance, 1e-9) * (law.slope / law.mass if law else 0.0) * T,
+        resting=STILL_PLAY * max(cage.pocket_clearance, 1e-9),
         slowest=1e-2 * kick * T,
-        gravity=plane.gravity * plane.mass / M * T * T,
-        axial_gravity=cage.axial_gravity * T * T if not cage.is_axially_held else 0.0,
-        eccentricity=plane.unbalance / M,
-        leaning=cage.dynamic_unbalance * R,
-        land_side={Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[plane.guidance],
-        land_gap=plane.land_gap,
-        land_friction=plane.land_friction,
-        ring_slide=(plane.guiding_ring_speed - plane.cage_speed) * R * T,
+        gravity=cage.gravity * cage.mass / M * T * T,
+        axial_gravity=body.axial_gravity * T * T if not body.is_axially_held else 0.0,
+        eccentricity=cage.unbalance / M,
+        leaning=body.dynamic_unbalance * R,
+        land_gap=cage.land_gap,
+        land_friction=cage.land_friction,
+        land_lever=side * reach / R,
+        ring_slide=side * (cage.guiding_ring_speed - cage.cage_speed) * reach * T,
         harmonics=harmonics,
-        ramp_time=plane.ramp_time / T,
-        ramp_start=plane.ramp_start,
-        needs_rotation=plane.unbalance != 0.0 or cage.dynamic_unbalance != 0.0,
-        needs_frame=harmonics > 0 or plane.gravity > 0.0,
+        ramp_time=cage.ramp_time / T,
+        ramp_start=cage.ramp_start,
+        needs_rotation=cage.unbalance != 0.0 or body.dynamic_unbalance != 0.0,
+        needs_frame=harmonics > 0 or cage.gravity > 0.0,
         fastest=fastest_in_space(cage) * T,
     )
     return cast("Numbers", np.array([tuple(given)], dtype_of(Numbers))[0])
@@ -307,39 +325,39 @@ STILL_PLAY = 1e-9
 """Share of the clearance that a ball that is called at rest would still have gone."""
 
 
-def fastest_in_space(cage: SpaceCage) -> float:
+def fastest_in_space(cage: PlanarCage) -> float:
     """Bound on the rates of any motion in contact [1/s]."""
-    plane = cage.plane
-    M, R, k, Z = plane.mass, plane.pitch_radius, plane.ball_cage_stiffness, plane.ball_count
-    levers = 2.0 / M + R * R / plane.moment_of_inertia + R * R / cage.transverse_inertia
-    squared, rate = Z * k * levers, k / plane.race_damping
-    if plane.traction is not None:
-        squared += k / plane.traction.mass
-        rate = plane.traction.slope / plane.traction.mass
-    rate += (k + cage.groove_stiffness) / cage.groove_damping
+    body = body_of(cage)
+    M, R, k, Z = cage.mass, cage.pitch_radius, cage.ball_cage_stiffness, cage.ball_count
+    levers = 2.0 / M + R * R / cage.moment_of_inertia + R * R / body.transverse_inertia
+    squared, rate = Z * k * levers, k / cage.race_damping
+    if cage.traction is not None:
+        squared += k / cage.traction.mass
+        rate = cage.traction.slope / cage.traction.mass
+    rate += (k + body.groove_stiffness) / body.groove_damping
     heights, share = land_strips(cage)
     if heights.size:
-        K = plane.land_stiffness * float(np.sum(share * (1.0 / M + heights**2 / cage.transverse_inertia)))
+        K = cage.land_stiffness * float(np.sum(share * (1.0 / M + heights**2 / body.transverse_inertia)))
         squared += K
-        rate += 2.0 * rebound_damping(plane.land_restitution) * math.sqrt(K)
-    spin = plane.moment_of_inertia / cage.transverse_inertia * abs(plane.cage_speed)
-    return math.sqrt(squared) + rate + 2.0 * abs(plane.cage_speed) + spin
+        rate += 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(K)
+    spin = cage.moment_of_inertia / body.transverse_inertia * abs(cage.cage_speed)
+    return math.sqrt(squared) + rate + 2.0 * abs(cage.cage_speed) + spin
 
 
-def parts_of(cage: SpaceCage) -> Parts:
+def parts_of(cage: PlanarCage) -> Parts:
     """Room for the parts of a cage."""
-    plane, T, M = cage.plane, time_unit(cage.plane), cage.plane.mass + cage.added_mass
-    Z, angles, waves = plane.ball_count, np.array(plane.ball_angles), []
-    for h, (a, b) in enumerate(zip(plane.orbital_cosines, plane.orbital_sines, strict=True), start=1):
+    T, M = time_unit(cage), cage.mass + body_of(cage).added_mass
+    Z, angles, waves = cage.ball_count, np.array(cage.ball_angles), []
+    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
         c, s = np.cos(h * angles), np.sin(h * angles)
         waves += [a * c + b * s, b * c - a * s]
-    law = plane.traction
+    law = cage.traction
     slopes = np.array(law.slopes if law else ()) * T / M
     speeds = np.array(law.speeds if law else ()) * T
     heights, share = land_strips(cage)
-    K = plane.land_stiffness * share
+    K = cage.land_stiffness * share
     whole = max(1.0, float(np.sum(share)))
-    damping = 2.0 * rebound_damping(plane.land_restitution) * math.sqrt(plane.land_stiffness * whole * M)
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * whole * M)
     return Parts(
         cosine=np.cos(angles),
         sine=np.sin(angles),
@@ -347,7 +365,7 @@ def parts_of(cage: SpaceCage) -> Parts:
         drive=np.array(waves).reshape(len(waves), Z) * T,
         slope=slopes,
         steep=1.0 / speeds**2,
-        height=heights / plane.pitch_radius,
+        height=heights / cage.pitch_radius,
         strip_stiffness=K * T * T / M,
         strip_damping=damping * share / whole * T / M,
         kind=np.zeros(2 * Z, np.int64),

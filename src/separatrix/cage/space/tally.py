@@ -248,7 +248,7 @@ def strip_work(
         step.land_damping += weight * spring * rate
         return
     step.land_damping -= weight * (strip[PUSH_L] - spring) * rate
-    around = strip[AROUND] + p.land_side * p.ring_slide * (now.share + now.rise * at)
+    around = strip[AROUND] + p.ring_slide * (now.share + now.rise * at)
     step.land_friction += weight * (strip[RUB_T] * around + strip[RUB_Z] * strip[BESIDE])
     look.pressed += weight * strip[PUSH_L]
     look.rubbed += weight * strip[PUSH_L] * strip[SLIDE_L]

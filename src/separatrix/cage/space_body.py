@@ -1,14 +1,13 @@
-"""The cage in space: what it has beyond the cage in the bearing plane."""
+"""What a cage has in space beyond what it has in the bearing plane."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check
-from separatrix.cage.planar import PlanarCage
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
@@ -25,28 +24,29 @@ from separatrix.units import (
     Ratio,
 )
 
+if TYPE_CHECKING:
+    from separatrix.cage.planar import PlanarCage
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceCage:
-    """A cage that moves in space among balls that the races guide.
+class SpaceBody:
+    """What a cage has beyond the plane when it moves in space: `PlanarCage.space`.
 
-    The axes are those of the bearing plane, and along the bearing axis; tilts are small.
+    The axes are those of the bearing plane, and z along the bearing axis; tilts are small.
 
     Parameters
     ----------
-    plane : PlanarCage
-        Mass, pockets, land and speeds, as in the bearing plane.
     transverse_inertia : float
         J_t about a diameter through the centre of mass [kg m2]; a thin ring has half the moment of inertia
         about its axis.
     ball_spin : tuple of float
         Spin of a ball relative to its orbit: along the axis, outward, and along the orbit [rad/s].
     ball_diameter : float
-        Where on its ball a pocket touches, and the lever of its friction [m].
+        A pocket touches its ball at half of it from the ball's centre [m].
     friction_lever : float or None
         Distance of the pocket's friction from the pocket's centre [m]; None: half the ball's diameter.
     axial_play : float
-        Half the clearance along the axis of a square pocket, and between the flats of an elongated one [m].
+        Half the clearance along the axis of a square pocket [m].
     groove_damping, groove_stiffness : float
         Of a ball that is pushed along its grooves: c_g [N s/m] and k_g [N/m]. An infinite damping holds it.
     pivot_speed : float
@@ -55,6 +55,8 @@ class SpaceCage:
         Middle of each land over the plane of the pockets [m].
     land_width : float
         Width of each land [m]; 0 is a line.
+    land_radius : float or None
+        Where the friction of the land acts [m]; None: the pitch radius, as in the plane.
     axial_gravity : float
         Acceleration along the axis [m/s2].
     dynamic_unbalance : float
@@ -69,11 +71,9 @@ class SpaceCage:
     Raises
     ------
     InputError
-        A size is not finite or has the wrong sign, an inertia is one that no body can have, or the plane has
-        what the motion in space leaves out.
+        A size is not finite or has the wrong sign.
     """
 
-    plane: PlanarCage
     transverse_inertia: KilogramMetre2
     ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)]
     ball_diameter: Metre
@@ -84,6 +84,7 @@ class SpaceCage:
     pivot_speed: MetrePerSecond = 0.0
     land_heights: Annotated[tuple[Metre, ...], ("land",)] = (0.0,)
     land_width: Metre = 0.0
+    land_radius: Metre | None = None
     axial_gravity: MetrePerSecond2 = 0.0
     dynamic_unbalance: Radian = 0.0
     added_mass: Kilogram = 0.0
@@ -98,8 +99,7 @@ class SpaceCage:
             *(_check.between(self, name, 0.0, 1e12) for name in _NOT_NEGATIVE),
             _check.between(self, "axial_gravity", -1e6, 1e6),
             _check.between(self, "dynamic_unbalance", 0.0, 0.1),
-            _refused_inertia(self),
-            _refused_parts(self),
+            _refused_lengths(self),
         )
 
     @property
@@ -107,43 +107,49 @@ class SpaceCage:
         """Distance of the pocket's friction from the pocket's centre [m]."""
         return self.ball_diameter / 2.0 if self.friction_lever is None else self.friction_lever
 
-    @property
-    def pocket_plays(self) -> tuple[Metre, Metre, Metre]:
-        """Radius of a pocket's round part less that of the ball; that part's offset; play of the flats [m].
-
-        A bore is round, with flats nowhere; a square pocket has flats only.
-        """
-        half = self.plane.pocket_clearance / 2.0
-        if self.plane.pocket_shape is PocketShape.CYLINDRICAL:
-            return half, 0.0, math.inf
-        if self.plane.pocket_shape is PocketShape.ELONGATED:
-            around = (self.plane.pocket_axial_clearance or 0.0) / 2.0
-            return around, half - around, around
-        return half, 0.0, self.axial_play
-
 
 _NOT_NEGATIVE = ("groove_stiffness", "pivot_speed", "land_width", "added_mass", "axial_kick", "tilt_kick")
 
 
-def _refused_inertia(cage: SpaceCage) -> Iterator[InputError]:
-    """Of any body, no moment of inertia exceeds the sum of the other two."""
-    axial, transverse = cage.plane.moment_of_inertia, cage.transverse_inertia
-    if axial > 2.0 * transverse * (1.0 + 1e-9):
-        rule = f"must be at least half the moment of inertia about the axis, {axial / 2.0:.4g} [kg m2]"
+def _refused_lengths(body: SpaceBody) -> Iterator[InputError]:
+    """A spin has three parts, and a cage one land or two."""
+    if len(body.ball_spin) != 3:
+        yield InputError("SpaceBody.ball_spin", "must be three numbers [rad/s]", str(len(body.ball_spin)))
+    if len(body.land_heights) not in (1, 2):
+        yield InputError("SpaceBody.land_heights", "must be one or two [m]", str(len(body.land_heights)))
+
+
+def pocket_plays(cage: PlanarCage, body: SpaceBody) -> tuple[Metre, Metre, Metre]:
+    """Play of the round part of a pocket, or of its flats along the orbit; offset; play of flats across [m].
+
+    A bore is round, with flats nowhere; a square pocket has flats only.
+    """
+    half = cage.pocket_clearance / 2.0
+    if cage.pocket_shape is PocketShape.CYLINDRICAL:
+        return half, 0.0, math.inf
+    if cage.pocket_shape is PocketShape.ELONGATED:
+        around = (cage.pocket_axial_clearance or 0.0) / 2.0
+        return around, half - around, around
+    return half, 0.0, body.axial_play
+
+
+def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
+    """What the motion in space leaves out, and an inertia that no body can have."""
+    body = cage.space
+    if body is None:
+        return
+    if cage.moment_of_inertia > 2.0 * body.transverse_inertia * (1.0 + 1e-9):
+        rule = f"must be at least half that about the axis, {cage.moment_of_inertia / 2.0:.4g} [kg m2]"
         cure = "A flat ring has half of it, a long one more; no body has less."
-        yield _check.problem(cage, "transverse_inertia", rule, cure)
-
-
-def _refused_parts(cage: SpaceCage) -> Iterator[InputError]:
-    """What the motion in space leaves out."""
-    plane = cage.plane
-    if plane.hertz_coefficient is not None:
-        yield InputError("SpaceCage.plane", "must have linear pockets: Hertz pockets move in the plane only")
-    if plane.land_out_of_round != 0.0:
-        yield InputError("SpaceCage.plane", "must have a round land: lobes are for the plane only")
-    if plane.half_play == 0.0 and plane.pocket_shape is not PocketShape.SQUARE:
-        yield InputError("SpaceCage.plane", "must have square pockets where they grip their balls")
-    if len(cage.ball_spin) != 3:
-        yield InputError("SpaceCage.ball_spin", "must be three numbers [rad/s]", str(len(cage.ball_spin)))
-    if plane.guidance is not Guidance.BALL and len(cage.land_heights) not in (1, 2):
-        yield InputError("SpaceCage.land_heights", "must be one or two [m]", str(len(cage.land_heights)))
+        yield _check.problem(body, "transverse_inertia", rule, cure)
+    plane_only = 'Give motion = "plane".'
+    if cage.hertz_coefficient is not None:
+        yield _check.problem(cage, "hertz_coefficient", "has no meaning for a cage in space", plane_only)
+    if cage.land_out_of_round != 0.0:
+        yield _check.problem(cage, "land_out_of_round", "has no meaning for a cage in space", plane_only)
+    if cage.half_play == 0.0 and cage.pocket_shape is not PocketShape.SQUARE:
+        cure = "Pockets that grip their balls are square."
+        yield _check.problem(cage, "pocket_clearance", "must be > 0 for round pockets in space", cure)
+    if cage.guidance is not Guidance.BALL and len(body.land_heights) != cage.land_count:
+        got = str(len(body.land_heights))
+        yield InputError("SpaceBody.land_heights", f"must be {cage.land_count}, as land_count says", got)
