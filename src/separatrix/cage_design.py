@@ -280,7 +280,9 @@ def _space(cage: CageDesign) -> _check.Problems:
         rule = "has no meaning for a cage in space"
         yield _check.problem(cage, "land_out_of_round", rule, 'Leave it out, or give motion = "plane".')
     if cage.guidance is not Guidance.BALL and (cage.land_count == 2) != (cage.land_spacing is not None):
-        rule = "is missing: two lands have a distance" if cage.land_count == 2 else "has no meaning for one land"
+        rule = (
+            "is missing: two lands have a distance" if cage.land_count == 2 else "has no meaning for one land"
+        )
         yield _check.problem(cage, "land_spacing", rule, "Give it with land_count = 2.")
     reach = (cage.land_spacing or 0.0) + cage.land_width
     if cage.width is not None and reach > cage.width:

@@ -1,4 +1,4 @@
-"""What ends a step in space: a pocket meets or leaves its ball, or a strip of a land meets or leaves the cage."""
+"""What ends a step in space: a pocket meets or leaves its ball, or a strip of a land the cage."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def place_free(p: Numbers, parts: Parts, j: int, last: int) -> None:
 
 @inlined_kernel
 def ways(p: Numbers, parts: Parts, h: float) -> tuple[float, float]:
-    """Bounds of the way of any pocket against a ball at rest within a step: along the orbit, along the axis."""
+    """Bounds of the way of any pocket against a ball at rest within a step, along orbit and axis."""
     cage = parts.cage
     along = axial = 0.0
     power = 1.0
@@ -207,7 +207,7 @@ def strip_event(
         strip = parts.strip[i]
         if parts.mode[i] == CLEAR:
             for n in range(ORDER + 1):
-                place_strip(p, parts, i, n)
+                place_strip(parts, i, n)
             far = math.hypot(strip[0, LX], strip[0, LY])
             if far + own_way(strip, LX, h) + own_way(strip, LY, h) < gap:
                 continue

@@ -161,7 +161,7 @@ def pocket_forces(
         press_pockets(p, parts, n)
         slide_pockets(p, parts, now, n)
         rub_pockets(p, parts, n)
-        sum_pockets(p, parts, n)
+        sum_pockets(parts, n)
     for b in range(parts.count[1]):
         j = parts.active[b]
         along = axial = 0.0

@@ -38,7 +38,7 @@ from separatrix.compiled import inlined_kernel, inner_kernel
 
 
 @inlined_kernel
-def place_strip(p: Numbers, parts: Parts, i: int, n: int) -> None:
+def place_strip(parts: Parts, i: int, n: int) -> None:
     """Coefficient n of the centre at the height of a strip."""
     cage, strip = parts.cage, parts.strip[i]
     strip[n, LX] = cage[n, GX] + parts.height[i] * cage[n, GB]
@@ -48,7 +48,7 @@ def place_strip(p: Numbers, parts: Parts, i: int, n: int) -> None:
 @inner_kernel
 def dent_strip(p: Numbers, parts: Parts, i: int, n: int) -> None:
     """Coefficient n of the distance of the centre at a strip, its direction and the depth in the land."""
-    place_strip(p, parts, i, n)
+    place_strip(parts, i, n)
     strip = parts.strip[i]
     if n == 0:
         far = math.sqrt(strip[0, LX] ** 2 + strip[0, LY] ** 2)

@@ -36,6 +36,7 @@ from separatrix.cage.space.records import (
     NONE,
     PRESSED,
     PUSH,
+    PUSH_L,
     RELEASED,
     ROUND_END,
     RUB_R,
@@ -142,7 +143,7 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
     for i in range(parts.mode.size):
         if parts.mode[i] != CLEAR:
             at_time(parts.strip[i], t, STRIP_COLUMNS, here)
-            parts.strip[i, 0, DEPTH_L] = here[DEPTH_L]
+            parts.strip[i, 0, DEPTH_L], parts.strip[i, 0, PUSH_L] = here[DEPTH_L], here[PUSH_L]
 
 
 @inlined_kernel

@@ -194,7 +194,7 @@ def rub_pockets(p: Numbers, parts: Parts, n: int) -> None:
 
 
 @inlined_kernel
-def sum_pockets(p: Numbers, parts: Parts, n: int) -> None:
+def sum_pockets(parts: Parts, n: int) -> None:
     """Coefficient n of all contacts' forces along the axis and the orbit, and of their couples."""
     for a in range(parts.count[0]):
         i = parts.touching[a]

@@ -1,8 +1,9 @@
 """What the kernels of the motion in space work on: numbers of a cage, series of a step, state of a run.
 
 The coefficients of one power of time lie side by side, the series of a quantity is a column: one array for
-the cage, one for its balls, one for the contacts of its pockets and one for the strips of its lands. Times are
-in the engine's unit, forces over the mass that moves across the axis, tilts times the pitch radius, so that they are lengths.
+the cage, one for its balls, one for the contacts of its pockets and one for the strips of its lands. Times
+are in the engine's unit, forces over the mass that moves across the axis, tilts times the pitch radius, so
+that they are lengths.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ GX, GY, GA, GB, COS, SIN, FORCE_X, FORCE_Y = range(12, 20)
 """Geometric centre and tilt; cosine and sine of the rotation; force of the contacts across the axis."""
 
 FRAME = 20
-"""First column of cosine and sine of the turning of the frame and of its multiples, and after them of the ways
-that free balls go by these."""
+"""First column of cosine and sine of the turning of the frame and of its multiples, and after them of the
+ways that free balls go by these."""
 
 CAGE_COLUMNS = FRAME + 4 * HARMONICS
 GONE = FRAME + 2 * HARMONICS
@@ -45,7 +46,7 @@ its speed over the share of the full speed; the forces that move it along the or
 races' force along the orbit."""
 
 DZ, DT, CR, CZ, CT = range(7, 12)
-"""Of a pocket against its ball: along the axis and the orbit; and the pocket's velocity: out, axial, along."""
+"""Of a pocket against its ball: along axis and orbit; and the pocket's velocity: out, axial, along."""
 
 ELEMENTS = 12
 """First of two columns for each element of the law of traction: 1 + (u/v)^2, and its power -1/2."""
@@ -58,10 +59,10 @@ STATE = 3
 FZ, FT, RUB_R, RUB_Q, SPIN, LEAN, PUSH, SLIDE = range(8)
 DEPTH, FAR, PZ, PT, SLIDE_R, SLIDE_Q, SHARE, HERE_Z, HERE_T, PER_FAR, PER_SLIDE = range(8, 19)
 """Of a contact in a pocket: force along the axis and the orbit; friction outward and across; couples of the
-friction about the axis and the orbit's direction; normal force, and the size of the sliding. Then penetration,
-distance of the ball from the middle of the round part, direction of the force on the cage, sliding outward
-and across, friction over it, and the ball against the middle of the round part. Of the last two only the
-first coefficient is used: the inverse of the distance and of the sliding."""
+friction about the axis and the orbit's direction; normal force, and the size of the sliding. Then
+penetration, distance of the ball from the middle of the round part, direction of the force on the cage,
+sliding outward and across, friction over it, and the ball against the middle of the round part. Of the last
+two only the first coefficient is used: the inverse of the distance and of the sliding."""
 
 WORKING = 8
 """Columns of a contact that its work needs: the first ones."""
@@ -211,7 +212,7 @@ class SpaceLook(Look):
 
 
 class SpaceEvidence(Evidence):
-    """Evidence of a run in space in SI units, but for forces, energies and powers, which are over the mass."""
+    """Evidence of a run in space, as `Evidence`."""
 
     largest_tilt: float
     mean_tilt: float

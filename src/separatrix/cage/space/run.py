@@ -30,6 +30,8 @@ from separatrix.cage.space.records import (
     GRIPPED,
     LEAD,
     NONE,
+    PRESSED,
+    PUSH_L,
     Books,
     Motion,
     Numbers,
@@ -241,24 +243,40 @@ def follow_run(
     axial_place: float,
     books: Books,
     times: Array,
+    ceiling: float,
     out: Array,
     hits: Whole,
     heat: Array,
-) -> bool:
-    """Follow a run from time to time into rows of `out`, as named in `history.COLUMNS`."""
+) -> int:
+    """Follow a run from time to time into rows of `out`; return how many were filled below the ceiling.
+
+    A row: the twelve numbers of the motion, kinetic and held energy, work by source, then by ball its lead
+    and its place along the groove, then by strip of the lands its force.
+    """
     now, count, works = books.state[0], parts.moving.size, books.works[0]
-    look = books.looks[0]
     begin(p, parts, start, kicks, now, axial_place)
     for i in range(times.size):
         length = times[i] - now.clock
-        if length > 0.0 and not advance(
-            p, parts, now, works, books.works[1], look, hits, heat, length, np.inf
-        ):
-            return False
+        if length > 0.0:
+            if not advance(p, parts, now, works, books.works[1], books.looks[0], hits, heat, length, ceiling):
+                return i
+            if kinetic(p, now) >= ceiling:
+                return i
         row = out[i]
         row[0], row[1], row[2], row[3], row[4], row[5] = now.x, now.y, now.z, now.s, now.a, now.b
         row[6], row[7], row[8], row[9], row[10], row[11] = now.vx, now.vy, now.vz, now.vs, now.va, now.vb
-        row[12], row[13], row[14] = kinetic(p, now) + held(p, parts), total(works), works.gross
+        row[12], row[13] = kinetic(p, now), held(p, parts)
+        row[14], row[15], row[16], row[17] = (
+            works.pocket_friction,
+            works.races,
+            works.grooves,
+            works.ball_drive,
+        )
+        row[18], row[19] = works.land_friction, works.land_damping
+        row[20], row[21] = works.gravity, works.moving_frame
         for j in range(count):
-            row[15 + j], row[15 + count + j] = parts.ball[j, 0, LEAD], parts.ball[j, 0, AXIAL]
-    return True
+            row[22 + j], row[22 + count + j] = parts.ball[j, 0, LEAD], parts.ball[j, 0, AXIAL]
+        for i_ in range(parts.mode.size):
+            pressed = parts.mode[i_] == PRESSED
+            row[22 + 2 * count + i_] = parts.strip[i_, 0, PUSH_L] if pressed else 0.0
+    return int(times.size)
