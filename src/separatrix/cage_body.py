@@ -16,7 +16,7 @@ NODES = 40
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RingBody:
-    """Volume of a body of density 1 kg/m3 about its centre, and its moments of inertia over the density [m5]."""
+    """Volume of a body [m3], and its moments of inertia about its centre over the density [m5]."""
 
     volume: float
     axial: float
