@@ -172,6 +172,10 @@ def fastest_rate(cage: PlanarCage) -> float:
     turning, k, Z = cage.pitch_radius**2 / cage.moment_of_inertia, cage.ball_cage_stiffness, cage.ball_count
     squared = Z * k * (turning + 1.0 / cage.mass)
     rate = 1.0 / cage.race_damping * k
+    if cage.traction is not None:
+        # a ball between its spring and its races; in a ramp these hold it harder at first
+        share = cage.ramp_start if cage.ramp_time > 0.0 else 1.0
+        rate = cage.traction.slope / (cage.traction.mass * share) + math.sqrt(k / cage.traction.mass)
     if cage.guidance is not Guidance.BALL:
         K = cage.land_count * cage.land_stiffness
         squared += K / cage.mass

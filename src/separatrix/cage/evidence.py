@@ -23,6 +23,7 @@ from separatrix.cage.records import (
     Sums,
 )
 from separatrix.cage.series import Motion, centre, copy_column, grip_at, motion_at, peak, slope, value
+from separatrix.cage.traction import traction_power
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -126,7 +127,7 @@ def add_work(
     p: Coefficients,
     balls: Balls,
     w: Series,
-    count: int,
+    state: State,
     land: int,
     now: Pace,
     h: float,
@@ -136,7 +137,7 @@ def add_work(
 ) -> None:
     """Add the work that each source does from the start of the step to `end`, by Gauss's rule."""
     gx, gy = centre(p, w)
-    alike = p.hertz == 0.0 and p.harmonics == 0
+    alike, count = not p.own and p.harmonics == 0, state.touching
     squares = 0.0
     for i in range(count):
         squares += balls.penetration[balls.touching[i]] ** 2
@@ -163,6 +164,10 @@ def add_work(
             work.race_dampers -= weight * p.yielding * share * p.stiffness**2 * square
         else:
             pocket_work(p, balls, w, count, vx, vy, share, t, weight, work)
+        if p.inertial:
+            taken = traction_power(p, balls, balls.touching, count, t)
+            taken += traction_power(p, balls, balls.coasting, state.coasting, t)
+            work.race_dampers -= weight * taken
         if land != CLEAR and land != RELEASED:
             # F_t v_s without the ring's speed: the work on the cage alone; c (d delta/dt)^2
             tangent, normal = value(w.tangent, t), value(w.normal, t)
@@ -205,7 +210,8 @@ def pocket_work(
         depth = depth_at(p, balls, w, grip, j, t)
         load = p.hertz * depth * math.sqrt(abs(depth)) if p.hertz != 0.0 else p.stiffness * depth
         work.pocket_friction -= weight * p.friction * load * (balls.cosine[j] * vx + balls.sine[j] * vy)
-        work.race_dampers -= weight * p.yielding * share * load * load
+        if not p.inertial:
+            work.race_dampers -= weight * p.yielding * share * load * load
         for k in range(2 * p.harmonics):
             work.ball_drive -= weight * load * share * balls.drive[k, j] * value(w.frame[:, k], t)
 
@@ -215,7 +221,7 @@ def depth_at(
     p: Coefficients, balls: Balls, w: Series, grip: tuple[float, float, float, float], j: int, t: float
 ) -> float:
     """Penetration of a pocket in touch at a time of the step; `grip` as by `grip_at` there."""
-    if p.hertz != 0.0:
+    if p.own:
         return value(balls.depth[:, j], t)
     ex, ey, es, kept = grip
     depth: float = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
@@ -259,7 +265,7 @@ def enter_work(
     work = room.work
     work.pocket_friction = work.race_dampers = work.ball_drive = work.land_friction = 0.0
     work.land_damping = work.gravity = work.moving_frame = work.unbalance = 0.0
-    add_work(p, balls, w, state.touching, state.land, now, h, end, room.sums, work)
+    add_work(p, balls, w, state, state.land, now, h, end, room.sums, work)
     ledger.pocket_friction += work.pocket_friction
     ledger.gross += abs(work.pocket_friction)
     ledger.race_dampers += work.race_dampers
@@ -306,13 +312,14 @@ def record(
     count, land = state.touching, state.land
     while state.rows < len(samples.row) and samples.row[state.rows].clock <= until:
         row, lead, force = samples.row[state.rows], samples.lead[state.rows], samples.force[state.rows]
+        speed = samples.speed[state.rows]
         t = min(end, max(0.0, (row.clock - state.clock) / h))
         x, y, row.vx, row.vy, slip, row.vs = motion_at(w, t)
         if p.eccentricity != 0.0:
             x, y = value(w.gx, t), value(w.gy, t)
         row.x, row.y, row.s = x, y, slip
         copy_work(ledger, samples.work[state.rows])
-        add_work(p, balls, w, count, land, now, h, t, room.sums, samples.work[state.rows])
+        add_work(p, balls, w, state, land, now, h, t, room.sums, samples.work[state.rows])
         grip = grip_at(w, t)
         if land != CLEAR:
             row.land_energy = 0.5 * p.land_stiffness * value(w.depth, t) ** 2
@@ -323,6 +330,9 @@ def record(
             if balls.side[j] == 0:
                 for k in range(2 * p.harmonics):
                     lead[j] += balls.drive[k, j] * value(w.gone[:, k], t)
+            if balls.own_speed[j] != 0.0 and balls.side[j] == 0:
+                lead[j] += value(balls.way[j], t)
+                speed[j] = value(balls.speed[j], t)
         row.pocket_energy = 0.0
         for i in range(count):
             j = balls.touching[i]
@@ -333,4 +343,7 @@ def record(
             force[j] = p.stiffness * depth
             if p.hertz != 0.0:
                 force[j] = p.hertz * depth * math.sqrt(abs(depth))
+            speed[j] = p.yielding * (now.share + now.rise * h * t) * force[j]
+            if p.inertial:
+                speed[j] = value(balls.speed[j], t)
         state.rows += 1

@@ -37,6 +37,7 @@ from separatrix.cage.records import (
     Whole,
 )
 from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
+from separatrix.cage.traction import coast, dropped, fastest_ball, move_balls, rescale_balls
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
@@ -96,16 +97,16 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
         for h in range(max(1, p.harmonics)):
             start.frame[2 * h] = math.cos((h + 1) * angle)
             start.frame[2 * h + 1] = math.sin((h + 1) * angle)
-    if p.hertz != 0.0:
+    if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
-            balls.depth[0, j] = balls.penetration[j]
+            balls.depth[0, j], balls.speed[j, 0] = balls.penetration[j], balls.own_speed[j]
 
 
 @inlined_kernel
 def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
     """Coefficient n of the force of a pocket in touch."""
-    if p.hertz != 0.0:
+    if p.own:
         return float(balls.force[n, j])
     depth: float = (
         balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
@@ -116,21 +117,25 @@ def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
 
 
 @inlined_kernel
-def step_length(p: Coefficients, balls: Balls, w: Series, count: int) -> float:
+def step_length(p: Coefficients, balls: Balls, w: Series, state: State) -> float:
     """Time for which the last terms of the series stay below `PRECISION` of the speeds.
 
     Of the speeds themselves, and of those that each pocket alone would give: forces of several pockets may
     balance, so that the cage does not feel that they relax.
     """
     start, at_end, one_before = w[0], w[ORDER], w[ORDER - 1]
-    scale = HERTZ_PRECISION if p.hertz != 0.0 else PRECISION
-    scale *= abs(start.vx) + abs(start.vy) + abs(start.vs) + p.slowest
+    speed = abs(start.vx) + abs(start.vy) + abs(start.vs) + p.slowest
     last = max(abs(at_end.vx), abs(at_end.vy), abs(at_end.vs))
     before = max(abs(one_before.vx), abs(one_before.vy), abs(one_before.vs))
-    for i in range(count):
+    for i in range(state.touching):
         j = balls.touching[i]
         last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
         before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
+    if p.inertial:
+        for list_of, count in ((balls.touching, state.touching), (balls.coasting, state.coasting)):
+            moves, ends, ends_before = fastest_ball(balls, list_of, count)
+            speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
+    scale = (HERTZ_PRECISION if p.hertz != 0.0 else PRECISION) * speed
     # |v_n| h^n = scale, for the last two terms
     h = LONGEST
     if last > 0.0:
@@ -157,8 +162,8 @@ def distance_step(p: Coefficients, w: Series, share: float) -> float:
 @inlined_kernel
 def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
     """Time for which the series may be used: their own, and up to the next time at which something is due."""
-    h = min(step_length(p, balls, w, state.touching), left)
-    if state.touching > 0 and p.hertz == 0.0:
+    h = min(step_length(p, balls, w, state), left)
+    if state.touching > 0 and not p.own:
         # What is left of a penetration and what is new cancel: of more than this too little is left.
         h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
     if state.clock < p.ramp_time:
@@ -169,14 +174,17 @@ def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pa
 
 
 @inlined_kernel
-def rescale(p: Coefficients, balls: Balls, w: Series, count: int, h: float, pressed: bool) -> None:
+def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pressed: bool) -> None:
     """Make the step the unit of time of all series that are looked at."""
-    power = h
+    power, count = h, state.touching
+    if p.inertial:
+        rescale_balls(balls, balls.touching, count, h)
+        rescale_balls(balls, balls.coasting, state.coasting, h)
     for n in range(1, ORDER + 1):
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
         t.s, t.vs = t.s * power, t.vs * power
-        if count > 0 and p.hertz == 0.0:
+        if count > 0 and not p.own:
             t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
         elif count > 0:
             for i in range(count):
@@ -261,12 +269,20 @@ def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
 
 @inlined_kernel
 def finish_step(
-    p: Coefficients, balls: Balls, w: Series, state: State, h: float, end: float, after: Motion
+    p: Coefficients,
+    balls: Balls,
+    w: Series,
+    state: State,
+    now: Pace,
+    h: float,
+    end: float,
+    after: Motion,
+    ledger: Ledger,
 ) -> None:
     """State at the end of a step, from its series."""
     state.x, state.y, state.vx, state.vy, state.s, state.vs = after
     state.clock += end * h
-    if p.hertz != 0.0:
+    if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
             balls.penetration[j] = value(balls.depth[:, j], end)
@@ -283,6 +299,8 @@ def finish_step(
         for j in range(balls.play.size):
             if balls.side[j] == 0:
                 balls.lead[j] += balls.drive[k, j] * gone
+    if p.inertial:
+        move_balls(p, balls, state, end, now.share, ledger)
 
 
 @inner_kernel
@@ -297,14 +315,16 @@ def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whol
     balls.touching[state.touching] = j
     state.touching += 1
     hits[j] += 1
+    if p.inertial:
+        state.coasting = dropped(balls.coasting, state.coasting, j)
 
 
 @inner_kernel
 def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h: float, end: float) -> None:
-    """Take a ball off the list of those in touch: it stays where it was left."""
+    """Take a ball off the list of those in touch: it stays where it was left, or coasts."""
     side = balls.side[j]
     balls.lead[j] = place_of(p, balls, state, j) - side * balls.play[j] - balls.penetration[j]
-    if p.hertz != 0.0:
+    if p.hertz != 0.0 and not p.inertial:
         follows = state.vy * balls.cosine[j] - state.vx * balls.sine[j] + state.vs
         for k in range(2 * p.harmonics):
             follows -= balls.drive[k, j] * slope(w.gone[:, k], end) / h
@@ -313,12 +333,10 @@ def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h
             # between the two it would meet the ball at once, and again without end.
             balls.lead[j] += 0.5 * side * p.onset
     balls.side[j] = 0
-    kept = 0
-    for i in range(state.touching):
-        if balls.touching[i] != j:
-            balls.touching[kept] = balls.touching[i]
-            kept += 1
-    state.touching = kept
+    state.touching = dropped(balls.touching, state.touching, j)
+    if p.inertial:
+        balls.coasting[state.coasting] = j
+        state.coasting += 1
 
 
 @inner_kernel
@@ -361,11 +379,13 @@ def advance(
         pressed = land != CLEAR and land != RELEASED
         load_state(p, balls, state, w)
         expand(p, balls, w, state, now, room)
+        if p.inertial:
+            coast(p, balls, state.coasting, now)
         if pressed and land != STICK:
             for n in range(ORDER + 1):
                 w[n].sliding = slide_speed(p, w, now, n)
         h = longest_step(p, balls, w, state, now, length - done)
-        rescale(p, balls, w, state.touching, h, pressed)
+        rescale(p, balls, w, state, h, pressed)
         x, y, s = knots(gx), knots(gy), knots(w.s)
         off, late_off = fourths(gx, gy, w.s, w.kept, 0.0)
         end, kind, ball, deepest = pocket_change(p, balls, w, state, h, x, y, s, off, late_off, room)
@@ -376,7 +396,7 @@ def advance(
         enter_work(p, balls, w, state, now, h, end, ledger, room)
         after = motion_at(w, end)
         enter_step(p, balls, w, state, deepest, h, end, after, look, room)
-        finish_step(p, balls, w, state, h, end, after)
+        finish_step(p, balls, w, state, now, h, end, after, ledger)
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind == TOUCH:
             meet_ball(p, balls, state, ball, hits)

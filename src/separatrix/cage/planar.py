@@ -8,6 +8,7 @@ from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check, cage_design, pocket_shape
+from separatrix.ball_traction import BallTraction
 from separatrix.errors import InputError
 from separatrix.study import Guidance, PocketShape
 from separatrix.units import (
@@ -111,6 +112,9 @@ class PlanarCage:
     ramp_time, ramp_start : float
         All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is
         no ramp.
+    traction : BallTraction or None
+        Inertia of a ball along its orbit and the traction of its races, in place of `race_damping`; None is
+        the paper's ball without mass on a damper.
 
     Raises
     ------
@@ -151,6 +155,7 @@ class PlanarCage:
     orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
     ramp_time: Second = 0.0
     ramp_start: Ratio = 0.1
+    traction: BallTraction | None = None
 
     def __post_init__(self) -> None:
         _check.settle(
@@ -176,6 +181,11 @@ class PlanarCage:
     def half_play(self) -> Metre:
         """c_p, half the clearance of a ball along the circumference, after shape and offset [m]."""
         return pocket_shape.half_play(self)
+
+    @property
+    def slow_damping(self) -> NewtonSecondPerMetre:
+        """Damping of a ball that is pushed slowly: C_mu, or the slope of its law of traction [N s/m]."""
+        return self.race_damping if self.traction is None else self.traction.slope
 
     @property
     def pocket_tilt(self) -> tuple[Ratio, Ratio]:
