@@ -12,8 +12,10 @@ import numpy as np
 from separatrix.cage.records import (
     AT_END,
     EARLY_BOUND,
+    LANES,
     LATE_BOUND,
     ORDER,
+    WAY,
     Balls,
     Candidate,
     Coefficients,
@@ -39,6 +41,7 @@ from separatrix.cage.series import (
     top,
     value,
 )
+from separatrix.cage.traction import copy_moving, moving_at
 from separatrix.compiled import inlined_kernel
 from separatrix.units import Array
 
@@ -79,8 +82,9 @@ def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
         for n in range(1, ORDER + 1):
             c[n] -= balls.drive[k, j] * w[n].gone[k]
     if balls.own_speed[j] != 0.0:
+        block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
         for n in range(1, ORDER + 1):
-            c[n] -= balls.way[j, n]
+            c[n] -= balls.moving[block, WAY, LANES * n + lane]
 
 
 @inlined_kernel
@@ -322,9 +326,10 @@ def meet_balls(
             early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
             late += bend_of(p, balls, room.gone[LATE_BOUND], j)
         if balls.own_speed[j] != 0.0:
-            way = knots(balls.way[j])
+            copy_moving(balls, WAY, balls.slot[j], room.c)
+            way = knots(room.c)
             b, c, d, e, f = b - way[1], c - way[2], d - way[3], e - way[4], f - way[5]
-            more, later = bends(balls.way[j])
+            more, later = bends(room.c)
             early, late = early + more, late + later
         for side in (1, -1):
             sign = float(side)
@@ -360,7 +365,7 @@ def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float,
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
     if balls.own_speed[j] != 0.0:
-        left -= sign * value(balls.way[j], t)
+        left -= sign * moving_at(balls, WAY, balls.slot[j], t)
     return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 

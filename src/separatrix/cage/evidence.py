@@ -11,7 +11,9 @@ from separatrix.cage.events import penetration
 from separatrix.cage.records import (
     CLEAR,
     RELEASED,
+    SPEED,
     STICK,
+    WAY,
     Balls,
     Coefficients,
     Ledger,
@@ -23,7 +25,7 @@ from separatrix.cage.records import (
     Sums,
 )
 from separatrix.cage.series import Motion, centre, copy_column, grip_at, motion_at, peak, slope, value
-from separatrix.cage.traction import traction_power
+from separatrix.cage.traction import moving_at, traction_power
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -165,9 +167,7 @@ def add_work(
         else:
             pocket_work(p, balls, w, count, vx, vy, share, t, weight, work)
         if p.inertial:
-            taken = traction_power(p, balls, balls.touching, count, t)
-            taken += traction_power(p, balls, balls.coasting, state.coasting, t)
-            work.race_dampers -= weight * taken
+            work.race_dampers -= weight * traction_power(p, balls.moving, count + state.coasting, t)
         if land != CLEAR and land != RELEASED:
             # F_t v_s without the ring's speed: the work on the cage alone; c (d delta/dt)^2
             tangent, normal = value(w.tangent, t), value(w.normal, t)
@@ -203,14 +203,20 @@ def pocket_work(
     weight: float,
     work: Ledger,
 ) -> None:
-    """Add a node's share of the work of pockets, one by one."""
+    """Add a node's share of the work of pockets, one by one; of balls with inertia by the sum of the forces."""
+    if p.inertial:
+        along = value(w.along_x, t) * vx + value(w.along_y, t) * vy
+        work.pocket_friction -= weight * p.friction * along
+        if p.harmonics == 0:
+            return
     grip = grip_at(w, t)
     for i in range(count):
         j = balls.touching[i]
         depth = depth_at(p, balls, w, grip, j, t)
         load = p.hertz * depth * math.sqrt(abs(depth)) if p.hertz != 0.0 else p.stiffness * depth
-        work.pocket_friction -= weight * p.friction * load * (balls.cosine[j] * vx + balls.sine[j] * vy)
         if not p.inertial:
+            along = balls.cosine[j] * vx + balls.sine[j] * vy
+            work.pocket_friction -= weight * p.friction * load * along
             work.race_dampers -= weight * p.yielding * share * load * load
         for k in range(2 * p.harmonics):
             work.ball_drive -= weight * load * share * balls.drive[k, j] * value(w.frame[:, k], t)
@@ -331,8 +337,8 @@ def record(
                 for k in range(2 * p.harmonics):
                     lead[j] += balls.drive[k, j] * value(w.gone[:, k], t)
             if balls.own_speed[j] != 0.0 and balls.side[j] == 0:
-                lead[j] += value(balls.way[j], t)
-                speed[j] = value(balls.speed[j], t)
+                lead[j] += moving_at(balls, WAY, balls.slot[j], t)
+                speed[j] = moving_at(balls, SPEED, balls.slot[j], t)
         row.pocket_energy = 0.0
         for i in range(count):
             j = balls.touching[i]
@@ -345,5 +351,5 @@ def record(
                 force[j] = p.hertz * depth * math.sqrt(abs(depth))
             speed[j] = p.yielding * (now.share + now.rise * h * t) * force[j]
             if p.inertial:
-                speed[j] = value(balls.speed[j], t)
+                speed[j] = moving_at(balls, SPEED, i, t)
         state.rows += 1

@@ -17,14 +17,11 @@ Symbols are those of docs/theory/cage.md; in a ramp all speeds, and the yielding
 
 from __future__ import annotations
 
-import numpy as np
-
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
 from separatrix.cage.records import (
     CLEAR,
     FORWARD,
     ORDER,
-    POWERS,
     RELEASED,
     STICK,
     Balls,
@@ -35,12 +32,9 @@ from separatrix.cage.records import (
     State,
     Sums,
 )
-from separatrix.cage.series import product
+from separatrix.cage.series import AFTER, product
 from separatrix.cage.traction import own_forces
 from separatrix.compiled import inlined_kernel, inner_kernel
-
-AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
-"""1 / (n + 1)."""
 
 
 @inlined_kernel
@@ -133,8 +127,8 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
                 for k in range(waves):
                     w[n + 1].felt[k] -= rate * w[n - 1].felt[k]
             w[n + 1].ex, w[n + 1].ey, w[n + 1].es, w[n + 1].kept = ex, ey, es, kept
-        elif count > 0:
-            fx, fy, torque = own_forces(p, balls, w, count, now, n)
+        elif count > 0 or state.coasting > 0:
+            fx, fy, torque = own_forces(p, balls, w, state, now, n)
         # What the frame adds: 2 v x Omega + Omega^2 r
         ax = 2.0 * turning * vy + second * x
         ay = -2.0 * turning * vx + second * y

@@ -9,7 +9,7 @@ import numpy as np
 
 from separatrix.ball_traction import MOST_ELEMENTS
 from separatrix.cage.closed_forms import fastest_rate, rebound_damping, time_unit
-from separatrix.cage.records import POWERS, WAVES, Balls, Coefficients, dtype_of
+from separatrix.cage.records import BENT, LANES, POWERS, WAVES, Balls, Coefficients, dtype_of
 from separatrix.study import Guidance
 
 if TYPE_CHECKING:
@@ -92,11 +92,10 @@ def balls_of(cage: PlanarCage) -> Balls:
     cosine, sine, play, lead, penetration = np.zeros((5, count))
     side, touching = np.zeros((2, count), np.int64)
     depth, force = np.zeros((2, POWERS, count))
-    coasting = np.zeros(count, np.int64)
-    inertial = np.zeros((6, count, POWERS))
-    bent = np.zeros((count, MOST_ELEMENTS, POWERS))
+    coasting, slot = np.zeros((2, count), np.int64)
+    moving = np.zeros((-(-count // LANES), BENT + MOST_ELEMENTS, POWERS * LANES))
     common = (cosine, sine, play, lead, penetration, drive, side, touching, depth, force)
-    return Balls(*common, np.zeros(count), coasting, *inertial, bent)
+    return Balls(*common, np.zeros(count), coasting, slot, moving)
 
 
 def law_numbers(cage: PlanarCage) -> tuple[float, list[float], list[float]]:

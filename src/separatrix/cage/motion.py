@@ -37,7 +37,7 @@ from separatrix.cage.records import (
     Whole,
 )
 from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
-from separatrix.cage.traction import coast, dropped, fastest_ball, move_balls, rescale_balls
+from separatrix.cage.traction import begin_moving, dropped, fastest_ball, move_balls, rescale_balls
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
@@ -100,7 +100,9 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
     if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
-            balls.depth[0, j], balls.speed[j, 0] = balls.penetration[j], balls.own_speed[j]
+            balls.depth[0, j] = balls.penetration[j]
+    if p.inertial:
+        begin_moving(balls, state)
 
 
 @inlined_kernel
@@ -132,9 +134,8 @@ def step_length(p: Coefficients, balls: Balls, w: Series, state: State) -> float
         last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
         before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
     if p.inertial:
-        for list_of, count in ((balls.touching, state.touching), (balls.coasting, state.coasting)):
-            moves, ends, ends_before = fastest_ball(balls, list_of, count)
-            speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
+        moves, ends, ends_before = fastest_ball(balls.moving, state.touching + state.coasting)
+        speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
     scale = (HERTZ_PRECISION if p.hertz != 0.0 else PRECISION) * speed
     # |v_n| h^n = scale, for the last two terms
     h = LONGEST
@@ -178,8 +179,7 @@ def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pr
     """Make the step the unit of time of all series that are looked at."""
     power, count = h, state.touching
     if p.inertial:
-        rescale_balls(balls, balls.touching, count, h)
-        rescale_balls(balls, balls.coasting, state.coasting, h)
+        rescale_balls(balls.moving, count + state.coasting, h)
     for n in range(1, ORDER + 1):
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
@@ -190,6 +190,8 @@ def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pr
             for i in range(count):
                 balls.depth[n, balls.touching[i]] *= power
                 balls.force[n, balls.touching[i]] *= power
+        if p.inertial:
+            t.along_x, t.along_y = t.along_x * power, t.along_y * power
         if p.needs_rotation:
             t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
         if p.needs_frame:
@@ -379,8 +381,6 @@ def advance(
         pressed = land != CLEAR and land != RELEASED
         load_state(p, balls, state, w)
         expand(p, balls, w, state, now, room)
-        if p.inertial:
-            coast(p, balls, state.coasting, now)
         if pressed and land != STICK:
             for n in range(ORDER + 1):
                 w[n].sliding = slide_speed(p, w, now, n)

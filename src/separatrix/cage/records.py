@@ -32,6 +32,13 @@ KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
 """Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
+SPEED, WAY, TRACTION, CREEP, SQUARE, GRIP, BENT = range(7)
+"""Series of a ball with inertia: u, what it goes by u while it coasts, F(u) / m_e, the creep u / lambda, its
+square, F over the creep, and from `BENT` on (1 + (creep / v_i)^2)^(-1/2) of each element."""
+
+LANES = 4
+"""Balls whose series are made side by side."""
+
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
 """Modes of the land: not touched; dented but without force; touched and sticking, or sliding either way."""
 
@@ -122,6 +129,8 @@ class Terms(Generic[Value]):
     lobe_sin: Value
     tilt: Value
     pushed: Value
+    along_x: Value  # sums over the pockets in touch: N_j e_r, of balls with inertia
+    along_y: Value
     frame: Array  # cosine and sine of the turning of the frame and of its multiples
     felt: Array  # what a ball in touch, and a free one, has gone by a free speed of that form
     gone: Array
@@ -150,13 +159,8 @@ class Balls(NamedTuple):
     force: Array
     own_speed: Array  # u_j, speed of a ball with inertia beyond its free orbit; 0: it rests there
     coasting: Whole  # balls that move there and touch nothing, `State.coasting` of them
-    speed: Array  # series of u_j, and of what it makes y_j of a ball that coasts, shape (ball, power)
-    way: Array
-    traction: Array  # F(u) / m_e
-    creep: Array  # u / lambda, its square, and F over it
-    square: Array
-    grip: Array
-    bent: Array  # (1 + (creep / v_i)^2)^(-1/2), shape (ball, element, power)
+    slot: Whole  # place of a ball that moves so in `moving`: those in touch, then those that coast
+    moving: Array  # series of their motion, shape (block, quantity, power and lane)
 
 
 class Pace(NamedTuple):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.records import ORDER, Coefficients, Series
+from separatrix.cage.records import ORDER, POWERS, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -29,6 +29,9 @@ STAYS, FALLS, MAY_FALL = range(3)
 
 THIRD = 1.0 / 3.0
 SLOPE_OFF = np.sqrt(3.0) / 216.0
+AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
+"""1 / (n + 1)."""
+
 _POWER = np.arange(ORDER + 1.0)
 _FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
 HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER

@@ -10,61 +10,146 @@ from __future__ import annotations
 
 import math
 
-from separatrix.cage.records import ORDER, Balls, Coefficients, Ledger, Pace, Series, State, Whole
-from separatrix.cage.series import centre, value
+from separatrix.cage.records import (
+    BENT,
+    CREEP,
+    GRIP,
+    LANES,
+    ORDER,
+    SPEED,
+    SQUARE,
+    TRACTION,
+    WAY,
+    Balls,
+    Coefficients,
+    Ledger,
+    Pace,
+    Series,
+    State,
+    Whole,
+)
+from separatrix.cage.series import AFTER, centre, copy_column, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 
 @inner_kernel
-def traction_term(p: Coefficients, balls: Balls, now: Pace, j: int, n: int) -> None:
-    """Coefficient n of the traction F(u) on ball j, over its mass; its speed is known as far."""
-    u, c = balls.speed[j], balls.creep[j]
-    # lambda c = u with lambda = lambda_0 + lambda' t
-    creep = u[n]
-    if n > 0:
-        creep -= now.rise * c[n - 1]
-    c[n] = creep / now.share
-    force = p.damper * c[n]
-    if p.elements > 0:
-        square, grip = balls.square[j], balls.grip[j]
-        total = 0.0
-        for i in range((n + 1) // 2):
-            total += c[i] * c[n - i]
-        total *= 2.0
-        if n % 2 == 0:
-            total += c[n // 2] * c[n // 2]
-        square[n] = total
-        grip[n] = 0.0
-        for e in range(p.elements):
-            grip[n] += p.slopes[e] * bent_term(p.bends[e], square, balls.bent[j, e], n)
-        for i in range(n + 1):
-            force += c[i] * grip[n - i]
-    balls.traction[j, n] = force
+def moving_at(balls: Balls, quantity: int, slot: int, t: float) -> float:
+    """Value at a time of a series of a ball that moves."""
+    return value(balls.moving[slot // LANES, quantity, slot % LANES :: LANES], t)
+
+
+@inner_kernel
+def copy_moving(balls: Balls, quantity: int, slot: int, c: Array) -> None:
+    """Copy a series of a ball that moves."""
+    copy_column(balls.moving[slot // LANES, quantity, slot % LANES :: LANES], c)
+
+
+@inner_kernel
+def begin_moving(balls: Balls, state: State) -> None:
+    """Give the balls that move a slot each, and their speeds there; slots that fill a block are at rest."""
+    count = state.touching
+    used = count + state.coasting
+    for b in range(blocks(used)):
+        speed, way = balls.moving[b, SPEED], balls.moving[b, WAY]
+        for m in range(LANES):
+            i = b * LANES + m
+            speed[m] = way[m] = 0.0
+            if i < used:
+                j = balls.touching[i] if i < count else balls.coasting[i - count]
+                balls.slot[j], speed[m] = i, balls.own_speed[j]
 
 
 @inlined_kernel
-def bent_term(bend: float, square: Array, bent: Array, n: int) -> float:
-    """Coefficient n of (1 + bend square)^(-1/2)."""
+def blocks(used: int) -> int:
+    """Blocks of `LANES` slots that so many balls take."""
+    return (used + LANES - 1) // LANES
+
+
+@inner_kernel
+def coast(p: Coefficients, moving: Array, used: int, now: Pace, n: int) -> None:
+    """Coefficient n of the traction on balls that move, over their mass; n + 1 of their speeds and ways.
+
+    As if none were touched; speeds are known up to n.
+    """
+    share, after, first = 1.0 / now.share, AFTER[n], LANES * n
+    for b in range(blocks(used)):
+        speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
+        creep, square, grip = moving[b, CREEP], moving[b, SQUARE], moving[b, GRIP]
+        for m in range(first, first + LANES):
+            # lambda c = u with lambda = lambda_0 + lambda' t
+            u = speed[m]
+            if n > 0:
+                u -= now.rise * creep[m - LANES]
+            creep[m] = u * share
+        f0, f1, f2, f3 = (p.damper * creep[first], p.damper * creep[first + 1], p.damper * creep[first + 2],
+                          p.damper * creep[first + 3])  # fmt: skip
+        if p.elements > 0:
+            square_term(creep, square, n)
+            for m in range(first, first + LANES):
+                grip[m] = 0.0
+            for e in range(p.elements):
+                grip_term(p.bends[e], p.slopes[e], square, moving[b, BENT + e], grip, n)
+            # Four sums side by side: each waits for its own terms only
+            k = first
+            for i in range(0, first + LANES, LANES):
+                f0, f1 = f0 + creep[i] * grip[k], f1 + creep[i + 1] * grip[k + 1]
+                f2, f3 = f2 + creep[i + 2] * grip[k + 2], f3 + creep[i + 3] * grip[k + 3]
+                k -= LANES
+        traction[first], traction[first + 1], traction[first + 2], traction[first + 3] = f0, f1, f2, f3
+        for m in range(first, first + LANES):
+            speed[m + LANES] = -traction[m] * after
+            way[m + LANES] = speed[m] * after
+
+
+@inlined_kernel
+def square_term(c: Array, square: Array, n: int) -> None:
+    """Coefficient n of the squares of series, a block of them."""
+    r0 = r1 = r2 = r3 = 0.0
+    first = k = LANES * n
+    for i in range(0, LANES * ((n + 1) // 2), LANES):
+        r0, r1 = r0 + c[i] * c[k], r1 + c[i + 1] * c[k + 1]
+        r2, r3 = r2 + c[i + 2] * c[k + 2], r3 + c[i + 3] * c[k + 3]
+        k -= LANES
+    square[first], square[first + 1], square[first + 2], square[first + 3] = 2 * r0, 2 * r1, 2 * r2, 2 * r3
+    if n % 2 == 0:
+        for m in range(LANES):
+            square[first + m] += c[k + m] * c[k + m]
+
+
+@inlined_kernel
+def grip_term(bend: float, slope: float, square: Array, bent: Array, grip: Array, n: int) -> None:
+    """Add coefficient n of slope (1 + bend square)^(-1/2) to those of `grip`, a block of them."""
+    first = k = LANES * n
     if n == 0:
-        bent[0] = 1.0 / math.sqrt(1.0 + bend * square[0])
-        return float(bent[0])
+        for m in range(LANES):
+            bent[m] = 1.0 / math.sqrt(1.0 + bend * square[m])
+            grip[m] += slope * bent[m]
+        return
     # g = w^(-1/2) has w dg/dt = -g dw/dt / 2, whence n w_0 g_n = -sum_(i<n) ((n - i) / 2 + i) w_(n-i) g_i
-    total = 0.0
-    for i in range(n):
-        total -= 0.5 * (n + i) * square[n - i] * bent[i]
-    bent[n] = bend * total / (n * (1.0 + bend * square[0]))
-    return float(bent[n])
+    r0 = r1 = r2 = r3 = 0.0
+    factor = -0.5 * n
+    for i in range(0, first, LANES):
+        r0, r1 = r0 + factor * square[k] * bent[i], r1 + factor * square[k + 1] * bent[i + 1]
+        r2, r3 = r2 + factor * square[k + 2] * bent[i + 2], r3 + factor * square[k + 3] * bent[i + 3]
+        factor -= 0.5
+        k -= LANES
+    bent[first], bent[first + 1], bent[first + 2], bent[first + 3] = r0, r1, r2, r3
+    for m in range(LANES):
+        bent[first + m] *= bend * bent[m] * bent[m] * AFTER[n - 1]
+        grip[first + m] += slope * bent[first + m]
 
 
 @inner_kernel
 def own_forces(
-    p: Coefficients, balls: Balls, w: Series, count: int, now: Pace, n: int
+    p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, n: int
 ) -> tuple[float, float, float]:
     """Coefficient n of the forces of pockets with series of their own, and n + 1 of their penetrations."""
     gx, gy = centre(p, w)
     sum_cos = sum_sin = total = 0.0
-    after = 1.0 / (n + 1)
+    after, count = 1.0 / (n + 1), state.touching
+    if p.inertial:
+        coast(p, balls.moving, count + state.coasting, now, n)
     for i in range(count):
         j = balls.touching[i]
         # N_j = K |q_j|^1.5 sign q_j, or k q_j
@@ -72,9 +157,9 @@ def own_forces(
         balls.force[n, j] = force
         if p.inertial:
             # m_e du_j/dt = N_j - F(u_j), and dq_j/dt = d(place_j)/dt - u_j, less the free speed
-            traction_term(p, balls, now, j, n)
-            give = balls.speed[j, n]
-            balls.speed[j, n + 1] = (p.lightness * force - balls.traction[j, n]) * after
+            speed, at = balls.moving[i // LANES, SPEED], LANES * n + i % LANES
+            give = speed[at]
+            speed[at + LANES] += p.lightness * force * after
         else:
             # dq_j/dt = d(place_j)/dt - N_j / C_mu, less the free speed
             give = p.yielding * now.share * force
@@ -88,6 +173,8 @@ def own_forces(
         sum_cos += force * balls.cosine[j]
         sum_sin += force * balls.sine[j]
         total += force
+    if p.inertial:
+        w[n].along_x, w[n].along_y = sum_cos, sum_sin
     # F = sum_j -N_j (e_t + sigma f e_r),  T / (M R) = -sum_j N_j
     return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
 
@@ -107,54 +194,42 @@ def hertz_power(p: Coefficients, balls: Balls, j: int, n: int) -> float:
 
 
 @inner_kernel
-def coast(p: Coefficients, balls: Balls, count: int, now: Pace) -> None:
-    """Fill the series of the balls that coast, from their speeds."""
-    for i in range(count):
-        j = balls.coasting[i]
-        u, way = balls.speed[j], balls.way[j]
-        u[0], way[0] = balls.own_speed[j], 0.0
-        for n in range(ORDER + 1):
-            traction_term(p, balls, now, j, n)
-            after = 1.0 / (n + 1)
-            u[n + 1] = -balls.traction[j, n] * after
-            way[n + 1] = u[n] * after
-
-
-@inner_kernel
-def fastest_ball(balls: Balls, list_of: Whole, count: int) -> tuple[float, float, float]:
-    """Largest speed of some balls, and of the last two terms of their series."""
+def fastest_ball(moving: Array, used: int) -> tuple[float, float, float]:
+    """Largest speed of the balls that move, and of the last two terms of their series."""
     speed = last = before = 0.0
-    for i in range(count):
-        u = balls.speed[list_of[i]]
-        speed = max(speed, abs(u[0]))
-        last, before = max(last, abs(u[ORDER])), max(before, abs(u[ORDER - 1]))
+    for b in range(blocks(used)):
+        u = moving[b, SPEED]
+        for m in range(LANES):
+            speed, last = max(speed, abs(u[m])), max(last, abs(u[LANES * ORDER + m]))
+            before = max(before, abs(u[LANES * (ORDER - 1) + m]))
     return speed, last, before
 
 
 @inner_kernel
-def rescale_balls(balls: Balls, list_of: Whole, count: int, h: float) -> None:
-    """Make the step the unit of time of the series of some balls."""
-    for i in range(count):
-        j = list_of[i]
+def rescale_balls(moving: Array, used: int, h: float) -> None:
+    """Make the step the unit of time of the series of the balls that move."""
+    for b in range(blocks(used)):
+        speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
         power = h
-        for n in range(1, ORDER + 1):
-            balls.speed[j, n] *= power
-            balls.traction[j, n] *= power
-            balls.way[j, n] *= power
+        for n in range(LANES, LANES * (ORDER + 1), LANES):
+            for m in range(n, n + LANES):
+                speed[m] *= power
+                way[m] *= power
+                traction[m] *= power
             power *= h
 
 
 @inner_kernel
 def move_balls(p: Coefficients, balls: Balls, state: State, end: float, share: float, ledger: Ledger) -> None:
     """Speeds and places of the balls at the end of a step; one that is about at rest is put there."""
-    for i in range(state.touching):
-        j = balls.touching[i]
-        balls.own_speed[j] = value(balls.speed[j], end)
+    count = state.touching
+    for i in range(count):
+        balls.own_speed[balls.touching[i]] = moving_at(balls, SPEED, i, end)
     kept = 0
     for i in range(state.coasting):
         j = balls.coasting[i]
-        balls.lead[j] += value(balls.way[j], end)
-        u = value(balls.speed[j], end)
+        balls.lead[j] += moving_at(balls, WAY, count + i, end)
+        u = moving_at(balls, SPEED, count + i, end)
         if abs(u) > p.coast_end:
             balls.own_speed[j] = u
             balls.coasting[kept] = j
@@ -192,11 +267,17 @@ def ball_energy(p: Coefficients, balls: Balls, state: State) -> float:
 
 
 @inner_kernel
-def traction_power(p: Coefficients, balls: Balls, list_of: Whole, count: int, t: float) -> float:
-    """Power that the races take from some balls at a time, over the mass of the cage."""
-    # F(u) u
+def traction_power(p: Coefficients, moving: Array, used: int, t: float) -> float:
+    """Power that the races take from the balls that move at a time, over the mass of the cage."""
     total = 0.0
-    for i in range(count):
-        j = list_of[i]
-        total += value(balls.traction[j], t) * value(balls.speed[j], t)
+    for b in range(blocks(used)):
+        speed, traction = moving[b, SPEED], moving[b, TRACTION]
+        u0 = u1 = u2 = u3 = f0 = f1 = f2 = f3 = 0.0
+        for n in range(LANES * ORDER, -1, -LANES):
+            u0, f0 = u0 * t + speed[n], f0 * t + traction[n]
+            u1, f1 = u1 * t + speed[n + 1], f1 * t + traction[n + 1]
+            u2, f2 = u2 * t + speed[n + 2], f2 * t + traction[n + 2]
+            u3, f3 = u3 * t + speed[n + 3], f3 * t + traction[n + 3]
+        # F(u) u
+        total += u0 * f0 + u1 * f1 + u2 * f2 + u3 * f3
     return total / p.lightness
