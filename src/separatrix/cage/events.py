@@ -42,7 +42,7 @@ from separatrix.cage.series import (
     value,
 )
 from separatrix.cage.traction import copy_moving, moving_at
-from separatrix.compiled import inlined_kernel
+from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 GRAINS = 8.0
@@ -81,10 +81,40 @@ def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     for k in range(2 * p.harmonics):
         for n in range(1, ORDER + 1):
             c[n] -= balls.drive[k, j] * w[n].gone[k]
+    if p.inertial:
+        subtract_way(balls, j, c)
+
+
+@inner_kernel
+def subtract_way(balls: Balls, j: int, c: Array) -> None:
+    """Take the way that a ball coasts from a series, but for its first term."""
     if balls.own_speed[j] != 0.0:
         block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
         for n in range(1, ORDER + 1):
             c[n] -= balls.moving[block, WAY, LANES * n + lane]
+
+
+@inner_kernel
+def way_at(balls: Balls, j: int, t: float) -> float:
+    """Way that a ball has coasted at a time."""
+    return moving_at(balls, WAY, balls.slot[j], t) if balls.own_speed[j] != 0.0 else 0.0
+
+
+@inner_kernel
+def way_knots(
+    balls: Balls, j: int, c: Array
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Knots of the way that a ball coasts, and bounds of what bends it."""
+    copy_moving(balls, WAY, balls.slot[j], c)
+    a, b, d, e, f, g = knots(c)
+    early, late = bends(c)
+    return a, b, d, e, f, g, early, late
+
+
+@inner_kernel
+def depth_change(balls: Balls, j: int, t: float) -> float:
+    """How much an own series of a penetration has risen at a time."""
+    return value(balls.depth[:, j], t) - float(balls.depth[0, j])
 
 
 @inlined_kernel
@@ -205,7 +235,7 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
     return filled, deepest
 
 
-@inlined_kernel
+@inner_kernel
 def leave_own(
     p: Coefficients,
     balls: Balls,
@@ -297,7 +327,7 @@ def meet_balls(
     filled: int,
 ) -> int:
     """Queue the pockets that may meet their balls; return how many are queued."""
-    waves = 2 * p.harmonics
+    waves, inertial = 2 * p.harmonics, p.inertial
     if p.hertz != 0.0:
         off = late_off = np.inf
     if waves == 0:
@@ -307,7 +337,7 @@ def meet_balls(
             learn_wave(w.gone[:, k], k, room.gone)
     else:
         return filled
-    for i in range(state.coasting):
+    for i in range(state.coasting if inertial else 0):
         room.beyond[balls.coasting[i]] = np.inf
     size = abs(s[0]) + abs(x[0]) + abs(y[0])
     for j in range(balls.play.size):
@@ -325,11 +355,9 @@ def meet_balls(
             f -= gone_at(p, balls, room.gone[5], j)
             early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
             late += bend_of(p, balls, room.gone[LATE_BOUND], j)
-        if balls.own_speed[j] != 0.0:
-            copy_moving(balls, WAY, balls.slot[j], room.c)
-            way = knots(room.c)
-            b, c, d, e, f = b - way[1], c - way[2], d - way[3], e - way[4], f - way[5]
-            more, later = bends(room.c)
+        if inertial and balls.own_speed[j] != 0.0:
+            _, one, two, three, four, five, more, later = way_knots(balls, j, room.c)
+            b, c, d, e, f = b - one, c - two, d - three, e - four, f - five
             early, late = early + more, late + later
         for side in (1, -1):
             sign = float(side)
@@ -356,16 +384,15 @@ def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float,
     x, y, s, ex, ey, es, kept = now
     cos, sin = balls.cosine[j], balls.sine[j]
     if row.change == 0 and p.own:
-        left: float = row.start + float(balls.side[j]) * (value(balls.depth[:, j], t) - balls.depth[0, j])
-        return left
+        return row.start + float(balls.side[j]) * depth_change(balls, j, t)
     if row.change == 0:
         sign = float(balls.side[j])
-        left = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
+        left: float = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
         return left - sign * gone_at(p, balls, room.felt[AT_END], j)
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
-    if balls.own_speed[j] != 0.0:
-        left -= sign * moving_at(balls, WAY, balls.slot[j], t)
+    if p.inertial:
+        left -= sign * way_at(balls, j, t)
     return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 

@@ -140,7 +140,7 @@ def add_work(
     """Add the work that each source does from the start of the step to `end`, by Gauss's rule."""
     gx, gy = centre(p, w)
     alike, count = not p.own and p.harmonics == 0, state.touching
-    squares = 0.0
+    squares, inertial = 0.0, p.inertial
     for i in range(count):
         squares += balls.penetration[balls.touching[i]] ** 2
     for i in range(NODES.size):
@@ -166,7 +166,7 @@ def add_work(
             work.race_dampers -= weight * p.yielding * share * p.stiffness**2 * square
         else:
             pocket_work(p, balls, w, count, vx, vy, share, t, weight, work)
-        if p.inertial:
+        if inertial:
             work.race_dampers -= weight * traction_power(p, balls.moving, count + state.coasting, t)
         if land != CLEAR and land != RELEASED:
             # F_t v_s without the ring's speed: the work on the cage alone; c (d delta/dt)^2

@@ -68,7 +68,7 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
     yielding, softer = p.yielding * p.stiffness * share, p.yielding * p.stiffness * rise
-    linear = not p.own and count > 0
+    linear, own = not p.own and count > 0, p.own and count + state.coasting > 0
     rotating, leaning, framed, waves = p.needs_rotation, p.eccentricity != 0.0, p.needs_frame, 2 * p.harmonics
     ramped, heavy, pressed = rise != 0.0, p.gravity != 0.0, land != CLEAR and land != RELEASED
     if linear:
@@ -127,7 +127,7 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
                 for k in range(waves):
                     w[n + 1].felt[k] -= rate * w[n - 1].felt[k]
             w[n + 1].ex, w[n + 1].ey, w[n + 1].es, w[n + 1].kept = ex, ey, es, kept
-        elif count > 0 or state.coasting > 0:
+        elif own:
             fx, fy, torque = own_forces(p, balls, w, state, now, n)
         # What the frame adds: 2 v x Omega + Omega^2 r
         ax = 2.0 * turning * vy + second * x

@@ -179,7 +179,7 @@ def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pr
     """Make the step the unit of time of all series that are looked at."""
     power, count = h, state.touching
     if p.inertial:
-        rescale_balls(balls.moving, count + state.coasting, h)
+        rescale_balls(w, balls.moving, count + state.coasting, h)
     for n in range(1, ORDER + 1):
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
@@ -190,8 +190,6 @@ def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pr
             for i in range(count):
                 balls.depth[n, balls.touching[i]] *= power
                 balls.force[n, balls.touching[i]] *= power
-        if p.inertial:
-            t.along_x, t.along_y = t.along_x * power, t.along_y * power
         if p.needs_rotation:
             t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
         if p.needs_frame:

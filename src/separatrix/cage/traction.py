@@ -206,8 +206,12 @@ def fastest_ball(moving: Array, used: int) -> tuple[float, float, float]:
 
 
 @inner_kernel
-def rescale_balls(moving: Array, used: int, h: float) -> None:
+def rescale_balls(w: Series, moving: Array, used: int, h: float) -> None:
     """Make the step the unit of time of the series of the balls that move."""
+    power = h
+    for n in range(1, ORDER + 1):
+        w[n].along_x, w[n].along_y = w[n].along_x * power, w[n].along_y * power
+        power *= h
     for b in range(blocks(used)):
         speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
         power = h
