@@ -257,7 +257,7 @@ def land_energy(p: Coefficients, balls: Balls, state: State, w: Series, room: Ro
     return 0.5 * p.land_stiffness * w[0].depth ** 2
 
 
-@inner_kernel
+@inlined_kernel
 def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
     """Place of pocket j along the circumference, against a ball without lead."""
     x, y = state.x, state.y
@@ -303,7 +303,7 @@ def finish_step(
         move_balls(p, balls, state, end, now.share, ledger)
 
 
-@inner_kernel
+@inlined_kernel
 def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whole) -> None:
     """Put a ball on the list of those in touch; beyond the number of balls: on the negative side."""
     j = ball % balls.play.size
@@ -319,7 +319,7 @@ def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whol
         state.coasting = dropped(balls.coasting, state.coasting, j)
 
 
-@inner_kernel
+@inlined_kernel
 def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h: float, end: float) -> None:
     """Take a ball off the list of those in touch: it stays where it was left, or coasts."""
     side = balls.side[j]
