@@ -205,7 +205,7 @@ def pocket_work(
 ) -> None:
     """Add a node's share of the work of pockets, one by one; of balls with inertia by the sum of the forces."""
     if p.inertial:
-        along = value(w.along_x, t) * vx + value(w.along_y, t) * vy
+        along = value(w.ex, t) * vx + value(w.ey, t) * vy
         work.pocket_friction -= weight * p.friction * along
         if p.harmonics == 0:
             return

@@ -55,6 +55,10 @@ LONGEST = 1e6
 RELAXED = 4.0
 """Longest step with linear pockets in touch, in units of the time in which they yield."""
 
+SLOWED = 5.0
+"""Longest step with balls that move, in units of the time in which the slope of their traction stops them: a
+series of 14 terms still damps what it no longer resolves."""
+
 SHORT = 0.2
 """Share of the distance of the centre that a way may have: its series falls by that from term to term."""
 
@@ -167,6 +171,9 @@ def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pa
     if state.touching > 0 and not p.own:
         # What is left of a penetration and what is new cancel: of more than this too little is left.
         h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
+    if p.inertial and state.touching + state.coasting > 0:
+        # Of a speed that has decayed to less a series of this length has nothing left
+        h = min(h, SLOWED * p.coast_time * now.share)
     if state.clock < p.ramp_time:
         h = min(h, p.ramp_time - state.clock)
     if state.land == RELEASED or (state.land == CLEAR and p.roundness != 0.0):

@@ -129,8 +129,6 @@ class Terms(Generic[Value]):
     lobe_sin: Value
     tilt: Value
     pushed: Value
-    along_x: Value  # sums over the pockets in touch: N_j e_r, of balls with inertia
-    along_y: Value
     frame: Array  # cosine and sine of the turning of the frame and of its multiples
     felt: Array  # what a ball in touch, and a free one, has gone by a free speed of that form
     gone: Array

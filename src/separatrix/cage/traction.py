@@ -174,7 +174,7 @@ def own_forces(
         sum_sin += force * balls.sine[j]
         total += force
     if p.inertial:
-        w[n].along_x, w[n].along_y = sum_cos, sum_sin
+        w[n].ex, w[n].ey = sum_cos, sum_sin
     # F = sum_j -N_j (e_t + sigma f e_r),  T / (M R) = -sum_j N_j
     return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
 
@@ -210,7 +210,7 @@ def rescale_balls(w: Series, moving: Array, used: int, h: float) -> None:
     """Make the step the unit of time of the series of the balls that move."""
     power = h
     for n in range(1, ORDER + 1):
-        w[n].along_x, w[n].along_y = w[n].along_x * power, w[n].along_y * power
+        w[n].ex, w[n].ey = w[n].ex * power, w[n].ey * power
         power *= h
     for b in range(blocks(used)):
         speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
