@@ -194,26 +194,23 @@ def enqueue(
 @inlined_kernel
 def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room) -> tuple[int, float]:
     """Queue the pockets that may leave their balls; return how many, and the largest penetration."""
-    filled, deepest, waves, linear = 0, 0.0, 2 * p.harmonics, not p.own
-    off = late_off = most = 0.0
-    ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
-    if linear:
-        for k in range(waves):
-            learn_wave(w.felt[:, k], k, room.felt)
-        for i in range(count):
-            most = larger(most, abs(balls.penetration[balls.touching[i]]))
-        off, late_off = fourths(w.ex, w.ey, w.es, w.kept, most)
+    filled, deepest, waves = 0, 0.0, 2 * p.harmonics
     size = abs(w[0].s) + abs(w[0].x) + abs(w[0].y)
+    if p.own:
+        return leave_own(p, balls, w, count, size, room)
+    most = 0.0
+    ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
+    for k in range(waves):
+        learn_wave(w.felt[:, k], k, room.felt)
+    for i in range(count):
+        most = larger(most, abs(balls.penetration[balls.touching[i]]))
+    off, late_off = fourths(w.ex, w.ey, w.es, w.kept, most)
     for i in range(count):
         j = balls.touching[i]
         q, cos, sin = balls.penetration[j], balls.cosine[j], balls.sine[j]
         sign, noise = float(balls.side[j]), size + balls.play[j]
-        grip = GRAINS * ROUNDING * noise - p.onset
+        grip = GRAINS * ROUNDING * noise
         start = sign * q + grip
-        if not linear:
-            filled, most = leave_own(p, balls, j, sign, start, grip, noise, room, filled)
-            deepest = larger(deepest, most)
-            continue
         rise = sign * held(q, cos, sin, ex[1], ey[1], es[1], kept[1])
         middle = sign * held(q, cos, sin, ex[2], ey[2], es[2], kept[2]) + grip
         turn = sign * held(q, cos, sin, ex[3], ey[3], es[3], kept[3])
@@ -237,27 +234,27 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
 
 @inner_kernel
 def leave_own(
-    p: Coefficients,
-    balls: Balls,
-    j: int,
-    sign: float,
-    start: float,
-    grip: float,
-    noise: float,
-    room: Room,
-    filled: int,
+    p: Coefficients, balls: Balls, w: Series, count: int, size: float, room: Room
 ) -> tuple[int, float]:
-    """Queue a pocket with a series of its own, if it may leave; how many are, and its largest penetration."""
-    if p.hertz != 0.0:
-        at = (start, 0.0, start, 0.0, start, 0.0)
-        return enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
-    c = room.c
-    copy_column(balls.depth[:, j], c)
-    a, b, d, e, f, g = knots(c)
-    at = (start, sign * b, sign * d + grip, sign * e, sign * f + grip, sign * g)
-    early, late = bends(c)
-    most = larger(top(at[0], at[1], at[2], at[3], early), top(at[2], at[3], at[4], at[5], late))
-    return enqueue(room, filled, 0, j, at, early, late, noise), most
+    """Queue the pockets with series of their own that may leave; how many, and the largest penetration."""
+    filled, deepest, c = 0, 0.0, room.c
+    for i in range(count):
+        j = balls.touching[i]
+        sign, noise = float(balls.side[j]), size + balls.play[j]
+        grip = GRAINS * ROUNDING * noise - p.onset
+        start = sign * balls.penetration[j] + grip
+        if p.hertz != 0.0:
+            at = (start, 0.0, start, 0.0, start, 0.0)
+            filled, deepest = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
+            continue
+        copy_column(balls.depth[:, j], c)
+        _, b, d, e, f, g = knots(c)
+        at = (start, sign * b, sign * d + grip, sign * e, sign * f + grip, sign * g)
+        early, late = bends(c)
+        deepest = larger(deepest, top(at[0], at[1], at[2], at[3], early))
+        deepest = larger(deepest, top(at[2], at[3], at[4], at[5], late))
+        filled = enqueue(room, filled, 0, j, at, early, late, noise)
+    return filled, deepest
 
 
 @inlined_kernel

@@ -140,7 +140,9 @@ def add_work(
     """Add the work that each source does from the start of the step to `end`, by Gauss's rule."""
     gx, gy = centre(p, w)
     alike, count = not p.own and p.harmonics == 0, state.touching
-    squares, inertial = 0.0, p.inertial
+    squares = 0.0
+    if p.inertial:
+        work.race_dampers -= traction_work(p, balls.moving, count + state.coasting, end * h, end)
     for i in range(count):
         squares += balls.penetration[balls.touching[i]] ** 2
     for i in range(NODES.size):
@@ -166,8 +168,6 @@ def add_work(
             work.race_dampers -= weight * p.yielding * share * p.stiffness**2 * square
         else:
             pocket_work(p, balls, w, count, vx, vy, share, t, weight, work)
-        if inertial:
-            work.race_dampers -= weight * traction_power(p, balls.moving, count + state.coasting, t)
         if land != CLEAR and land != RELEASED:
             # F_t v_s without the ring's speed: the work on the cage alone; c (d delta/dt)^2
             tangent, normal = value(w.tangent, t), value(w.normal, t)
@@ -188,6 +188,15 @@ def add_work(
         work.unbalance += weight * second * ((mx - x) * ux + (my - y) * uy)
         euler = my * ux - mx * uy - p.radius * p.inertia * vs
         work.moving_frame += weight * p.turning * now.rise * euler
+
+
+@inner_kernel
+def traction_work(p: Coefficients, moving: Array, used: int, length: float, end: float) -> float:
+    """Work that the races take from the balls that move up to `end`, over the mass of the cage."""
+    total = 0.0
+    for i in range(NODES.size):
+        total += WEIGHTS[i] * traction_power(p, moving, used, end * NODES[i])
+    return total * length
 
 
 @inner_kernel
