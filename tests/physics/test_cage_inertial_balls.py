@@ -119,7 +119,8 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
     after = run.velocity[-1, 1] + R * run.rotation_rate[-1]
     assert after / kick == pytest.approx(left / kick, abs=1e-8)
     # 1e-5 s later the ball is slower by its traction alone
-    later = solve_ivp(lambda _, u: -law.force(u[0]) / law.mass, (0, 1e-5), [ball], rtol=1e-12, atol=1e-15).y[0, -1]
+    how = {"rtol": 1e-12, "atol": 1e-15}
+    later = solve_ivp(lambda _, u: -law.force(u[0]) / law.mass, (0, 1e-5), [ball], **how).y[0, -1]
     assert run.ball_speed[-1, 0] / kick == pytest.approx(later / kick, abs=1e-8)
 
 
@@ -235,18 +236,32 @@ def drawn(number: int):
     gap, lobes, waves = rng.uniform(1e-4, 5e-4), int(rng.integers(2, 5)), rng.random() < 0.3 and speed > 0.0
     clearance = rng.choice([0.0, 1e-4, 6e-4], p=[0.15, 0.35, 0.5])
     hertz = 10.0 ** rng.uniform(8.0, 9.5) if rng.random() < 0.3 and clearance > 0.0 else None
-    cage = dict(
-        mass=mass, moment_of_inertia=mass * radius**2 * rng.uniform(0.8, 1.5), pitch_radius=radius,
-        ball_count=int(rng.integers(3, 20)), cage_speed=speed, outer_speed=rng.choice([0.0, 1500.0]),
-        pocket_clearance=clearance, ball_cage_stiffness=10.0 ** rng.uniform(6.0, 7.0), traction=law,
-        ball_cage_friction=rng.uniform(0.0, 0.4), guidance=rng.choice(list(Guidance)), land_clearance=2 * gap,
-        land_friction=rng.uniform(0.0, 0.4), land_restitution=rng.uniform(0.2, 1.0),
-        land_out_of_round=rng.choice([0.0, 0.5]) * gap / lobes**2, land_lobes=lobes,
-        unbalance=rng.choice([0.0, 1e-6]), gravity=rng.choice([0.0, 9.81]), hertz_coefficient=hertz,
-        orbital_cosines=(2e-5 * speed,) if waves else (), orbital_sines=(1e-5 * speed,) if waves else (),
-        ramp_time=rng.choice([0.0, 1.5e-3]), ramp_start=rng.uniform(0.1, 1.0),
-        ball_diameter_scatter=rng.choice([0.0, 1e-5]) * (clearance > 0.0),
-    )  # fmt: skip
+    cage = {
+        "mass": mass,
+        "moment_of_inertia": mass * radius**2 * rng.uniform(0.8, 1.5),
+        "pitch_radius": radius,
+        "ball_count": int(rng.integers(3, 20)),
+        "cage_speed": speed,
+        "outer_speed": rng.choice([0.0, 1500.0]),
+        "pocket_clearance": clearance,
+        "ball_cage_stiffness": 10.0 ** rng.uniform(6.0, 7.0),
+        "traction": law,
+        "ball_cage_friction": rng.uniform(0.0, 0.4),
+        "guidance": rng.choice(list(Guidance)),
+        "land_clearance": 2 * gap,
+        "land_friction": rng.uniform(0.0, 0.4),
+        "land_restitution": rng.uniform(0.2, 1.0),
+        "land_out_of_round": rng.choice([0.0, 0.5]) * gap / lobes**2,
+        "land_lobes": lobes,
+        "unbalance": rng.choice([0.0, 1e-6]),
+        "gravity": rng.choice([0.0, 9.81]),
+        "hertz_coefficient": hertz,
+        "orbital_cosines": (2e-5 * speed,) if waves else (),
+        "orbital_sines": (1e-5 * speed,) if waves else (),
+        "ramp_time": rng.choice([0.0, 1.5e-3]),
+        "ramp_start": rng.uniform(0.1, 1.0),
+        "ball_diameter_scatter": rng.choice([0.0, 1e-5]) * (clearance > 0.0),
+    }
     numbers = {name: value.item() if isinstance(value, np.generic) else value for name, value in cage.items()}
     return replace(TURNING, **numbers)
 

@@ -65,7 +65,7 @@ def turning_critical_friction(cage: PlanarCage) -> Ratio:
 
 
 def _inertial_critical_friction(cage: PlanarCage, law: BallTraction, turning: float) -> Ratio:
-    r"""Friction at which a whirl of small motions lasts among balls of inertia, `turning` :math:`\sigma\Omega`.
+    r"""Friction at which a whirl of small motions lasts among balls of inertia; turning :math:`\sigma\Omega`.
 
     With :math:`\lambda = i\omega`, :math:`G = m_e^2\omega^2 + C^2`: the real part of the polynomial is
     :math:`(\omega + \Omega)^2 (G - k m_e) = \omega_0^2 G`, and :math:`f = kC/\omega (G - k m_e)`.
@@ -91,8 +91,8 @@ def drift_law(cage: PlanarCage) -> float:
 def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
     """Exact rates of the translation without clearance, fastest growing first, shape (3,) [rad/s].
 
-    Four of them with balls of inertia, for motions slow beside the speeds of their law. The real part is the growth, the imaginary part the whirl in the turning frame, positive in the positive
-    sense.
+    Four of them with balls of inertia, for motions slow beside the speeds of their law. The real part is the
+    growth, the imaginary part the whirl in the turning frame, positive in the positive sense.
     """
     W, w0 = cage.cage_speed, whirl_rate(cage)
     if cage.traction is not None:

@@ -12,10 +12,8 @@ import numpy as np
 from separatrix.cage.records import (
     AT_END,
     EARLY_BOUND,
-    LANES,
     LATE_BOUND,
     ORDER,
-    WAY,
     Balls,
     Candidate,
     Coefficients,
@@ -24,13 +22,13 @@ from separatrix.cage.records import (
     State,
 )
 from separatrix.cage.series import (
-    EARLY,
     FALLS,
-    LATE,
     ROUNDING,
     STAYS,
     THIRD,
     Knots,
+    Place,
+    bends,
     centre,
     copy_column,
     earliest_zero,
@@ -38,19 +36,18 @@ from separatrix.cage.series import (
     fourths,
     grip_at,
     knots,
+    larger,
+    smaller,
     top,
     value,
 )
-from separatrix.cage.traction import copy_moving, moving_at
+from separatrix.cage.traction import depth_change, subtract_way, way_at, way_knots
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 GRAINS = 8.0
 """A pocket leaves its ball this many roundings of its place after their force is gone: a cage that comes to
 rest would else touch and leave without end, at forces of some 1e-11 N."""
-
-Place = tuple[float, float, float, float, float, float, float]
-"""Centre (x, y), slip s, and E_x, E_y, E_s and e of the pockets in touch."""
 
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
@@ -85,63 +82,10 @@ def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
         subtract_way(balls, j, c)
 
 
-@inner_kernel
-def subtract_way(balls: Balls, j: int, c: Array) -> None:
-    """Take the way that a ball coasts from a series, but for its first term."""
-    if balls.own_speed[j] != 0.0:
-        block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
-        for n in range(1, ORDER + 1):
-            c[n] -= balls.moving[block, WAY, LANES * n + lane]
-
-
-@inner_kernel
-def way_at(balls: Balls, j: int, t: float) -> float:
-    """Way that a ball has coasted at a time."""
-    return moving_at(balls, WAY, balls.slot[j], t) if balls.own_speed[j] != 0.0 else 0.0
-
-
-@inner_kernel
-def way_knots(
-    balls: Balls, j: int, c: Array
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """Knots of the way that a ball coasts, and bounds of what bends it."""
-    copy_moving(balls, WAY, balls.slot[j], c)
-    a, b, d, e, f, g = knots(c)
-    early, late = bends(c)
-    return a, b, d, e, f, g, early, late
-
-
-@inner_kernel
-def depth_change(balls: Balls, j: int, t: float) -> float:
-    """How much an own series of a penetration has risen at a time."""
-    return value(balls.depth[:, j], t) - float(balls.depth[0, j])
-
-
-@inlined_kernel
-def larger(a: float, b: float) -> float:
-    """Larger of two numbers, without a branch."""
-    return a if a > b else b
-
-
-@inlined_kernel
-def smaller(a: float, b: float) -> float:
-    """Smaller of two numbers, without a branch."""
-    return a if a < b else b
-
-
 @inlined_kernel
 def held(q: float, cos: float, sin: float, ex: float, ey: float, es: float, kept: float) -> float:
     """What the penetration of a linear pocket in touch is, or does, at a knot."""
     return q * kept + cos * ey - sin * ex + es
-
-
-@inlined_kernel
-def bends(c: Array) -> tuple[float, float]:
-    """Bound of the fourth derivative of a series in each half of the step."""
-    early = late = 0.0
-    for n in range(4, ORDER + 1):
-        early, late = early + EARLY[n] * abs(c[n]), late + LATE[n] * abs(c[n])
-    return early, late
 
 
 @inlined_kernel
@@ -194,11 +138,10 @@ def enqueue(
 @inlined_kernel
 def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room) -> tuple[int, float]:
     """Queue the pockets that may leave their balls; return how many, and the largest penetration."""
-    filled, deepest, waves = 0, 0.0, 2 * p.harmonics
+    filled, deepest, most, waves = 0, 0.0, 0.0, 2 * p.harmonics
     size = abs(w[0].s) + abs(w[0].x) + abs(w[0].y)
     if p.own:
-        return leave_own(p, balls, w, count, size, room)
-    most = 0.0
+        return leave_own(p, balls, count, size, room)
     ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
     for k in range(waves):
         learn_wave(w.felt[:, k], k, room.felt)
@@ -233,9 +176,7 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
 
 
 @inner_kernel
-def leave_own(
-    p: Coefficients, balls: Balls, w: Series, count: int, size: float, room: Room
-) -> tuple[int, float]:
+def leave_own(p: Coefficients, balls: Balls, count: int, size: float, room: Room) -> tuple[int, float]:
     """Queue the pockets with series of their own that may leave; how many, and the largest penetration."""
     filled, deepest, c = 0, 0.0, room.c
     for i in range(count):

@@ -212,7 +212,7 @@ def pocket_work(
     weight: float,
     work: Ledger,
 ) -> None:
-    """Add a node's share of the work of pockets, one by one; of balls with inertia by the sum of the forces."""
+    """Add a node's share of the work of pockets, one by one; with inertia by the sums of the forces."""
     if p.inertial:
         along = value(w.ex, t) * vx + value(w.ey, t) * vy
         work.pocket_friction -= weight * p.friction * along

@@ -1,4 +1,4 @@
-"""Numbers of one cage and one kick, as the kernels want them: lengths in metres, times in the engine's unit."""
+"""Numbers of one cage and one kick, as the kernels want them."""
 
 from __future__ import annotations
 

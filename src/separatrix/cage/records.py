@@ -102,7 +102,8 @@ class Terms(Generic[Value]):
     vy: Value
     s: Value  # slip of rotation, R theta
     vs: Value
-    ex: Value  # speeds filtered by the yielding of the balls: what a ball in touch feels of the motion
+    ex: Value  # speeds filtered by the yielding of the balls: what a ball in touch feels of the motion;
+    # with inertia x and y are the sums of N_j e_r (fields of their own cost 2 % of the speed)
     ey: Value
     es: Value
     kept: Value  # e(t): the share that is left of a penetration

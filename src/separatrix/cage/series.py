@@ -43,6 +43,9 @@ Knots = tuple[float, float, float, float, float, float]
 Slopes are times half the step.
 """
 
+Place = tuple[float, float, float, float, float, float, float]
+"""Centre (x, y), slip s, and E_x, E_y, E_s and e of the pockets in touch."""
+
 Motion = tuple[float, float, float, float, float, float]
 """Centre of mass (x, y), its velocity, slip of rotation and its rate."""
 
@@ -183,6 +186,18 @@ def first_zero(c: Array, start: float, sign: float, end: float, noise: float) ->
 
 
 @inlined_kernel
+def larger(a: float, b: float) -> float:
+    """Larger of two numbers, without a branch."""
+    return a if a > b else b
+
+
+@inlined_kernel
+def smaller(a: float, b: float) -> float:
+    """Smaller of two numbers, without a branch."""
+    return a if a < b else b
+
+
+@inlined_kernel
 def knots(c: Array) -> Knots:
     """Knots of a series."""
     middle = last = c[0]
@@ -206,6 +221,15 @@ def fourths(a: Array, b: Array, c: Array, kept: Array, most: float) -> tuple[flo
             size += most * abs(kept[n])
         early += EARLY[n] * size
         late += LATE[n] * size
+    return early, late
+
+
+@inlined_kernel
+def bends(c: Array) -> tuple[float, float]:
+    """Bound of the fourth derivative of a series in each half of the step."""
+    early = late = 0.0
+    for n in range(4, ORDER + 1):
+        early, late = early + EARLY[n] * abs(c[n]), late + LATE[n] * abs(c[n])
     return early, late
 
 

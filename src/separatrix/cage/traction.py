@@ -1,9 +1,9 @@
 r"""Balls with inertia among races whose traction saturates, as power series.
 
 A ball goes at the speed :math:`u` beyond its free orbit, :math:`m_e\dot u = N - F(u)`, with
-:math:`F(u) = \sum_i C_i c / \sqrt{1 + (c/v_i)^2}` of the creep :math:`c = u/\lambda`: in a ramp all speeds are
-a share :math:`\lambda` of their values, and traction is a matter of their ratio. A ball that no pocket touches
-coasts by itself until it is at rest in its free orbit.
+:math:`F(u) = \sum_i C_i c / \sqrt{1 + (c/v_i)^2}` of the creep :math:`c = u/\lambda`: in a ramp all speeds
+are a share :math:`\lambda` of their values, and traction is a matter of their ratio. A ball that no pocket
+touches coasts by itself until it is at rest in its free orbit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from separatrix.cage.records import (
     State,
     Whole,
 )
-from separatrix.cage.series import AFTER, centre, copy_column, value
+from separatrix.cage.series import AFTER, bends, centre, copy_column, knots, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -244,6 +244,38 @@ def move_balls(p: Coefficients, balls: Balls, state: State, end: float, share: f
         balls.own_speed[j] = 0.0
         ledger.race_dampers -= 0.5 * u * u / p.lightness
     state.coasting = kept
+
+
+@inner_kernel
+def subtract_way(balls: Balls, j: int, c: Array) -> None:
+    """Take the way that a ball coasts from a series, but for its first term."""
+    if balls.own_speed[j] != 0.0:
+        block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
+        for n in range(1, ORDER + 1):
+            c[n] -= balls.moving[block, WAY, LANES * n + lane]
+
+
+@inner_kernel
+def way_at(balls: Balls, j: int, t: float) -> float:
+    """Way that a ball has coasted at a time."""
+    return moving_at(balls, WAY, balls.slot[j], t) if balls.own_speed[j] != 0.0 else 0.0
+
+
+@inner_kernel
+def way_knots(
+    balls: Balls, j: int, c: Array
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Knots of the way that a ball coasts, and bounds of what bends it."""
+    copy_moving(balls, WAY, balls.slot[j], c)
+    a, b, d, e, f, g = knots(c)
+    early, late = bends(c)
+    return a, b, d, e, f, g, early, late
+
+
+@inner_kernel
+def depth_change(balls: Balls, j: int, t: float) -> float:
+    """How much an own series of a penetration has risen at a time."""
+    return value(balls.depth[:, j], t) - float(balls.depth[0, j])
 
 
 @inner_kernel
