@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import small_step
 
+from separatrix.ball_traction import BallTraction
 from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
 from separatrix.study import Guidance, StabilitySettings
 
@@ -31,11 +32,21 @@ SHIPPED = PlanarCage(
     guidance=Guidance.OUTER,
     land_clearance=1e-3,
 )
+TURBOPUMP = BallTraction(mass=6.567e-3, slopes=(188.0,), speeds=(73.0 / 188.0,))
+WHEEL = BallTraction(mass=1.289e-3, slopes=(74.3,), speeds=(1.3 / 74.3,))
 CASES = {
     "shipped class, settles": SHIPPED,
     "shipped class, whirls": replace(SHIPPED, race_damping=2000.0, ball_cage_friction=0.2),
     "no land": replace(SHIPPED, guidance=Guidance.BALL),
     "ball set at rest": replace(SHIPPED, guidance=Guidance.BALL, cage_speed=0.0),
+    "balls on 188 N s/m, settle": replace(SHIPPED, race_damping=188.0),
+    "balls with inertia, settle": replace(SHIPPED, traction=TURBOPUMP),
+    "balls on 188 N s/m, whirl": replace(SHIPPED, race_damping=188.0, ball_cage_friction=0.5),
+    "balls with inertia, whirl": replace(SHIPPED, traction=TURBOPUMP, ball_cage_friction=0.5),
+    "balls of a wheel": replace(SHIPPED, traction=WHEEL),
+    "balls with inertia, at rest": replace(
+        SHIPPED, guidance=Guidance.BALL, cage_speed=0.0, traction=TURBOPUMP
+    ),
 }
 
 

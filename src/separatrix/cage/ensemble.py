@@ -11,8 +11,9 @@ import numpy as np
 
 from separatrix.cage.closed_forms import fastest_rate, time_unit
 from separatrix.cage.ending import run_limits
+from separatrix.cage.inputs import balls_of, coefficients
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.records import Evidence, Samples, balls_of, coefficients, dtype_of, samples_for
+from separatrix.cage.records import Evidence, Samples, dtype_of, samples_for
 from separatrix.cage.run import books_for, random_start, run_chunk
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings

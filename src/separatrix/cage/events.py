@@ -22,13 +22,13 @@ from separatrix.cage.records import (
     State,
 )
 from separatrix.cage.series import (
-    EARLY,
     FALLS,
-    LATE,
     ROUNDING,
     STAYS,
     THIRD,
     Knots,
+    Place,
+    bends,
     centre,
     copy_column,
     earliest_zero,
@@ -36,18 +36,18 @@ from separatrix.cage.series import (
     fourths,
     grip_at,
     knots,
+    larger,
+    smaller,
     top,
     value,
 )
-from separatrix.compiled import inlined_kernel
+from separatrix.cage.traction import depth_change, subtract_way, way_at, way_knots
+from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 GRAINS = 8.0
 """A pocket leaves its ball this many roundings of its place after their force is gone: a cage that comes to
 rest would else touch and leave without end, at forces of some 1e-11 N."""
-
-Place = tuple[float, float, float, float, float, float, float]
-"""Centre (x, y), slip s, and E_x, E_y, E_s and e of the pockets in touch."""
 
 NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP, SLIDE_START = range(9)
 
@@ -55,7 +55,7 @@ NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP
 @inlined_kernel
 def penetration(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     """Series of the penetration of a pocket in touch."""
-    if p.hertz != 0.0:
+    if p.own:
         copy_column(balls.depth[:, j], c)
         return
     # q_j(t) = q_j(0) e(t) + E_y cos phi_j - E_x sin phi_j + E_s - sum_k V_jk felt_k
@@ -78,18 +78,8 @@ def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     for k in range(2 * p.harmonics):
         for n in range(1, ORDER + 1):
             c[n] -= balls.drive[k, j] * w[n].gone[k]
-
-
-@inlined_kernel
-def larger(a: float, b: float) -> float:
-    """Larger of two numbers, without a branch."""
-    return a if a > b else b
-
-
-@inlined_kernel
-def smaller(a: float, b: float) -> float:
-    """Smaller of two numbers, without a branch."""
-    return a if a < b else b
+    if p.inertial:
+        subtract_way(balls, j, c)
 
 
 @inlined_kernel
@@ -102,10 +92,7 @@ def held(q: float, cos: float, sin: float, ex: float, ey: float, es: float, kept
 def learn_wave(c: Array, k: int, waves: Array) -> None:
     """Knots of the way that balls go by one wave of their free speeds, and bounds of what bends it."""
     waves[0, k], waves[1, k], waves[2, k], waves[3, k], waves[4, k], waves[5, k] = knots(c)
-    early = late = 0.0
-    for n in range(4, ORDER + 1):
-        early, late = early + EARLY[n] * abs(c[n]), late + LATE[n] * abs(c[n])
-    waves[EARLY_BOUND, k], waves[LATE_BOUND, k] = early, late
+    waves[EARLY_BOUND, k], waves[LATE_BOUND, k] = bends(c)
 
 
 @inlined_kernel
@@ -151,26 +138,22 @@ def enqueue(
 @inlined_kernel
 def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room) -> tuple[int, float]:
     """Queue the pockets that may leave their balls; return how many, and the largest penetration."""
-    filled, deepest, waves, linear = 0, 0.0, 2 * p.harmonics, p.hertz == 0.0
-    off = late_off = most = 0.0
-    ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
-    if linear:
-        for k in range(waves):
-            learn_wave(w.felt[:, k], k, room.felt)
-        for i in range(count):
-            most = larger(most, abs(balls.penetration[balls.touching[i]]))
-        off, late_off = fourths(w.ex, w.ey, w.es, w.kept, most)
+    filled, deepest, most, waves = 0, 0.0, 0.0, 2 * p.harmonics
     size = abs(w[0].s) + abs(w[0].x) + abs(w[0].y)
+    if p.own:
+        return leave_own(p, balls, count, size, room)
+    ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
+    for k in range(waves):
+        learn_wave(w.felt[:, k], k, room.felt)
+    for i in range(count):
+        most = larger(most, abs(balls.penetration[balls.touching[i]]))
+    off, late_off = fourths(w.ex, w.ey, w.es, w.kept, most)
     for i in range(count):
         j = balls.touching[i]
         q, cos, sin = balls.penetration[j], balls.cosine[j], balls.sine[j]
         sign, noise = float(balls.side[j]), size + balls.play[j]
-        grip = GRAINS * ROUNDING * noise - p.onset
+        grip = GRAINS * ROUNDING * noise
         start = sign * q + grip
-        if not linear:
-            at = (start, 0.0, start, 0.0, start, 0.0)
-            filled = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise)
-            continue
         rise = sign * held(q, cos, sin, ex[1], ey[1], es[1], kept[1])
         middle = sign * held(q, cos, sin, ex[2], ey[2], es[2], kept[2]) + grip
         turn = sign * held(q, cos, sin, ex[3], ey[3], es[3], kept[3])
@@ -189,7 +172,30 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
         deepest = larger(deepest, top(middle, turn, last, fall, late))
         at = (start, rise, middle, turn, last, fall)
         filled = enqueue(room, filled, 0, j, at, early, late, noise)
-    return filled, deepest if linear else np.inf
+    return filled, deepest
+
+
+@inner_kernel
+def leave_own(p: Coefficients, balls: Balls, count: int, size: float, room: Room) -> tuple[int, float]:
+    """Queue the pockets with series of their own that may leave; how many, and the largest penetration."""
+    filled, deepest, c = 0, 0.0, room.c
+    for i in range(count):
+        j = balls.touching[i]
+        sign, noise = float(balls.side[j]), size + balls.play[j]
+        grip = GRAINS * ROUNDING * noise - p.onset
+        start = sign * balls.penetration[j] + grip
+        if p.hertz != 0.0:
+            at = (start, 0.0, start, 0.0, start, 0.0)
+            filled, deepest = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
+            continue
+        copy_column(balls.depth[:, j], c)
+        _, b, d, e, f, g = knots(c)
+        at = (start, sign * b, sign * d + grip, sign * e, sign * f + grip, sign * g)
+        early, late = bends(c)
+        deepest = larger(deepest, top(at[0], at[1], at[2], at[3], early))
+        deepest = larger(deepest, top(at[2], at[3], at[4], at[5], late))
+        filled = enqueue(room, filled, 0, j, at, early, late, noise)
+    return filled, deepest
 
 
 @inlined_kernel
@@ -248,6 +254,7 @@ def meet_balls(
     p: Coefficients,
     balls: Balls,
     w: Series,
+    state: State,
     h: float,
     x: Knots,
     y: Knots,
@@ -258,16 +265,18 @@ def meet_balls(
     filled: int,
 ) -> int:
     """Queue the pockets that may meet their balls; return how many are queued."""
-    waves = 2 * p.harmonics
+    waves, inertial = 2 * p.harmonics, p.inertial
     if p.hertz != 0.0:
         off = late_off = np.inf
     if waves == 0:
         reach_balls(balls, x, y, s, off, late_off, room.beyond)
-    elif may_reach(balls, x[0], y[0], s[0], farthest_way(p, w, h), room.beyond):
+    elif may_reach(balls, x[0], y[0], s[0], farthest_way(p, w, h), room.beyond) or state.coasting > 0:
         for k in range(waves):
             learn_wave(w.gone[:, k], k, room.gone)
     else:
         return filled
+    for i in range(state.coasting if inertial else 0):
+        room.beyond[balls.coasting[i]] = np.inf
     size = abs(s[0]) + abs(x[0]) + abs(y[0])
     for j in range(balls.play.size):
         if balls.side[j] != 0 or room.beyond[j] < p.onset:
@@ -284,6 +293,10 @@ def meet_balls(
             f -= gone_at(p, balls, room.gone[5], j)
             early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
             late += bend_of(p, balls, room.gone[LATE_BOUND], j)
+        if inertial and balls.own_speed[j] != 0.0:
+            _, one, two, three, four, five, more, later = way_knots(balls, j, room.c)
+            b, c, d, e, f = b - one, c - two, d - three, e - four, f - five
+            early, late = early + more, late + later
         for side in (1, -1):
             sign = float(side)
             gap = (play - sign * a, -sign * b, play - sign * c, -sign * d, play - sign * e, -sign * f)
@@ -303,17 +316,21 @@ def place_all(p: Coefficients, w: Series, t: float, room: Room) -> Place:
 
 
 @inlined_kernel
-def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, room: Room) -> float:
+def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float, room: Room) -> float:
     """What is queued, from the motion at a time by `place_all`: falls to zero at its event."""
     j = row.ball
     x, y, s, ex, ey, es, kept = now
     cos, sin = balls.cosine[j], balls.sine[j]
+    if row.change == 0 and p.own:
+        return row.start + float(balls.side[j]) * depth_change(balls, j, t)
     if row.change == 0:
         sign = float(balls.side[j])
         left: float = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
         return left - sign * gone_at(p, balls, room.felt[AT_END], j)
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
+    if p.inertial:
+        left -= sign * way_at(balls, j, t)
     return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 
@@ -337,7 +354,7 @@ def first_change(p: Coefficients, balls: Balls, w: Series, room: Room, filled: i
         if kind != NOTHING and ((early == FALLS and end <= 0.5) or (early == STAYS and late == FALLS)):
             if not known:
                 known, then = True, place_all(p, w, end, room)
-            if left_at(p, balls, row, then, room) > 2.0 * ROUNDING * row.noise:
+            if left_at(p, balls, row, then, end, room) > 2.0 * ROUNDING * row.noise:
                 continue
         if row.change == 0:
             sign = float(balls.side[row.ball])
@@ -375,7 +392,7 @@ def pocket_change(
     if count > 0:
         filled, deepest = leave_balls(p, balls, w, count, room)
     if count < balls.play.size:
-        filled = meet_balls(p, balls, w, h, x, y, s, off, late_off, room, filled)
+        filled = meet_balls(p, balls, w, state, h, x, y, s, off, late_off, room, filled)
     if filled == 0:
         return 1.0, NOTHING, -1, deepest
     end, kind, ball = first_change(p, balls, w, room, filled)

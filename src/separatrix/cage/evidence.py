@@ -11,7 +11,9 @@ from separatrix.cage.events import penetration
 from separatrix.cage.records import (
     CLEAR,
     RELEASED,
+    SPEED,
     STICK,
+    WAY,
     Balls,
     Coefficients,
     Ledger,
@@ -23,6 +25,7 @@ from separatrix.cage.records import (
     Sums,
 )
 from separatrix.cage.series import Motion, centre, copy_column, grip_at, motion_at, peak, slope, value
+from separatrix.cage.traction import moving_at, traction_power
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -126,7 +129,7 @@ def add_work(
     p: Coefficients,
     balls: Balls,
     w: Series,
-    count: int,
+    state: State,
     land: int,
     now: Pace,
     h: float,
@@ -136,8 +139,10 @@ def add_work(
 ) -> None:
     """Add the work that each source does from the start of the step to `end`, by Gauss's rule."""
     gx, gy = centre(p, w)
-    alike = p.hertz == 0.0 and p.harmonics == 0
+    alike, count = not p.own and p.harmonics == 0, state.touching
     squares = 0.0
+    if p.inertial:
+        work.race_dampers -= traction_work(p, balls.moving, count + state.coasting, end * h, end)
     for i in range(count):
         squares += balls.penetration[balls.touching[i]] ** 2
     for i in range(NODES.size):
@@ -186,6 +191,15 @@ def add_work(
 
 
 @inner_kernel
+def traction_work(p: Coefficients, moving: Array, used: int, length: float, end: float) -> float:
+    """Work that the races take from the balls that move up to `end`, over the mass of the cage."""
+    total = 0.0
+    for i in range(NODES.size):
+        total += WEIGHTS[i] * traction_power(p, moving, used, end * NODES[i])
+    return total * length
+
+
+@inner_kernel
 def pocket_work(
     p: Coefficients,
     balls: Balls,
@@ -198,14 +212,21 @@ def pocket_work(
     weight: float,
     work: Ledger,
 ) -> None:
-    """Add a node's share of the work of pockets, one by one."""
+    """Add a node's share of the work of pockets, one by one; with inertia by the sums of the forces."""
+    if p.inertial:
+        along = value(w.ex, t) * vx + value(w.ey, t) * vy
+        work.pocket_friction -= weight * p.friction * along
+        if p.harmonics == 0:
+            return
     grip = grip_at(w, t)
     for i in range(count):
         j = balls.touching[i]
         depth = depth_at(p, balls, w, grip, j, t)
         load = p.hertz * depth * math.sqrt(abs(depth)) if p.hertz != 0.0 else p.stiffness * depth
-        work.pocket_friction -= weight * p.friction * load * (balls.cosine[j] * vx + balls.sine[j] * vy)
-        work.race_dampers -= weight * p.yielding * share * load * load
+        if not p.inertial:
+            along = balls.cosine[j] * vx + balls.sine[j] * vy
+            work.pocket_friction -= weight * p.friction * load * along
+            work.race_dampers -= weight * p.yielding * share * load * load
         for k in range(2 * p.harmonics):
             work.ball_drive -= weight * load * share * balls.drive[k, j] * value(w.frame[:, k], t)
 
@@ -215,7 +236,7 @@ def depth_at(
     p: Coefficients, balls: Balls, w: Series, grip: tuple[float, float, float, float], j: int, t: float
 ) -> float:
     """Penetration of a pocket in touch at a time of the step; `grip` as by `grip_at` there."""
-    if p.hertz != 0.0:
+    if p.own:
         return value(balls.depth[:, j], t)
     ex, ey, es, kept = grip
     depth: float = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
@@ -259,7 +280,7 @@ def enter_work(
     work = room.work
     work.pocket_friction = work.race_dampers = work.ball_drive = work.land_friction = 0.0
     work.land_damping = work.gravity = work.moving_frame = work.unbalance = 0.0
-    add_work(p, balls, w, state.touching, state.land, now, h, end, room.sums, work)
+    add_work(p, balls, w, state, state.land, now, h, end, room.sums, work)
     ledger.pocket_friction += work.pocket_friction
     ledger.gross += abs(work.pocket_friction)
     ledger.race_dampers += work.race_dampers
@@ -306,13 +327,14 @@ def record(
     count, land = state.touching, state.land
     while state.rows < len(samples.row) and samples.row[state.rows].clock <= until:
         row, lead, force = samples.row[state.rows], samples.lead[state.rows], samples.force[state.rows]
+        speed = samples.speed[state.rows]
         t = min(end, max(0.0, (row.clock - state.clock) / h))
         x, y, row.vx, row.vy, slip, row.vs = motion_at(w, t)
         if p.eccentricity != 0.0:
             x, y = value(w.gx, t), value(w.gy, t)
         row.x, row.y, row.s = x, y, slip
         copy_work(ledger, samples.work[state.rows])
-        add_work(p, balls, w, count, land, now, h, t, room.sums, samples.work[state.rows])
+        add_work(p, balls, w, state, land, now, h, t, room.sums, samples.work[state.rows])
         grip = grip_at(w, t)
         if land != CLEAR:
             row.land_energy = 0.5 * p.land_stiffness * value(w.depth, t) ** 2
@@ -323,6 +345,9 @@ def record(
             if balls.side[j] == 0:
                 for k in range(2 * p.harmonics):
                     lead[j] += balls.drive[k, j] * value(w.gone[:, k], t)
+            if balls.own_speed[j] != 0.0 and balls.side[j] == 0:
+                lead[j] += moving_at(balls, WAY, balls.slot[j], t)
+                speed[j] = moving_at(balls, SPEED, balls.slot[j], t)
         row.pocket_energy = 0.0
         for i in range(count):
             j = balls.touching[i]
@@ -333,4 +358,7 @@ def record(
             force[j] = p.stiffness * depth
             if p.hertz != 0.0:
                 force[j] = p.hertz * depth * math.sqrt(abs(depth))
+            speed[j] = p.yielding * (now.share + now.rise * h * t) * force[j]
+            if p.inertial:
+                speed[j] = moving_at(balls, SPEED, i, t)
         state.rows += 1

@@ -17,14 +17,11 @@ Symbols are those of docs/theory/cage.md; in a ramp all speeds, and the yielding
 
 from __future__ import annotations
 
-import numpy as np
-
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
 from separatrix.cage.records import (
     CLEAR,
     FORWARD,
     ORDER,
-    POWERS,
     RELEASED,
     STICK,
     Balls,
@@ -35,11 +32,9 @@ from separatrix.cage.records import (
     State,
     Sums,
 )
-from separatrix.cage.series import centre, product
+from separatrix.cage.series import AFTER, product
+from separatrix.cage.traction import own_forces
 from separatrix.compiled import inlined_kernel, inner_kernel
-
-AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
-"""1 / (n + 1)."""
 
 
 @inlined_kernel
@@ -73,7 +68,7 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
     yielding, softer = p.yielding * p.stiffness * share, p.yielding * p.stiffness * rise
-    linear = p.hertz == 0.0 and count > 0
+    linear, own = not p.own and count > 0, p.own and count + state.coasting > 0
     rotating, leaning, framed, waves = p.needs_rotation, p.eccentricity != 0.0, p.needs_frame, 2 * p.harmonics
     ramped, heavy, pressed = rise != 0.0, p.gravity != 0.0, land != CLEAR and land != RELEASED
     if linear:
@@ -132,8 +127,8 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
                 for k in range(waves):
                     w[n + 1].felt[k] -= rate * w[n - 1].felt[k]
             w[n + 1].ex, w[n + 1].ey, w[n + 1].es, w[n + 1].kept = ex, ey, es, kept
-        elif count > 0:
-            fx, fy, torque = hertz_forces(p, balls, w, count, now, n)
+        elif own:
+            fx, fy, torque = own_forces(p, balls, w, state, now, n)
         # What the frame adds: 2 v x Omega + Omega^2 r
         ax = 2.0 * turning * vy + second * x
         ay = -2.0 * turning * vx + second * y
@@ -191,48 +186,6 @@ def spin_up_terms(w: Series, turning: float, spin_up: float, n: int) -> tuple[fl
         ax += spin_up * spin_up * w[n - 2].x
         ay += spin_up * spin_up * w[n - 2].y
     return ax, ay
-
-
-@inner_kernel
-def hertz_forces(
-    p: Coefficients, balls: Balls, w: Series, count: int, now: Pace, n: int
-) -> tuple[float, float, float]:
-    """Coefficient n of the forces of Hertz pockets in touch, and n + 1 of their penetrations."""
-    gx, gy = centre(p, w)
-    sum_cos = sum_sin = total = 0.0
-    for i in range(count):
-        j = balls.touching[i]
-        # N_j = K |q_j|^1.5 sign q_j
-        force = hertz_power(p, balls, j, n)
-        balls.force[n, j] = force
-        # dq_j/dt = du_j/dt - N_j / C_mu, less the free speed
-        give = p.yielding * now.share * force
-        if n > 0:
-            give += p.yielding * now.rise * balls.force[n - 1, j]
-        balls.depth[n + 1, j] = (
-            gy[n + 1] * balls.cosine[j] - gx[n + 1] * balls.sine[j] + w[n + 1].s - give * AFTER[n]
-        )
-        for k in range(2 * p.harmonics):
-            balls.depth[n + 1, j] -= balls.drive[k, j] * w[n + 1].gone[k]
-        sum_cos += force * balls.cosine[j]
-        sum_sin += force * balls.sine[j]
-        total += force
-    # F = sum_j -N_j (e_t + sigma f e_r),  T / (M R) = -sum_j N_j
-    return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
-
-
-@inner_kernel
-def hertz_power(p: Coefficients, balls: Balls, j: int, n: int) -> float:
-    """Coefficient n of K |q|^1.5 with the sign of q."""
-    start, side = float(balls.depth[0, j]), int(balls.side[j])
-    if n == 0:
-        size = side * start
-        return float(p.hertz * size * side * size**0.5)
-    # N = K q^1.5 has q dN/dt = 1.5 N dq/dt, whence n q_0 N_n = sum_(i<n) (1.5 (n - i) - i) q_(n-i) N_i
-    total = 0.0
-    for i in range(n):
-        total += (1.5 * (n - i) - i) * balls.depth[n - i, j] * balls.force[i, j]
-    return total / (n * start)
 
 
 @inner_kernel

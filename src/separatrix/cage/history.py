@@ -34,10 +34,14 @@ class History:
         Of the cage against the ball set, shape (time,) [rad] and [rad/s].
     ball_lead, contact_force : ndarray
         Lead y of each ball [m], and force N with which the pocket pushes it forward [N], shape (time, ball).
+    ball_speed : ndarray
+        Speed u of each ball beyond its free orbit, shape (time, ball) [m/s].
     land_force : ndarray
         Normal force of the land, shape (time,) [N].
     kinetic_energy, spring_energy : ndarray
         Of the cage in the turning frame, and of the pockets' springs, shape (time,) [J].
+    ball_energy : ndarray
+        Of the balls with inertia, m_e u^2/2, shape (time,) [J]; 0 without.
     work : dict of str to ndarray
         Work done on the cage since the start by each of `SOURCES`, shape (time,) [J].
     outcome : RunOutcome
@@ -56,10 +60,12 @@ class History:
     rotation: Annotated[Array, "rad", ("time",)]
     rotation_rate: Annotated[Array, "rad/s", ("time",)]
     ball_lead: Annotated[Array, "m", ("time", "ball")]
+    ball_speed: Annotated[Array, "m/s", ("time", "ball")]
     contact_force: Annotated[Array, "N", ("time", "ball")]
     land_force: Annotated[Array, "N", ("time",)]
     kinetic_energy: Annotated[Array, "J", ("time",)]
     spring_energy: Annotated[Array, "J", ("time",)]
+    ball_energy: Annotated[Array, "J", ("time",)]
     land_energy: Annotated[Array, "J", ("time",)]
     work: Annotated[dict[str, Array], "J", ("time",)]
     pocket_angle: Annotated[Array, "rad", ("ball",)]
@@ -136,6 +142,7 @@ def _mirrored(history: History) -> History:
         rotation=-history.rotation,
         rotation_rate=-history.rotation_rate,
         ball_lead=-other_way_round(history.ball_lead),
+        ball_speed=-other_way_round(history.ball_speed),
         contact_force=-other_way_round(history.contact_force),
         pocket_angle=-other_way_round(history.pocket_angle),
         half_play=other_way_round(history.half_play),
@@ -190,7 +197,8 @@ def _history(cage: PlanarCage, samples: Samples, evidence: np.void, play: Array,
     T, M, R, filled = time_unit(cage), cage.mass, cage.pitch_radius, int(evidence["rows"])
     row, work = np.asarray(samples.row)[:filled], np.asarray(samples.work)[:filled]
     velocity, rate = np.stack([row["vx"], row["vy"]], axis=1) / T, row["vs"] / (R * T)
-    energy, force = M / T**2, M / T**2
+    energy, force, speed = M / T**2, M / T**2, samples.speed[:filled] / T
+    ball_mass = 0.0 if cage.traction is None else cage.traction.mass
     shared = ("end_energy", "growth_rate", "drift_rate", "pocket_power", "land_power", "rubbing_force")
     return History(
         time=row["clock"] * T,
@@ -199,10 +207,12 @@ def _history(cage: PlanarCage, samples: Samples, evidence: np.void, play: Array,
         rotation=row["s"] / R,
         rotation_rate=rate,
         ball_lead=samples.lead[:filled].copy(),
+        ball_speed=speed,
         contact_force=samples.force[:filled] * force,
         land_force=row["land_force"] * force,
         kinetic_energy=0.5 * (M * (velocity**2).sum(axis=1) + cage.moment_of_inertia * rate**2),
         spring_energy=row["pocket_energy"] * energy,
+        ball_energy=0.5 * ball_mass * (speed**2).sum(axis=1),
         land_energy=row["land_energy"] * energy,
         work={name: work[name] * energy for name in SOURCES},
         pocket_angle=angles,

@@ -17,10 +17,9 @@ from separatrix.cage.events import (
     LAND_TOUCH,
     SLIDE_START,
     SLIDE_STOP,
-    larger,
 )
 from separatrix.cage.records import CLEAR, FORWARD, ORDER, RELEASED, STICK, Coefficients, Pace, Room, Series
-from separatrix.cage.series import THIRD, Knots, centre, copy_column, first_zero, product
+from separatrix.cage.series import THIRD, Knots, centre, copy_column, first_zero, larger, product
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 

@@ -37,6 +37,8 @@ from separatrix.cage.records import (
     Whole,
 )
 from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
+from separatrix.cage.step import longest_step
+from separatrix.cage.traction import begin_moving, dropped, move_balls, rescale_balls
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
@@ -44,18 +46,6 @@ HOLD = 1e-9
 
 MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
 """Steps in the time of a radian of the fastest motion: a run that needs more makes no progress in time."""
-
-PRECISION, HERTZ_PRECISION = 2.0**-34, 2.0**-40
-"""Share of the speeds below which the last terms of a series must be. The force of a Hertz contact has no
-series about its beginning, so that near it the terms fall slowly."""
-
-LONGEST = 1e6
-
-RELAXED = 4.0
-"""Longest step with linear pockets in touch, in units of the time in which they yield."""
-
-SHORT = 0.2
-"""Share of the distance of the centre that a way may have: its series falls by that from term to term."""
 
 
 @inlined_kernel
@@ -96,87 +86,25 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
         for h in range(max(1, p.harmonics)):
             start.frame[2 * h] = math.cos((h + 1) * angle)
             start.frame[2 * h + 1] = math.sin((h + 1) * angle)
-    if p.hertz != 0.0:
+    if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
             balls.depth[0, j] = balls.penetration[j]
+    if p.inertial:
+        begin_moving(balls, state)
 
 
 @inlined_kernel
-def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
-    """Coefficient n of the force of a pocket in touch."""
-    if p.hertz != 0.0:
-        return float(balls.force[n, j])
-    depth: float = (
-        balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
-    )
-    for k in range(2 * p.harmonics):
-        depth -= balls.drive[k, j] * w[n].felt[k]
-    return p.stiffness * depth
-
-
-@inlined_kernel
-def step_length(p: Coefficients, balls: Balls, w: Series, count: int) -> float:
-    """Time for which the last terms of the series stay below `PRECISION` of the speeds.
-
-    Of the speeds themselves, and of those that each pocket alone would give: forces of several pockets may
-    balance, so that the cage does not feel that they relax.
-    """
-    start, at_end, one_before = w[0], w[ORDER], w[ORDER - 1]
-    scale = HERTZ_PRECISION if p.hertz != 0.0 else PRECISION
-    scale *= abs(start.vx) + abs(start.vy) + abs(start.vs) + p.slowest
-    last = max(abs(at_end.vx), abs(at_end.vy), abs(at_end.vs))
-    before = max(abs(one_before.vx), abs(one_before.vy), abs(one_before.vs))
-    for i in range(count):
-        j = balls.touching[i]
-        last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
-        before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
-    # |v_n| h^n = scale, for the last two terms
-    h = LONGEST
-    if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / ORDER))
-    if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
-    return h
-
-
-@inlined_kernel
-def distance_step(p: Coefficients, w: Series, share: float) -> float:
-    """Time for which the distance of the centre has a series: on ways in space shorter than itself."""
-    turning, start = p.turning * share, w[0]
-    x, y, vx, vy = start.x, start.y, start.vx, start.vy
-    swing = p.eccentricity * (abs(turning) + abs(start.vs) / p.radius)
-    # Velocity and acceleration in space: v + Omega x r, dv/dt + 2 Omega x v + Omega x (Omega x r)
-    speed = abs(vx - turning * y) + abs(vy + turning * x) + swing + p.slowest
-    pull = abs(w[1].vx - turning * (2.0 * vy + turning * x))
-    pull += abs(w[1].vy + turning * (2.0 * vx - turning * y))
-    h = SHORT * p.land_gap / speed
-    return h if pull == 0.0 else min(h, SHORT * math.sqrt(2.0 * p.land_gap / pull))
-
-
-@inlined_kernel
-def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
-    """Time for which the series may be used: their own, and up to the next time at which something is due."""
-    h = min(step_length(p, balls, w, state.touching), left)
-    if state.touching > 0 and p.hertz == 0.0:
-        # What is left of a penetration and what is new cancel: of more than this too little is left.
-        h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
-    if state.clock < p.ramp_time:
-        h = min(h, p.ramp_time - state.clock)
-    if state.land == RELEASED or (state.land == CLEAR and p.roundness != 0.0):
-        h = min(h, distance_step(p, w, now.share))
-    return h
-
-
-@inlined_kernel
-def rescale(p: Coefficients, balls: Balls, w: Series, count: int, h: float, pressed: bool) -> None:
+def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pressed: bool) -> None:
     """Make the step the unit of time of all series that are looked at."""
-    power = h
+    power, count = h, state.touching
+    if p.inertial:
+        rescale_balls(w, balls.moving, count + state.coasting, h)
     for n in range(1, ORDER + 1):
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
         t.s, t.vs = t.s * power, t.vs * power
-        if count > 0 and p.hertz == 0.0:
+        if count > 0 and not p.own:
             t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
         elif count > 0:
             for i in range(count):
@@ -249,7 +177,7 @@ def land_energy(p: Coefficients, balls: Balls, state: State, w: Series, room: Ro
     return 0.5 * p.land_stiffness * w[0].depth ** 2
 
 
-@inner_kernel
+@inlined_kernel
 def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
     """Place of pocket j along the circumference, against a ball without lead."""
     x, y = state.x, state.y
@@ -261,12 +189,20 @@ def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
 
 @inlined_kernel
 def finish_step(
-    p: Coefficients, balls: Balls, w: Series, state: State, h: float, end: float, after: Motion
+    p: Coefficients,
+    balls: Balls,
+    w: Series,
+    state: State,
+    now: Pace,
+    h: float,
+    end: float,
+    after: Motion,
+    ledger: Ledger,
 ) -> None:
     """State at the end of a step, from its series."""
     state.x, state.y, state.vx, state.vy, state.s, state.vs = after
     state.clock += end * h
-    if p.hertz != 0.0:
+    if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
             balls.penetration[j] = value(balls.depth[:, j], end)
@@ -283,9 +219,11 @@ def finish_step(
         for j in range(balls.play.size):
             if balls.side[j] == 0:
                 balls.lead[j] += balls.drive[k, j] * gone
+    if p.inertial:
+        move_balls(p, balls, state, end, now.share, ledger)
 
 
-@inner_kernel
+@inlined_kernel
 def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whole) -> None:
     """Put a ball on the list of those in touch; beyond the number of balls: on the negative side."""
     j = ball % balls.play.size
@@ -297,14 +235,16 @@ def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whol
     balls.touching[state.touching] = j
     state.touching += 1
     hits[j] += 1
+    if p.inertial:
+        state.coasting = dropped(balls.coasting, state.coasting, j)
 
 
-@inner_kernel
+@inlined_kernel
 def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h: float, end: float) -> None:
-    """Take a ball off the list of those in touch: it stays where it was left."""
+    """Take a ball off the list of those in touch: it stays where it was left, or coasts."""
     side = balls.side[j]
     balls.lead[j] = place_of(p, balls, state, j) - side * balls.play[j] - balls.penetration[j]
-    if p.hertz != 0.0:
+    if p.hertz != 0.0 and not p.inertial:
         follows = state.vy * balls.cosine[j] - state.vx * balls.sine[j] + state.vs
         for k in range(2 * p.harmonics):
             follows -= balls.drive[k, j] * slope(w.gone[:, k], end) / h
@@ -313,12 +253,10 @@ def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h
             # between the two it would meet the ball at once, and again without end.
             balls.lead[j] += 0.5 * side * p.onset
     balls.side[j] = 0
-    kept = 0
-    for i in range(state.touching):
-        if balls.touching[i] != j:
-            balls.touching[kept] = balls.touching[i]
-            kept += 1
-    state.touching = kept
+    state.touching = dropped(balls.touching, state.touching, j)
+    if p.inertial:
+        balls.coasting[state.coasting] = j
+        state.coasting += 1
 
 
 @inner_kernel
@@ -365,7 +303,7 @@ def advance(
             for n in range(ORDER + 1):
                 w[n].sliding = slide_speed(p, w, now, n)
         h = longest_step(p, balls, w, state, now, length - done)
-        rescale(p, balls, w, state.touching, h, pressed)
+        rescale(p, balls, w, state, h, pressed)
         x, y, s = knots(gx), knots(gy), knots(w.s)
         off, late_off = fourths(gx, gy, w.s, w.kept, 0.0)
         end, kind, ball, deepest = pocket_change(p, balls, w, state, h, x, y, s, off, late_off, room)
@@ -376,7 +314,7 @@ def advance(
         enter_work(p, balls, w, state, now, h, end, ledger, room)
         after = motion_at(w, end)
         enter_step(p, balls, w, state, deepest, h, end, after, look, room)
-        finish_step(p, balls, w, state, h, end, after)
+        finish_step(p, balls, w, state, now, h, end, after, ledger)
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind == TOUCH:
             meet_ball(p, balls, state, ball, hits)

@@ -8,6 +8,7 @@ from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check, cage_design, pocket_shape
+from separatrix.ball_traction import BallTraction
 from separatrix.cage.space_body import SpaceBody, refused_in_space
 from separatrix.errors import InputError
 from separatrix.study import Guidance, PocketShape
@@ -112,6 +113,9 @@ class PlanarCage:
     ramp_time, ramp_start : float
         All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is
         no ramp.
+    traction : BallTraction or None
+        Inertia of a ball along its orbit and the traction of its races, in place of `race_damping`; None is
+        the paper's ball without mass on a damper.
     space : SpaceBody or None
         What it has beyond the plane when it moves in space; None moves in the plane.
 
@@ -154,6 +158,7 @@ class PlanarCage:
     orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
     ramp_time: Second = 0.0
     ramp_start: Ratio = 0.1
+    traction: BallTraction | None = None
     space: SpaceBody | None = None
 
     def __post_init__(self) -> None:
@@ -181,6 +186,11 @@ class PlanarCage:
     def half_play(self) -> Metre:
         """c_p, half the clearance of a ball along the circumference, after shape and offset [m]."""
         return pocket_shape.half_play(self)
+
+    @property
+    def slow_damping(self) -> NewtonSecondPerMetre:
+        """Damping of a ball that is pushed slowly: C_mu, or the slope of its law of traction [N s/m]."""
+        return self.race_damping if self.traction is None else self.traction.slope
 
     @property
     def pocket_tilt(self) -> tuple[Ratio, Ratio]:

@@ -7,7 +7,6 @@ acceleration have the unit of a length. Symbols are those of docs/theory/cage.md
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, cast, get_type_hints
@@ -15,12 +14,7 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, cast, get_type_h
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.cage.closed_forms import fastest_rate, rebound_damping, time_unit
-from separatrix.study import Guidance
-from separatrix.units import Array, MetrePerSecond
-
-if TYPE_CHECKING:
-    from separatrix.cage.planar import PlanarCage
+from separatrix.units import Array
 
 ORDER = 14
 """Terms of a series beyond the first; the step is so short that the last ones are small beside the speeds."""
@@ -38,12 +32,15 @@ KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
 """Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
+SPEED, WAY, TRACTION, CREEP, SQUARE, GRIP, BENT = range(7)
+"""Series of a ball with inertia: u, what it goes by u while it coasts, F(u) / m_e, the creep u / lambda, its
+square, F over the creep, and from `BENT` on (1 + (creep / v_i)^2)^(-1/2) of each element."""
+
+LANES = 4
+"""Balls whose series are made side by side."""
+
 CLEAR, RELEASED, STICK, FORWARD, BACKWARD = range(5)
 """Modes of the land: not touched; dented but without force; touched and sticking, or sliding either way."""
-
-ONSET = 1e-5
-"""Depth at which a Hertz contact starts and ends, over that of an impact at the kick's speed: at zero depth
-the force has no power series. The force there is 3e-8 of the impact's largest."""
 
 Whole = NDArray[np.int64]
 Value = TypeVar("Value")
@@ -82,6 +79,15 @@ class Coefficients(NamedTuple):
     needs_frame: bool
     gripped: bool  # no clearance: both sides of a pocket touch its ball
     fastest: float  # bound on the rate of the motion in contact
+    own: bool  # a pocket in touch has a series of its own: a Hertz spring, or a ball with inertia
+    inertial: bool  # balls have inertia and a law of traction
+    lightness: float  # M / m_e
+    damper: float  # elements of infinite speed: sum of C_i, over m_e
+    elements: int  # of a finite speed
+    slopes: Array  # their C_i over m_e, and 1 / v_i^2
+    bends: Array
+    coast_end: float  # speed at which a ball that coasts is put to rest
+    coast_time: float  # m_e / sum of C_i: it comes to rest at this time times its speed
 
 
 class Terms(Generic[Value]):
@@ -96,7 +102,8 @@ class Terms(Generic[Value]):
     vy: Value
     s: Value  # slip of rotation, R theta
     vs: Value
-    ex: Value  # speeds filtered by the yielding of the balls: what a ball in touch feels of the motion
+    ex: Value  # speeds filtered by the yielding of the balls: what a ball in touch feels of the motion;
+    # with inertia x and y are the sums of N_j e_r (fields of their own cost 2 % of the speed)
     ey: Value
     es: Value
     kept: Value  # e(t): the share that is left of a penetration
@@ -147,8 +154,12 @@ class Balls(NamedTuple):
     drive: Array  # free speed, shape (2 harmonic, ball)
     side: Whole  # side on which the pocket touches its ball: 1, -1; 0 not; 2 both
     touching: Whole  # balls in touch, `State.touching` of them
-    depth: Array  # series of the penetration and the force of Hertz pockets, shape (power, ball)
+    depth: Array  # own series of the penetration and the force of pockets in touch, shape (power, ball)
     force: Array
+    own_speed: Array  # u_j, speed of a ball with inertia beyond its free orbit; 0: it rests there
+    coasting: Whole  # balls that move there and touch nothing, `State.coasting` of them
+    slot: Whole  # place of a ball that moves so in `moving`: those in touch, then those that coast
+    moving: Array  # series of their motion, shape (block, quantity, power and lane)
 
 
 class Pace(NamedTuple):
@@ -169,6 +180,7 @@ class State:
     vs: float
     clock: float
     touching: int  # balls in touch
+    coasting: int  # balls that move on their own
     land: int  # mode of the land
     rows: int  # rows of history filled
 
@@ -239,6 +251,7 @@ class Samples(NamedTuple):
     work: Sequence[Ledger]
     lead: Array  # of every ball, shape (row, ball)
     force: Array
+    speed: Array  # beyond its free orbit
 
 
 class Candidate:
@@ -314,6 +327,7 @@ def samples_for(rows: int, balls: int) -> Samples:
         work=records(Ledger, rows),
         lead=np.zeros((rows, balls)),
         force=np.zeros((rows, balls)),
+        speed=np.zeros((rows, balls)),
     )
 
 
@@ -329,60 +343,3 @@ def room_for(balls: int, lobes: int) -> Room:
         queue=records(Candidate, 2 * balls),
         lobes=np.zeros((POWERS, 2 * lobes)),
     )
-
-
-def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
-    """Numbers of a cage as a record, which kernels hand on by its address instead of copying 29 numbers."""
-    T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
-    side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
-    tilt = cage.pocket_tilt[0]
-    K = 0.0 if cage.hertz_coefficient is None else cage.hertz_coefficient * tilt**2.5
-    harmonics = len(cage.orbital_cosines)
-    land_stiffness = cage.land_count * cage.land_stiffness
-    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(land_stiffness * M)
-    sign = -1.0 if cage.guidance is Guidance.INNER and cage.land_lobes % 2 else 1.0
-    numbers = Coefficients(
-        unit=T,
-        inertia=cage.moment_of_inertia / (M * R * R),
-        swiftness=M * R * R / cage.moment_of_inertia,
-        radius=R,
-        turning=cage.cage_speed * T,
-        stiffness=cage.ball_cage_stiffness * tilt**2 * T * T / M,
-        hertz=K * T * T / M,
-        onset=ONSET * (1.25 * M * kick**2 / K) ** 0.4 if K > 0.0 else 0.0,
-        yielding=M / (cage.race_damping * T),
-        friction=cage.friction_sense * cage.ball_cage_friction / tilt,
-        slowest=1e-2 * kick * T,
-        gravity=cage.gravity * T * T,
-        eccentricity=cage.unbalance / M,
-        land_side=side,
-        land_gap=cage.land_gap,
-        land_stiffness=land_stiffness * T * T / M,
-        land_damping=damping * T / M,
-        land_friction=cage.land_friction,
-        ring_slide=(cage.guiding_ring_speed - cage.cage_speed) * R * T,
-        roundness=sign * cage.land_out_of_round,
-        lobes=cage.land_lobes,
-        harmonics=harmonics,
-        driven=float(np.sum(np.hypot(cage.orbital_cosines, cage.orbital_sines))) * T,
-        ramp_time=cage.ramp_time / T,
-        ramp_start=cage.ramp_start,
-        needs_rotation=cage.unbalance != 0.0 or cage.land_out_of_round != 0.0,
-        needs_frame=harmonics > 0 or cage.gravity > 0.0,
-        gripped=cage.half_play == 0.0,
-        fastest=fastest_rate(cage) * T,
-    )
-    return cast("Coefficients", np.array([tuple(numbers)], dtype_of(Coefficients))[0])
-
-
-def balls_of(cage: PlanarCage) -> Balls:
-    """Room for the balls of a cage, with their free speed as they go round, in metres by the unit of time."""
-    angles, count, waves = np.array(cage.ball_angles), cage.ball_count, []
-    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
-        c, s = np.cos(h * angles), np.sin(h * angles)
-        waves += [a * c + b * s, b * c - a * s]
-    drive = np.array(waves).reshape(len(waves), count) * time_unit(cage)
-    cosine, sine, play, lead, penetration = np.zeros((5, count))
-    side, touching = np.zeros((2, count), np.int64)
-    depth, force = np.zeros((2, POWERS, count))
-    return Balls(cosine, sine, play, lead, penetration, drive, side, touching, depth, force)

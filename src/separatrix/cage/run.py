@@ -44,6 +44,7 @@ from separatrix.cage.records import (
     room_for,
     series,
 )
+from separatrix.cage.traction import ball_energy
 from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
@@ -77,10 +78,10 @@ def books_for(balls: int, lobes: int, runs: int, most: int) -> Books:
 
 
 @part
-def held_energy(p: Coefficients, balls: Balls, count: int) -> float:
-    """Energy in the pockets' springs, over the mass."""
-    held = 0.0
-    for i in range(count):
+def held_energy(p: Coefficients, balls: Balls, state: State) -> float:
+    """Energy in the pockets' springs and in the speeds of the balls, over the mass."""
+    held = ball_energy(p, balls, state)
+    for i in range(state.touching):
         held += pocket_energy(p, balls.penetration[balls.touching[i]])
     return held
 
@@ -123,7 +124,7 @@ def watch(
         if limits.drifts and limits.drive == 0.0:
             look.frame_work = ledger.moving_frame - frame
         energy = kinetic(p, state)
-        held = held_energy(p, balls, state.touching)
+        held = held_energy(p, balls, state)
         if not (going and np.isfinite(energy + look.kinetic)):
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
@@ -197,7 +198,7 @@ def imbalance(
     p: Coefficients, balls: Balls, state: State, w: Series, ledger: Ledger, start: float, room: Room
 ) -> float:
     """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
-    held = held_energy(p, balls, state.touching)
+    held = held_energy(p, balls, state)
     if state.land != CLEAR:
         held += land_energy(p, balls, state, w, room)
     unexplained = kinetic(p, state) + held - start - total_work(ledger)
@@ -223,7 +224,7 @@ def run_one(
     """
     state, ledger, looks, w = books.state[run], books.ledger[run], books.looks, books.series
     length = limits.beats * limits.beat
-    balls.side[:], balls.touching[:] = 0, 0
+    balls.side[:], balls.touching[:], balls.own_speed[:] = 0, 0, 0.0
     if p.gripped:
         balls.side[:] = 2
         balls.penetration[:] = -balls.lead

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.records import ORDER, Coefficients, Series
+from separatrix.cage.records import ORDER, POWERS, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -29,6 +29,9 @@ STAYS, FALLS, MAY_FALL = range(3)
 
 THIRD = 1.0 / 3.0
 SLOPE_OFF = np.sqrt(3.0) / 216.0
+AFTER = 1.0 / np.arange(1.0, POWERS + 1.0)
+"""1 / (n + 1)."""
+
 _POWER = np.arange(ORDER + 1.0)
 _FOURTH = _POWER * (_POWER - 1.0) * (_POWER - 2.0) * (_POWER - 3.0)
 HALVES, HALF_SLOPES = 0.5**_POWER, _POWER * 0.5**_POWER
@@ -39,6 +42,9 @@ Knots = tuple[float, float, float, float, float, float]
 
 Slopes are times half the step.
 """
+
+Place = tuple[float, float, float, float, float, float, float]
+"""Centre (x, y), slip s, and E_x, E_y, E_s and e of the pockets in touch."""
 
 Motion = tuple[float, float, float, float, float, float]
 """Centre of mass (x, y), its velocity, slip of rotation and its rate."""
@@ -180,6 +186,18 @@ def first_zero(c: Array, start: float, sign: float, end: float, noise: float) ->
 
 
 @inlined_kernel
+def larger(a: float, b: float) -> float:
+    """Larger of two numbers, without a branch."""
+    return a if a > b else b
+
+
+@inlined_kernel
+def smaller(a: float, b: float) -> float:
+    """Smaller of two numbers, without a branch."""
+    return a if a < b else b
+
+
+@inlined_kernel
 def knots(c: Array) -> Knots:
     """Knots of a series."""
     middle = last = c[0]
@@ -203,6 +221,15 @@ def fourths(a: Array, b: Array, c: Array, kept: Array, most: float) -> tuple[flo
             size += most * abs(kept[n])
         early += EARLY[n] * size
         late += LATE[n] * size
+    return early, late
+
+
+@inlined_kernel
+def bends(c: Array) -> tuple[float, float]:
+    """Bound of the fourth derivative of a series in each half of the step."""
+    early = late = 0.0
+    for n in range(4, ORDER + 1):
+        early, late = early + EARLY[n] * abs(c[n]), late + LATE[n] * abs(c[n])
     return early, late
 
 
