@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from separatrix.chain.equilibrium.balance import contact_friction, free_ball, normal_slopes, turning_loads
+from separatrix.chain.equilibrium.balance import contact_friction, free_ball, turning_loads
 from separatrix.chain.equilibrium.groove import touch
-from separatrix.chain.equilibrium.problem import Problem, solve_linear, work
+from separatrix.chain.equilibrium.problem import Problem, work
 from separatrix.compiled import kernel
 from separatrix.errors import ConvergenceError
-from separatrix.units import Array, MetrePerSecond, Newton, NewtonPerMetre, NewtonSecondPerMetre
+from separatrix.units import Array, Newton, NewtonPerMetre, NewtonSecondPerMetre
 
 SETTLED = 1e-10
 """Unbalanced friction of a settled ball over mu (Q_i + Q_o); rounding of the slip fields allows 1e-13."""
@@ -105,9 +105,7 @@ def groove_slopes(
 def balanced(ball: HeldBall, state: Array) -> tuple[Array, Array]:
     """Balance of the ball in a state, shape (6,), and its slopes, (6, 6)."""
     balance, slopes = np.empty(6), np.empty((6, 6))
-    ball_balance(
-        ball.problem, ball.rings, state, ball.slips, ball.cells, ball.nodes, balance, slopes
-    )
+    ball_balance(ball.problem, ball.rings, state, ball.slips, ball.cells, ball.nodes, balance, slopes)
     return balance, slopes
 
 
@@ -169,9 +167,7 @@ def groove(ball: HeldBall) -> tuple[NewtonSecondPerMetre, NewtonPerMetre]:
     _, slopes = balanced(ball, ball.state)
     stiffness, directions = np.linalg.eigh(-0.5 * (slopes[:2, :2] + slopes[:2, :2].T))
     lateral, along = np.empty(2), np.empty((2, 2))
-    groove_slopes(
-        ball.problem, ball.rings, ball.state, ball.slips, ball.cells, ball.nodes, lateral, along
-    )
+    groove_slopes(ball.problem, ball.rings, ball.state, ball.slips, ball.cells, ball.nodes, lateral, along)
     return float(lateral @ (along @ directions[:, 0]) ** 2), float(stiffness[0])
 
 
@@ -182,9 +178,13 @@ def pitch_angle(ball: HeldBall) -> float:
     return float(np.arctan2(sense * spin[1], -sense * spin[0]))
 
 
-def slip_unit(p: Problem, speed: MetrePerSecond) -> float:
-    """A slip speed over the speed difference of the rings [m]."""
-    return speed / abs(p.speed)
+def pocket_friction_effect(ball: HeldBall) -> float:
+    """Share k by which pocket friction f changes what a push from in front of the ball moves, 1 + k f.
 
-
-__all__ = ["HeldBall", "balanced", "friction_slopes", "groove", "settle", "slaved", "solve_linear"]
+    Friction at the pole of the orbit brakes the spin with a couple of half the diameter times its force,
+    whichever pole it is; what it pushes across the orbit is left out.
+    """
+    spin = ball.state[3:5] * ball.problem.speed
+    couple = -0.5 * ball.problem.ball_diameter * spin / np.hypot(*spin)
+    moved = np.linalg.inv(-friction_slopes(ball))[0]
+    return -float(moved[1:3] @ couple) / float(moved[0])

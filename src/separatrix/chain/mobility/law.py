@@ -10,21 +10,33 @@ from separatrix.units import Array, Kilogram, NewtonSecondPerMetre
 GRID = 48
 """Speeds v_i among which non-negative least squares choose."""
 
+SAME, LEAST = 0.02, 1e-6
+"""Difference of two speeds from which they are two, and share of the slope from which an element counts."""
+
 ROUNDS = 12
 """Rounds that raise the weight of the largest errors."""
 
 
-def fitted_law(
-    speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass: Kilogram
-) -> BallTraction:
+def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass: Kilogram) -> BallTraction:
     """Law with the exact slope at rest, near to F(u) at speeds that rise from near 0.
 
     Where F falls again at large speeds, the law stays at the largest force before.
     """
     target = np.maximum.accumulate(force)
     guess = _chosen(speed, target, slope)
-    shares, speeds = _refined(speed, target, slope, *guess)
+    shares, speeds = _merged(*_refined(speed, target, slope, *guess))
     return BallTraction(mass=mass, slopes=tuple(map(float, slope * shares)), speeds=tuple(map(float, speeds)))
+
+
+def _merged(shares: Array, speeds: Array) -> tuple[Array, Array]:
+    """Elements whose speeds differ by less than `SAME` as one, and none that is next to nothing."""
+    order = np.argsort(speeds)
+    shares, speeds = shares[order], speeds[order]
+    groups = np.cumsum(np.append(0, np.diff(np.log(speeds)) > np.log1p(SAME)))
+    sums = np.bincount(groups, shares)
+    means = np.bincount(groups, shares * speeds) / np.maximum(sums, 1e-300)
+    kept = sums > LEAST * sums.sum()
+    return sums[kept] / sums[kept].sum(), means[kept]
 
 
 def _element(speed: Array, own: Array) -> Array:
@@ -52,9 +64,7 @@ def _chosen(speed: Array, target: Array, slope: float) -> tuple[Array, Array]:
     return shares[kept], own[kept]
 
 
-def _refined(
-    speed: Array, target: Array, slope: float, shares: Array, own: Array
-) -> tuple[Array, Array]:
+def _refined(speed: Array, target: Array, slope: float, shares: Array, own: Array) -> tuple[Array, Array]:
     """Least squares over shares and speeds, weighted so that the largest error falls (Lawson)."""
     from scipy.optimize import least_squares
 

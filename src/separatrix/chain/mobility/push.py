@@ -6,6 +6,8 @@ was. Its coordinate is held at zero, and only along its pattern may the spin sti
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from separatrix.chain.mobility.field import HeldBall, balanced
@@ -13,32 +15,39 @@ from separatrix.chain.mobility.modes import Modes
 from separatrix.errors import ConvergenceError
 from separatrix.units import Array
 
-LEAST, MOST, POINTS = 1e-3, 0.5, 40
-"""Speeds of a push: from a thousandth of capacity over C_f to half the rolling speed, evenly in the log."""
 
-CLOSED = 1e-9
+class Curve(NamedTuple):
+    """Speeds of a curve: first and last over capacity/C_f, the most over the rolling speed, and how many."""
+
+    first: float
+    last: float
+    most: float
+    points: int
+
+
+CURVE = Curve(first=0.02, last=6.0, most=0.25, points=25)
+
+CLOSED = 1e-8
 """Unbalance over the capacity of a point of the curve."""
 
-DEEPEST = 12
+DEEPEST = 8
 """Halvings of the way from one point to the next."""
 
 
 def pushed(ball: HeldBall, found: Modes, speeds: Array, *, is_held: bool = True) -> Array:
-    """F(u) at speeds beyond the free orbit that grow in size from 0, same shape [N].
+    """F(u) at speeds beyond the free orbit that grow in size from 0, as far as friction balances [N].
 
     With `is_held` the slowest mode stays; without it the spin relaxes for good.
-
-    Raises
-    ------
-    ConvergenceError
-        The friction of both races does not balance at a speed.
     """
-    unknown, at = np.zeros(6), 0.0
-    forces = np.empty(speeds.size)
-    for k, speed in enumerate(speeds):
-        forces[k], unknown = _follow(ball, found, unknown, at, float(speed), is_held)
+    unknown, at, forces = np.zeros(6), 0.0, []
+    for speed in speeds:
+        try:
+            force, unknown = _follow(ball, found, unknown, at, float(speed), is_held)
+        except ConvergenceError:
+            break
+        forces.append(force)
         at = float(speed)
-    return forces
+    return np.array(forces)
 
 
 def _follow(
@@ -94,5 +103,8 @@ def _newton(
         rest, best, force = float(np.abs(rows).max()), unknown, -float(acting[2])
         if not np.isfinite(rest) or rest <= 0.01 * CLOSED:
             break
-        unknown = unknown - np.linalg.solve(matrix, rows)
+        try:
+            unknown = unknown - np.linalg.solve(matrix, rows)
+        except np.linalg.LinAlgError:
+            return force, best, np.inf
     return force, best, rest
