@@ -10,8 +10,8 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer ContactCases bearing check map mobility rank restitution sensitivity simulate solve_contact "
-    "stability sweep traction",
+    "api": "Answer ContactCases bearing check map mobility rank restitution sensitivity simulate "
+    "solve_contact stability sweep traction",
     "ball_traction": "BallTraction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",

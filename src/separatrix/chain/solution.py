@@ -58,8 +58,8 @@ from separatrix.units import (
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
-    "The film is worn: the mobility of a ball takes the film's race_friction throughout, and the worn track only "
-    "for its elastic creep."
+    "The film is worn: the mobility of a ball takes race_friction on the whole track, and the wear only for "
+    "its elastic creep."
 )
 NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
 

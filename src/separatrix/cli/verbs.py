@@ -107,8 +107,8 @@ VERBS: tuple[Verb, ...] = (
     Verb(
         name="mobility",
         help="How the races hold a ball that is pushed along its orbit.",
-        epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with the "
-        "capacity of the races, and with a cage the restitution of impacts against their speed.",
+        epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
+        "the capacity of the races, and with a cage the restitution of impacts against their speed.",
     ),
     Verb(
         name="stability",

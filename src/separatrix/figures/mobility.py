@@ -22,7 +22,7 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def mobility(data: xr.Dataset) -> Figure:
-    """Step response, size of the mobility against frequency, and F(u) with the linear law and the capacity."""
+    """Step response, size of the mobility against frequency, F(u) with the linear law and the capacity."""
     figure, (step, size, push) = canvas(PAGE, 2.7, ncols=3)
     _step(step, data)
     _size(size, data)
@@ -71,7 +71,7 @@ def _push(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(_from_rest(u), _from_rest(data[f"force_{name}"].values), color=colour, label=words)
     axes.plot(_from_rest(u), _from_rest(data["force_law"].values), color=GREEN, ls=DASHED, label="law")
     axes.set(xlim=(0, u[-1]), ylim=(0, 1.25 * capacity), title="c  Ball pushed along its orbit")
-    axes.set(xlabel="speed beyond the free orbit [m/s]", ylabel="force [N]")
+    axes.set(xlabel="speed beyond free orbit [m/s]", ylabel="force [N]")
     axes.legend(loc="lower right", fontsize=6.5, handlelength=2.2)
 
 

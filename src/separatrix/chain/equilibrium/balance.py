@@ -269,8 +269,9 @@ def free_ball(
 ) -> None:
     """Force and moment balance of one ball, shape (6,), its slopes, and what the inner race gives it.
 
-    `smoothing` is that of the inner and of the outer race. Forces (axial, outward, orbital) [N], then couples [N m]. `out.by_state`, shape (6, 8): slopes with the
-    state, then with A; `out.push` and `out.push_by`, shape (5, 8), as in `controlled_ball`.
+    `smoothing` is that of the inner and of the outer race. Forces (axial, outward, orbital) [N], then
+    couples [N m]. `out.by_state`, shape (6, 8): slopes with the state, then with A; `out.push` and
+    `out.push_by`, shape (5, 8), as in `controlled_ball`.
     """
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)

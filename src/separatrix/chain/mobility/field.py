@@ -136,7 +136,7 @@ def _newton(ball: HeldBall, state: Array) -> tuple[Array, float]:
     for _ in range(60):
         if norm <= 0.1 * SETTLED:
             break
-        step = np.linalg.solve(slopes / scales[:, None], balance / scales)
+        step = np.asarray(np.linalg.solve(slopes / scales[:, None], balance / scales))
         for stride in 0.5 ** np.arange(12):
             trial = state - stride * step
             there, slopes_there = balanced(ball, trial)
@@ -157,9 +157,8 @@ def friction_slopes(ball: HeldBall) -> Array:
 
 def slaved(slopes: Array) -> Array:
     """Slopes of the orbital force and the couples with the speeds, V eliminated, shape (4, 4)."""
-    follows: Array = np.linalg.solve(slopes[:2, :2], slopes[:2, 2:])
-    reduced: Array = slopes[2:, 2:] - slopes[2:, :2] @ follows
-    return reduced
+    follows = np.linalg.solve(slopes[:2, :2], slopes[:2, 2:])
+    return np.asarray(slopes[2:, 2:] - slopes[2:, :2] @ follows)
 
 
 def groove(ball: HeldBall) -> tuple[NewtonSecondPerMetre, NewtonPerMetre]:
@@ -172,7 +171,7 @@ def groove(ball: HeldBall) -> tuple[NewtonSecondPerMetre, NewtonPerMetre]:
 
 
 def pitch_angle(ball: HeldBall) -> float:
-    """Angle of the spin axis from the bearing axis in the plane of the ball, as contact angles count [rad]."""
+    """Angle of the spin axis from the bearing axis, in the plane of the ball, as contact angles count."""
     spin = ball.state[3:]
     sense = -1.0 if spin[0] > 0.0 else 1.0
     return float(np.arctan2(sense * spin[1], -sense * spin[0]))

@@ -2,6 +2,8 @@ r"""A law of at most four saturating elements for F(u): :math:`\sum C_i u/\sqrt{
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from separatrix.ball_traction import MOST_ELEMENTS, BallTraction
@@ -66,8 +68,6 @@ def _chosen(speed: Array, target: Array, slope: float) -> tuple[Array, Array]:
 
 def _refined(speed: Array, target: Array, slope: float, shares: Array, own: Array) -> tuple[Array, Array]:
     """Least squares over shares and speeds, weighted so that the largest error falls (Lawson)."""
-    from scipy.optimize import least_squares
-
     n, scale = shares.size, float(target.max())
     weight = np.full(speed.size, 1.0 / speed.size)
     start = np.concatenate((np.log(shares / shares[0])[1:], np.log(own)))
@@ -90,10 +90,7 @@ def _refined(speed: Array, target: Array, slope: float, shares: Array, own: Arra
 
     best, least = start, float(np.abs(error(start)).max())
     for _ in range(ROUNDS):
-        root = np.sqrt(weight)
-        start = least_squares(
-            lambda q, r=root: r * error(q), start, jac=lambda q, r=root: r[:, None] * slopes(q), max_nfev=60
-        ).x
+        start = _weighted_least(np.sqrt(weight), error, slopes, start)
         off = np.abs(error(start))
         if off.max() < least:
             best, least = start, float(off.max())
@@ -101,3 +98,18 @@ def _refined(speed: Array, target: Array, slope: float, shares: Array, own: Arra
         weight /= weight.sum()
     share, v = parts(best)
     return share, v
+
+
+def _weighted_least(
+    root: Array, error: Callable[[Array], Array], slopes: Callable[[Array], Array], start: Array
+) -> Array:
+    """Least squares of an error times the root of its weights."""
+    from scipy.optimize import least_squares
+
+    def weighted(q: Array) -> Array:
+        return np.asarray(root * error(q))
+
+    def weighted_slopes(q: Array) -> Array:
+        return np.asarray(root[:, None] * slopes(q))
+
+    return np.asarray(least_squares(weighted, start, jac=weighted_slopes, max_nfev=60).x)

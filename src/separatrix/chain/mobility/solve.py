@@ -60,7 +60,7 @@ def mobility(
     speed, forward, backward = _push_curve(ball, found, state.inner.rolling_speed)
     mean = 0.5 * (forward + backward)
     law = fitted_law(speed, mean, slope=found.held, mass=found.mass)
-    instant = np.geomspace(0.1 / abs(found.rates[-1]), 10.0 / abs(found.rates[0]), INSTANTS)
+    instant = np.geomspace(0.5 / abs(found.rates[-1]), 10.0 / abs(found.rates[0]), INSTANTS)
     frequency = np.geomspace(0.02 * abs(found.rates[0]), abs(found.rates[-1]), FREQUENCIES) / (2.0 * np.pi)
     response = mobility_at(found, frequency)
     return Mobility(
