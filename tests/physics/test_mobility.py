@@ -1,8 +1,8 @@
 """Mobility of a ball: rates, dampings and responses against an independent program, and limits.
 
-The numbers marked "dynamics3d" are those of our notes on bearing dynamics, sections 2.2 and 3 (E2, E11): computed
-by us with separate small programs, rigid Coulomb contacts with a slip speed of 1e-4 w d_m/4. They are printed
-to 4 to 6 digits; 1e-3 covers the quadrature of theirs and of ours.
+The numbers marked "dynamics3d" are those of our notes on bearing dynamics, sections 2.2 and 3 (E2, E11):
+computed by us with separate small programs, rigid Coulomb contacts with a slip speed of 1e-4 w d_m/4. They
+are printed to 4 to 6 digits; 1e-3 covers the quadrature of theirs and of ours.
 """
 
 import math
