@@ -15,14 +15,14 @@ from scipy.optimize import root
 
 from separatrix.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state, race_tracks
-from separatrix.chain.mobility import Impacts, SlipLaw, held_ball, impacts, mobility
+from separatrix.chain.mobility import Impacts, SlipLaw, closure, held_ball, impacts, mobility
 from separatrix.chain.mobility.field import balanced, groove, pitch_angle, pocket_friction_effect
 from separatrix.chain.mobility.impact import follow_impact, law_returns, linear_return
 from separatrix.chain.mobility.law import fitted_law
 from separatrix.chain.mobility.modes import mobility_at, modes, step_damping
 from separatrix.chain.mobility.push import pushed
 from separatrix.chain.race_curve import race_slope
-from separatrix.errors import ConvergenceError, InputError
+from separatrix.errors import InputError
 from separatrix.study import KinematicModel, TractionModel, TractionSettings
 from separatrix.units import Array
 
@@ -104,7 +104,7 @@ def test_pocket_friction_brakes_the_spin(name, effect):
 @pytest.mark.parametrize(("name", "damping"), [*zip(NAMES, (766.2, 395.0, 728.8, 312.8), strict=True)])
 def test_damping_along_the_groove(name, damping):
     """Lateral friction of both contacts where the grooves give least (dynamics3d 2.2, other quadrature)."""
-    assert groove(held(name))[0] == pytest.approx(damping, rel=4e-3)
+    assert groove(held(name))[0] == pytest.approx(damping, rel=1e-3 if name == "cryo" else 4e-3)
 
 
 def test_stiffness_along_the_groove():
@@ -147,9 +147,9 @@ def test_push_begins_with_the_linear_law():
     """F/u is C_f with the attitude held, and C_eff with all spin relaxed, as u falls."""
     ball, found = held("cryo"), modes_of("cryo")
     small = np.array((1e-5,))
-    assert pushed(ball, found, small)[0] / 1e-5 == pytest.approx(found.held, rel=1e-3)
+    assert pushed(ball, found, small)[0] / 1e-5 == pytest.approx(found.held, rel=1e-5)
     relaxed = pushed(ball, found, small, is_held=False)[0] / 1e-5
-    assert relaxed == pytest.approx(found.relaxed, rel=1e-3)
+    assert relaxed == pytest.approx(found.relaxed, rel=5e-5)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -338,7 +338,8 @@ def test_a_bearing_that_turns_the_other_way_is_the_same():
         for operation in (asked.operation, other)
     )
     assert two.linear.rates == pytest.approx(one.linear.rates, rel=1e-6)
-    assert two.traction.speeds == pytest.approx(one.traction.speeds, rel=1e-4)
+    assert two.force_forward[-8:] == pytest.approx(one.force_forward[-8:], rel=1e-6)
+    assert one.force_forward[-8:] != pytest.approx(one.force_backward[-8:], rel=1e-2)
 
 
 def test_outer_ring_rotation():
@@ -361,16 +362,21 @@ def test_race_control_gives_the_place_and_friction_the_spin():
     assert two.linear.damping == pytest.approx(one.linear.damping, rel=0.02)
 
 
-def test_a_ball_off_the_inner_race_is_refused():
-    """Spinning so fast that no ball touches it."""
+def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
+    """Nothing turns it there."""
+    given = records("cryo")
+    state = bearing_state(given[0], given[1], given[2], given[3].race_friction)
+    lifted = replace(state, inner=replace(state.inner, load=0.0))
+    monkeypatch.setattr(closure, "bearing_state", lambda *_: lifted)
+    with pytest.raises(InputError, match="must press a ball on both races"):
+        held_ball.__wrapped__(*given, SlipLaw.RIGID)
+
+
+def test_a_radial_bearing_has_no_pitch():
+    """Contact angle 0: pivoting does not take part, C_f is C_eff; no gyroscopic mode is left out."""
     asked = study_of("cryo")
-    operation = replace(asked.operation, inner_speed=60_000.0, axial_load=1.0)
-    with pytest.raises((InputError, ConvergenceError)):
-        held_ball(
-            asked.bearing,
-            operation,
-            KinematicModel.OUTER_RACE_CONTROL,
-            asked.film,
-            asked.traction,
-            SlipLaw.RIGID,
-        )
+    operation = replace(asked.operation, axial_load=0.0, radial_load=1000.0)
+    film = replace(asked.film, material=None, thickness=None)
+    found = mobility(asked.bearing, operation, asked.kinematics, film, asked.traction).linear
+    assert found.damping == pytest.approx(found.damping_relaxed, rel=1e-6)
+    assert found.pitch_angle == pytest.approx(0.0, abs=1e-6)
