@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix import api
+from separatrix import api, figures
 from separatrix.cli import main
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Wear, Worn
@@ -22,7 +22,7 @@ def test_a_study_without_a_cage_has_no_impacts():
     assert document["impacts"] is None
     assert document["rates"] == sorted(document["rates"])
     assert "Not computed: le7 lacks the section [cage]" in answer.summary()
-    assert [name for name, _ in separatrix.figures.draw("mobility", answer.to_xarray())] == ["mobility"]
+    assert [name for name, _ in figures.draw("mobility", answer.to_xarray())] == ["mobility"]
 
 
 def test_document_and_table_of_a_wheel():

@@ -43,7 +43,7 @@ def _rates(
     f[:6] = balance
     jacobian[:, :] = 0.0
     jacobian[:6, :6] = slopes
-    pushed = stiffness if y[7] > 0.0 else 0.0
+    pushed = stiffness if y[7] >= 0.0 else 0.0
     unit = 0.5 * p.pitch_diameter * p.speed
     f[2] += sense * pushed * y[7]
     jacobian[2, 7] = sense * pushed
@@ -64,6 +64,34 @@ def _masses(p: Problem, masses: Array) -> None:
     masses[6, 6] = masses[7, 7] = 1.0
 
 
+@part
+def _scales(p: Problem, speed: float, period: float, scales: Array) -> None:
+    """What counts as one unit of each unknown in the error of a step."""
+    turn = speed / (0.5 * p.ball_diameter * abs(p.speed))
+    scales[:2] = 1e-6 * p.ball_diameter
+    scales[2], scales[3:6] = turn * p.ball_diameter / p.pitch_diameter, turn
+    scales[6], scales[7] = speed, speed * period / math.pi
+
+
+@part
+def _stage(stage: int, M: Array, J: Array, f: Array, step: float, K: Array) -> bool:
+    """One stage of RODAS3: (2 M/h - J) K = f + M (earlier stages)/h; False if the matrix is singular."""
+    right, matrix = np.empty((SIZE, 1)), 2.0 * M / step - J
+    for row in range(SIZE):
+        total = f[row]
+        for k in range(SIZE):
+            if stage == 1:
+                total += M[row, k] * 4.0 * K[0, k] / step
+            elif stage > 1:
+                total += M[row, k] * (K[0, k] - K[1, k]) / step
+            if stage == 3:
+                total -= M[row, k] * 8.0 / 3.0 * K[2, k] / step
+        right[row, 0] = total
+    solved = solve_linear(matrix, right)
+    K[stage] = right[:, 0]
+    return bool(solved)
+
+
 @kernel
 def follow_impact(
     p: Problem,
@@ -80,55 +108,34 @@ def follow_impact(
 ) -> tuple[float, float, float, int]:
     """Speed of the cage after an impact, largest force, duration, and steps; steps -1 without an end.
 
-    RODAS3 of Sandu et al. (1997): Rosenbrock, order 3, L-stable and stiffly accurate, with the exact slopes;
-    the balance in the plane of the contacts is algebraic.
+    The cage comes from behind the ball with `sense` 1, from the front with -1. RODAS3 of Sandu et al. (1997):
+    Rosenbrock, order 3, L-stable and stiffly accurate, with the exact slopes; the balance in the plane of the
+    contacts is algebraic.
     """
     period = math.pi * math.sqrt(mass / stiffness)
-    scales = np.empty(SIZE)
-    scales[:2] = 1e-6 * p.ball_diameter
-    scales[2] = speed / (0.5 * p.pitch_diameter * abs(p.speed))
-    scales[3:6] = 2.0 * speed / (p.ball_diameter * abs(p.speed))
-    scales[6], scales[7] = speed, speed * math.sqrt(mass / stiffness)
     y, f, J, M = np.zeros(SIZE), np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty((SIZE, SIZE))
+    K, trial, unused, scales = np.zeros((4, SIZE)), np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(SIZE)
     y[:6], y[6] = state, speed
     _masses(p, M)
-    K, trial, unused = np.zeros((4, SIZE)), np.empty(SIZE), np.empty((SIZE, SIZE))
-    right, matrix, start = np.empty((SIZE, 1)), np.empty((SIZE, SIZE)), state.copy()
+    _scales(p, speed, period, scales)
     time, step, peak = 0.0, 1e-3 * period, 0.0
     for count in range(MOST_STEPS):
-        _rates(p, rings, y, start, slips, cells, nodes, mass, stiffness, sense, f, J)
-        if count == 0:  # the contact is closing: its spring acts from the first instant
-            J[2, 7], J[6, 7] = sense * stiffness, -stiffness / mass
+        _rates(p, rings, y, state, slips, cells, nodes, mass, stiffness, sense, f, J)
         for stage in range(4):
             if stage > 1:
-                for k in range(SIZE):
-                    trial[k] = y[k] + 2.0 * K[0, k] + (K[2, k] if stage == 3 else 0.0)
-                _rates(p, rings, trial, start, slips, cells, nodes, mass, stiffness, sense, f, unused)
-            for row in range(SIZE):
-                total = f[row]
-                for k in range(SIZE):
-                    if M[row, k] != 0.0:
-                        if stage == 1:
-                            total += M[row, k] * 4.0 * K[0, k] / step
-                        elif stage == 2:
-                            total += M[row, k] * (K[0, k] - K[1, k]) / step
-                        elif stage == 3:
-                            total += M[row, k] * (K[0, k] - K[1, k] - 8.0 / 3.0 * K[2, k]) / step
-                    matrix[row, k] = 2.0 * M[row, k] / step - J[row, k]
-                right[row, 0] = total
-            if not solve_linear(matrix, right):
+                trial[:] = y + 2.0 * K[0]
+                if stage == 3:
+                    trial += K[2]
+                _rates(p, rings, trial, state, slips, cells, nodes, mass, stiffness, sense, f, unused)
+            if not _stage(stage, M, J, f, step, K):
                 return 0.0, peak, time, -1
-            K[stage] = right[:, 0]
-        error = 0.0
-        for k in range(2, SIZE):
-            error = max(error, abs(K[3, k]) / scales[k])
+        error = np.max(np.abs(K[3, 2:]) / scales[2:])
         if error <= tolerance or step < 1e-9 * period:
             before, approach = y[6], y[7]
-            for k in range(SIZE):
-                y[k] += 2.0 * K[0, k] + K[2, k] + K[3, k]
+            y += 2.0 * K[0] + K[2] + K[3]
             time += step
             peak = max(peak, stiffness * y[7])
-            if y[7] <= 0.0:
+            if y[7] <= 0.0:  # the contact opened within the step
                 share = approach / (approach - y[7])
                 return before + share * (y[6] - before), peak, time - (1.0 - share) * step, count
         step *= min(2.0, max(0.2, 0.8 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0)))

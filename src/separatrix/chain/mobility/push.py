@@ -73,34 +73,11 @@ def _newton(
     ball: HeldBall, found: Modes, unknown: Array, speed: float, is_held: bool
 ) -> tuple[float, Array, float]:
     """Newton on (V - V_0, spin - spin_0, drift of the held mode), all scaled; force and unbalance, too."""
-    arm = 0.5 * ball.problem.ball_diameter
-    scales = ball.capacity * np.array((1.0, 1.0, arm, arm, arm))
-    drift = np.zeros(4) if found.right is None or not is_held else found.masses @ found.right
-    drift = drift / max(float(np.abs(drift[1:]).max()), 1e-300) * ball.capacity * arm
-    lengths = np.array((1e-6 * ball.problem.ball_diameter,) * 2 + (abs(ball.units[1]),) * 3 + (1.0,))
-    rest, state = np.inf, ball.state.copy()
-    best = unknown
-    force = 0.0
+    held = found if is_held and found.right is not None else None
+    force, best, rest = 0.0, unknown, np.inf
     for _ in range(25):
-        state[:2] = ball.state[:2] + unknown[:2] * lengths[:2]
-        spin = unknown[2:5] * lengths[2:5]
-        state[2] = ball.state[2] + speed / ball.units[0]
-        state[3:] = ball.state[3:] + spin / ball.units[1:]
-        balance, slopes = balanced(ball, state)
-        rows, matrix = np.empty(6), np.zeros((6, 6))
-        acting = balance - np.concatenate(((0.0, 0.0), unknown[5] * drift))
-        rows[:5] = acting[[0, 1, 3, 4, 5]] / scales
-        matrix[:5, :2] = slopes[[0, 1, 3, 4, 5], :2]
-        matrix[:5, 2:5] = slopes[[0, 1, 3, 4, 5], 3:] / ball.units[1:]
-        matrix[2:5, 5] = -drift[1:]
-        matrix[:5] *= lengths / scales[:, None]
-        if drift.any() and found.left is not None:
-            row = found.left / max(float(np.abs(found.left[1:]).max()), 1e-300)
-            rows[5] = (row[0] * speed + row[1:] @ spin) / lengths[2]
-            matrix[5, 2:5] = row[1:]
-        else:
-            rows[5], matrix[5, 5] = unknown[5], 1.0
-        rest, best, force = float(np.abs(rows).max()), unknown, -float(acting[2])
+        force, rows, matrix = _equations(ball, held, unknown, speed)
+        rest, best = float(np.abs(rows).max()), unknown
         if not np.isfinite(rest) or rest <= 0.01 * CLOSED:
             break
         try:
@@ -108,3 +85,40 @@ def _newton(
         except np.linalg.LinAlgError:
             return force, best, np.inf
     return force, best, rest
+
+
+def _equations(
+    ball: HeldBall, held: Modes | None, unknown: Array, speed: float
+) -> tuple[float, Array, Array]:
+    """Force of a push, what is not yet 0, shape (6,), and its slopes with the unknowns, (6, 6).
+
+    Balance in the plane of the contacts, couples less the drift, and the held mode's coordinate.
+    """
+    arm, acts = 0.5 * ball.problem.ball_diameter, [0, 1, 3, 4, 5]
+    scales = ball.capacity * np.array((1.0, 1.0, arm, arm, arm))
+    units = np.array((1e-6 * ball.problem.ball_diameter,) * 2 + (abs(ball.units[1]),) * 3)
+    moved = unknown[:5] * units
+    state = ball.state.copy()
+    state[:2] += moved[:2]
+    state[2] += speed / ball.units[0]
+    state[3:] += moved[2:] / ball.units[1:]
+    balance, slopes = balanced(ball, state)
+    drift, row = np.zeros(4), np.zeros(4)
+    if held is not None and held.right is not None and held.left is not None:
+        drift = _over_spin(held.masses @ held.right) * ball.capacity * arm
+        row = _over_spin(held.left)
+    balance[2:] -= unknown[5] * drift
+    matrix = np.zeros((6, 6))
+    matrix[:5, :2] = slopes[acts, :2]
+    matrix[:5, 2:5] = slopes[acts, 3:] / ball.units[1:]
+    matrix[:5, :5] *= units / scales[:, None]
+    matrix[2:5, 5] = -drift[1:] / scales[2:]
+    matrix[5, 2:5], matrix[5, 5] = row[1:], float(held is None)
+    coordinate = (row[0] * speed + row[1:] @ moved[2:]) / units[2]
+    last = unknown[5] if held is None else coordinate
+    return -float(balance[2]), np.append(balance[acts] / scales, last), matrix
+
+
+def _over_spin(values: Array) -> Array:
+    """A pattern over its largest part of spin."""
+    return np.asarray(values / float(np.abs(values[1:]).max()))
