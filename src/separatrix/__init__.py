@@ -10,8 +10,9 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer ContactCases bearing check map rank restitution sensitivity simulate solve_contact "
-    "stability sweep traction",
+    "api": "Answer ContactCases bearing check map mobility rank restitution sensitivity simulate "
+    "solve_contact stability sweep traction",
+    "ball_traction": "BallTraction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
     "chain.contacts": "BearingState RaceContact RaceTraction",
@@ -19,6 +20,7 @@ _PUBLIC = {
     "chain.equilibrium": "Equilibrium contact",
     "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
+    "chain.mobility": "Impacts LinearMobility Mobility SlipLaw",
     "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
     "chain.solution": "Solution solve",
     "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "

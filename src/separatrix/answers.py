@@ -11,6 +11,7 @@ from separatrix.cage import History, PlanarCage
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
+from separatrix.chain.mobility import Impacts, LinearMobility, Mobility
 from separatrix.chain.models import ModelComparison
 from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
@@ -66,6 +67,20 @@ class RestitutionAnswer:
     lubrication: LubricationCurve | None
     exact_films: ExactFilms | None
     wear: WearCurve | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MobilityAnswer:
+    """Mobility of the most loaded ball, its small motion between rigid bodies, and the cage's impacts on it.
+
+    `impacts` is None, with the reason, for a study whose cage has no stiffness, or without a cage.
+    """
+
+    solution: Solution
+    mobility: Mobility
+    rigid: LinearMobility
+    impacts: Impacts | None
+    impacts_reason: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,7 @@ from separatrix import verbs
 from separatrix.answers import (
     CheckAnswer,
     MapAnswer,
+    MobilityAnswer,
     RankingAnswer,
     RestitutionAnswer,
     SensitivityAnswer,
@@ -205,6 +206,11 @@ def traction(study: Asked) -> Answer[TractionAnswer]:
 def restitution(study: Asked) -> Answer[RestitutionAnswer]:
     """Restitution factor of an impact of ball and cage."""
     return _answer("restitution", study, verbs.restitution, "cage")
+
+
+def mobility(study: Asked) -> Answer[MobilityAnswer]:
+    """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
+    return _answer("mobility", study, verbs.mobility)
 
 
 def simulate(

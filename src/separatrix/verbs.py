@@ -12,6 +12,7 @@ from pathlib import Path
 from separatrix.answers import (
     CheckAnswer,
     MapAnswer,
+    MobilityAnswer,
     RankingAnswer,
     RestitutionAnswer,
     SensitivityAnswer,
@@ -29,6 +30,7 @@ from separatrix.cage_choice import (
 )
 from separatrix.chain.contacts import BearingState, race_tracks
 from separatrix.chain.film_curves import exact_films, wear_curve
+from separatrix.chain.mobility import SlipLaw, linear_mobility
 from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
@@ -170,6 +172,23 @@ def _warn_if_overdamped(found: Restitution) -> None:
             ValidityWarning,
             stacklevel=2,
         )
+
+
+def mobility(study: Study) -> MobilityAnswer:
+    """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
+    solution = solve(study)
+    found = solution.mobility
+    rigid = linear_mobility(
+        study.bearing, study.operation, study.kinematics, study.film, study.traction, SlipLaw.RIGID
+    )
+    impacts, reason = None, ""
+    try:
+        impacts = solution.impacts
+    except InputError as error:
+        reason = str(error)
+    return MobilityAnswer(
+        solution=solution, mobility=found, rigid=rigid, impacts=impacts, impacts_reason=reason
+    )
 
 
 def stability(study: Study, runner: Runner) -> StabilityAnswer:

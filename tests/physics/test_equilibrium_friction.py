@@ -19,7 +19,7 @@ RPM = 2.0 * math.pi / 60.0
 
 def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells: int = 48) -> Array:
     """Per unit load and friction, on a ball of 1 cm radius."""
-    out = np.empty((5, 6))
+    out = np.empty((5, 7))
     friction_resultants(np.array(c), a, b, 1e-2, 1.02e-2, smoothing, cells, chebyshev_nodes(cells // 2), out)
     return out
 
@@ -109,7 +109,7 @@ def test_power_of_the_rings_is_lost_in_sliding(speeds):
         nodes = chebyshev_nodes(24)
         contact_actions(p, side, at, load, 0.0, state, smoothing, 48, nodes, force, slopes)
         given += ring * (0.5 * p.pitch_diameter * force[2] + force[3])
-        per_unit, c = np.empty((5, 6)), np.empty(4)
+        per_unit, c = np.empty((5, 7)), np.empty(4)
         contact_friction(p, side, at, load, state, smoothing, 48, nodes, per_unit)
         slip_coefficients(p, side, at, state, c, np.empty(2))
         lost += 0.15 * load * abs(p.speed) * float(c @ per_unit[:4, 0])

@@ -37,6 +37,7 @@ CALLS = {
     "bearing": {},
     "traction": {},
     "restitution": {},
+    "mobility": {},
     "simulate": {"kick": "0.4 m/s"},
     "stability": {},
     "map": {"x": "restitution_factor=0.2..0.8:2", "y": "ball_cage_friction=0..0.4:3", "runs": 2},

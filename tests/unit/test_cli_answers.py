@@ -50,6 +50,8 @@ KEYS = {
     **{("bearing", f"contacts.{race}"): ELLIPSE for race in ("inner", "outer")},
     **{("traction", race): CURVE for race in ("inner", "outer")},
     ("restitution", ""): " ".join(f"{name} {name}_free_spin" for name in DAMPING.split()),
+    ("mobility", ""): "rates damping damping_relaxed effective_mass capacity speed force_forward force_law",
+    ("mobility", "impacts"): "speed restitution_forward restitution_law nominal_restitution_factor",
     ("stability", "curve"): CRITICAL,
     ("stability", "linear_limit"): "restitution_factor critical_friction",
     ("rank", ""): "restitution_factor",

@@ -24,8 +24,8 @@ from separatrix.notes import noted_warnings
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
-    *("new", "check", "bearing", "traction", "restitution", "stability", "map", "simulate", "rank"),
-    *("sensitivity", "sweep", "tribometer", "contact", "compare", "materials"),
+    *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
+    *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),

@@ -25,6 +25,7 @@ from separatrix.chain.contacts import (
     require_rolling,
 )
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
+from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, held_ball, impacts, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
 from separatrix.chain.pocket import (
     PocketConditions,
@@ -48,6 +49,7 @@ from separatrix.study import (
     Study,
 )
 from separatrix.units import (
+    Kilogram,
     MetrePerSecond,
     NewtonPerMetre,
     Ratio,
@@ -55,6 +57,10 @@ from separatrix.units import (
 )
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
+WORN_MOBILITY = (
+    "The film is worn: the mobility of a ball takes race_friction on the whole track, and the wear only for "
+    "its elastic creep."
+)
 NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
 
 
@@ -200,6 +206,45 @@ class Solution:
         mass = self.design.mass  # refused before anything is computed
         inner, outer = self.bearing.dampings(self.slopes.inner.slope, self.slopes.outer.slope)
         return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
+
+    @property
+    def impact_mass(self) -> Kilogram:
+        """Mass that an impact feels, 1/(1/M + R^2/J): that of a cage that may turn, M/2 for a thin ring."""
+        design, radius = self.design, self.study.bearing.pitch_diameter / 2.0
+        turning = (
+            1.0 / design.mass if design.moment_of_inertia is None else radius**2 / design.moment_of_inertia
+        )
+        return 1.0 / (1.0 / design.mass + turning)
+
+    @cached_property
+    def mobility(self) -> Mobility:
+        """How the races let the most loaded ball be pushed along its orbit; refused as `traction` is.
+
+        Warns
+        -----
+        ValidityWarning
+            The film is worn: the slip fields have one friction throughout.
+        """
+        asked = self.study
+        require_rolling(asked)
+        _ = self.bearing  # its warnings
+        if asked.film.wear is not None:
+            warnings.warn(WORN_MOBILITY, ValidityWarning, stacklevel=2)
+        return mobility(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+
+    @cached_property
+    def impacts(self) -> Impacts:
+        """Restitution of impacts of the cage on the most loaded ball against their speed."""
+        asked, found, law = self.study, self.restitution, self.mobility.traction
+        records = (asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        return impacts(
+            held_ball(*records, SlipLaw.ELASTIC),
+            law,
+            felt_mass=self.impact_mass,
+            cage_mass=found.cage_mass,
+            ball_cage_stiffness=found.ball_cage_stiffness,
+            race_damping=found.race_damping,
+        )
 
     @cached_property
     def lubrication(self) -> LubricationCurve | None:

@@ -105,6 +105,12 @@ VERBS: tuple[Verb, ...] = (
     Verb(name="traction", help="Traction curves of ball on race, and their slopes."),
     Verb(name="restitution", help="Restitution factor of a ball/cage impact.", needs=("cage",)),
     Verb(
+        name="mobility",
+        help="How the races hold a ball that is pushed along its orbit.",
+        epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
+        "the capacity of the races, and with a cage the restitution of impacts against their speed.",
+    ),
+    Verb(
         name="stability",
         help="Critical friction against restitution factor.",
         needs=("cage",),

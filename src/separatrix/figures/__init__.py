@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
-from separatrix.figures import chain, contact, map, ranking, sensitivity, simulation, stability
+from separatrix.figures import chain, contact, map, mobility, ranking, sensitivity, simulation, stability
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
 __all__ = ["draw", "plot", "save", "save_all"]
@@ -18,6 +18,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "bearing": chain.bearing,
     "traction": chain.traction,
     "restitution": chain.restitution,
+    "mobility": mobility.figures,
     "stability": stability.figures,
     "map": map.figures,
     "simulate": simulation.figures,

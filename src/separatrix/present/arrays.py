@@ -93,7 +93,7 @@ def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
 
 MAIN = (
     *(("case",), ("y", "x"), ("time",), ("environment", "material"), ("restitution_factor",)),
-    *(("race", "increment"), ("ball",), ("race",)),
+    *(("race", "increment"), ("push",), ("ball",), ("race",)),
 )
 """Dimensions of the main tables; an answer has that of the first that it has."""
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from separatrix.cage import CageMotion
+from separatrix.chain.mobility import SlipLaw
 from separatrix.errors import SeparatrixError
 from separatrix.present.walk import Group, Leaf, Table, shape
 from separatrix.study import (
@@ -34,7 +35,7 @@ Document = dict[str, Any]
 
 SPELLED = (
     *(CageMotion, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape, PressureSlip, Race),
-    *(TractionModel, Worn),
+    *(SlipLaw, TractionModel, Worn),
 )
 """Enumerations whose values are shown; of the others the names."""
 

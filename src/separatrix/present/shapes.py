@@ -10,6 +10,7 @@ import numpy as np
 from separatrix.answers import (
     CheckAnswer,
     MapAnswer,
+    MobilityAnswer,
     OfCage,
     RankingAnswer,
     RestitutionAnswer,
@@ -24,6 +25,7 @@ from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.mobility import Mobility
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial
@@ -133,6 +135,23 @@ def _worn_share(found: Solution) -> float:
     if wear is None or wear.width is None:
         return 0.0 if wear is None else wear.share or 0.0
     return min(1.0, 0.5 * wear.width / max(at.ellipse.semi_major for at in contacts))
+
+
+@shape.register
+def _(found: Mobility) -> Node:
+    """The small motion on the level of the mobility; the law with what it carries at most."""
+    node = fields_of(found)
+    del node["linear"], node["traction"]
+    law: Node = fields_of(found.traction) | {"capacity": Leaf(found.traction.capacity, "N")}
+    return shape(found.linear) | node | {"traction": Group(law)}
+
+
+@shape.register
+def _(found: MobilityAnswer) -> Node:
+    rigid = shape(found.rigid)
+    node = shape(found.mobility) | {"rigid": Group(rigid)}
+    impacts = Leaf(None) if found.impacts is None else Group(shape(found.impacts))
+    return node | {"impacts": impacts, "impacts_reason": Leaf(found.impacts_reason)}
 
 
 # The cage.

@@ -222,7 +222,7 @@ def contact_actions(
     `force_by`, shape (6, 6): slopes with the vector from groove centre to ball (columns 0 and 1, the sign of
     `side` turning V into it) and with the four speeds of the state.
     """
-    r, full = np.empty((5, 6)), np.empty((5, 7))
+    r, full = np.empty((5, 7)), np.empty((5, 7))
     contact_friction(p, side, t, load, state, smoothing, cells, nodes, r)
     c, n = np.empty(4), np.empty(2)
     slip_coefficients(p, side, t, state, c, n)
@@ -258,19 +258,27 @@ def _to_ball(resultants: Array, n_x: float, n_r: float, out: Array) -> None:
 
 @part
 def free_ball(
-    p: Problem, A: Array, state: Array, smoothing: float, cells: int, nodes: Array, residual: Array, out: Work
+    p: Problem,
+    A: Array,
+    state: Array,
+    smoothing: tuple[float, float],
+    cells: int,
+    nodes: Array,
+    residual: Array,
+    out: Work,
 ) -> None:
     """Force and moment balance of one ball, shape (6,), its slopes, and what the inner race gives it.
 
-    Forces (axial, outward, orbital) [N], then couples [N m]. `out.by_state`, shape (6, 8): slopes with the
-    state, then with A; `out.push` and `out.push_by`, shape (5, 8), as in `controlled_ball`.
+    `smoothing` is that of the inner and of the outer race. Forces (axial, outward, orbital) [N], then
+    couples [N m]. `out.by_state`, shape (6, 8): slopes with the state, then with A; `out.push` and
+    `out.push_by`, shape (5, 8), as in `controlled_ball`.
     """
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
     load_o, load_i, slope_i = turning_loads(p, i, o)
     inner, inner_by, outer, outer_by = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
-    contact_actions(p, -1.0, i, load_i, slope_i, state, smoothing, cells, nodes, inner, inner_by)
-    contact_actions(p, 1.0, o, load_o, o.load_slope, state, smoothing, cells, nodes, outer, outer_by)
+    contact_actions(p, -1.0, i, load_i, slope_i, state, smoothing[0], cells, nodes, inner, inner_by)
+    contact_actions(p, 1.0, o, load_o, o.load_slope, state, smoothing[1], cells, nodes, outer, outer_by)
     by_state, push, push_by = out.by_state, out.push, out.push_by
     residual[:] = inner + outer
     by_state[:, 2:6] = inner_by[:, 2:] + outer_by[:, 2:]

@@ -44,7 +44,7 @@ def evaluate(
         controlled_ball(p, A, state, residual, out)
         return
     cells, nodes = (method.cells, method.nodes) if fine else (method.coarse_cells, method.coarse_nodes)
-    free_ball(p, A, state, smoothing, cells, nodes, residual, out)
+    free_ball(p, A, state, (smoothing, smoothing), cells, nodes, residual, out)
 
 
 @part

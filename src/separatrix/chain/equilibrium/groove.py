@@ -123,8 +123,9 @@ def friction_resultants(
 ) -> None:
     """Resultants of v/sqrt(|v|^2 + smoothing^2) weighted by the Hertz pressure, per unit load.
 
-    `out`, shape (5, 6): rows spin moment, moment of h v_t, force along t, moment of h v_y, force along y;
-    column 0 the value, 1 to 4 its slopes with c, 5 its slope with ln(load) through a and b.
+    `out`, shape (5, 7): rows spin moment, moment of h v_t, force along t, moment of h v_y, force along y;
+    column 0 the value, 1 to 4 its slopes with c, 5 its slope with ln(load) through a and b, 6 its slope with
+    a speed of the ball across the groove, added to v_y.
 
     `cells` strips across the groove, in each the slip along t is taken linear in y and averaged exactly, so
     that a line of no slip may be anywhere. `nodes`, shape (2, node): places and weights along rolling.
@@ -199,6 +200,7 @@ def friction_resultants(
             out[row, 2] += weight * (J[row, 0] * h1 + J[row, 1] * h2)
             out[row, 3] += weight * (J[row, 0] + J[row, 1])
             out[row, 4] += weight * h * by_lift
+            out[row, 6] += weight * by_lift
             growth = J[row, 0] * g1 + J[row, 1] * g2 + c[3] * h_growth * by_lift - c[0] * by_turn / 3.0
             out[row, 5] += weight * growth
         out[0, 5] += weight * value0 / 3.0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
 from separatrix.present.text.chain import bearing, restitution, traction
+from separatrix.present.text.mobility import mobility
 from separatrix.present.text.ranking import every_environment, only_table, rank
 from separatrix.present.text.sensitivity import sensitivity
 from separatrix.present.text.stability import stability, stability_map, sweep
@@ -25,6 +26,7 @@ REPORTS: Mapping[str, Parts] = {
     "bearing": bearing,
     "traction": traction,
     "restitution": restitution,
+    "mobility": mobility,
     "stability": stability,
     "map": stability_map,
     "simulate": simulate,

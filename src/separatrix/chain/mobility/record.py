@@ -1,0 +1,109 @@
+"""What the mobility of a ball is made of: its linear motion, its law of traction, its impacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated
+
+from separatrix.ball_traction import BallTraction
+from separatrix.units import (
+    Array,
+    Kilogram,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Radian,
+    Ratio,
+)
+
+
+class SlipLaw(Enum):
+    """Which slip speed rounds the corner of Coulomb's law in a contact."""
+
+    ELASTIC = "elastic creep"
+    """The slip at which elastic creep alone, without spin, would transmit all friction."""
+
+    RIGID = "rigid"
+    """A ten-thousandth of a quarter of the speed difference times d_m: rigid bodies, no film."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinearMobility:
+    """Small motion of the most loaded ball about its steady rolling.
+
+    Modes by rising rate, arrays of shape (mode,): `rates` are those at which they decay, `oscillations` their
+    angular frequencies (0 of an overdamped one), `shares` what each adds to the speed of a slow push.
+    `damping` holds the slowest mode, the attitude of the spin axis; `damping_relaxed` lets it follow too;
+    `damping_locked` holds all spin. `effective_mass` is `damping` over the next rate. A pocket that rubs with
+    friction f on the ball it pushes changes the speed by 1 - `pocket_friction_effect` f behind the ball,
+    and 1 + in front of it. The groove values are those of the ball centre across its orbit.
+    """
+
+    slip_law: SlipLaw
+    slip_speed_inner: MetrePerSecond
+    slip_speed_outer: MetrePerSecond
+    pitch_angle: Radian
+    rates: Annotated[Array, "1/s", ("mode",)]
+    oscillations: Annotated[Array, "rad/s", ("mode",)]
+    shares: Annotated[Array, "-", ("mode",)]
+    damping: NewtonSecondPerMetre
+    damping_relaxed: NewtonSecondPerMetre
+    damping_locked: NewtonSecondPerMetre
+    effective_mass: Kilogram
+    pocket_friction_effect: Ratio
+    groove_damping: NewtonSecondPerMetre
+    groove_stiffness: NewtonPerMetre
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mobility:
+    """How the races let the most loaded ball be pushed along its orbit.
+
+    `capacity` is race friction times both loads. F(u) at speeds beyond the free orbit, shape (push,), is
+    forward and backward that of the slip fields, the slowest mode held; `force_law` is that of `traction`.
+    `law_error` is the largest difference of the law from their mean, `asymmetry` half their largest
+    difference, both over the capacity. After a unit force was put on, `step_damping` is F/u, shape
+    (instant,); |Y| and 1/Re Y of Y = u/F have shape (frequency,).
+    """
+
+    ball: int
+    linear: LinearMobility
+    capacity: Newton
+    traction: BallTraction
+    law_error: Ratio
+    asymmetry: Ratio
+    speed: Annotated[Array, "m/s", ("push",)]
+    force_forward: Annotated[Array, "N", ("push",)]
+    force_backward: Annotated[Array, "N", ("push",)]
+    force_law: Annotated[Array, "N", ("push",)]
+    instant: Annotated[Array, "s", ("instant",)]
+    step_damping: Annotated[Array, "N s/m", ("instant",)]
+    frequency: Annotated[Array, "Hz", ("frequency",)]
+    mobility: Annotated[Array, "m/s/N", ("frequency",)]
+    damping_at_frequency: Annotated[Array, "N s/m", ("frequency",)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Impacts:
+    """Share of its speed with which the cage returns from an impact on one ball; below 0 it goes on.
+
+    Arrays have shape (impact,). `restitution_forward` and `_backward` integrate the whole slip fields, the
+    cage coming from behind the ball and from in front of it; so does `peak_force`, the larger of both.
+    `restitution_law` has the law of traction. `restitution_linear` is the limit of gentle impacts.
+    `felt_mass` is that of a ring that may turn; `restitution_summed` is the paper's formula with this mass,
+    `nominal_restitution_factor` the paper's, with all of the cage's.
+    """
+
+    felt_mass: Kilogram
+    ball_cage_stiffness: NewtonPerMetre
+    nominal_restitution_factor: Ratio
+    restitution_summed: Ratio
+    restitution_linear: Ratio
+    speed: Annotated[Array, "m/s", ("impact",)]
+    restitution_forward: Annotated[Array, "-", ("impact",)]
+    restitution_backward: Annotated[Array, "-", ("impact",)]
+    restitution_law: Annotated[Array, "-", ("impact",)]
+    peak_force: Annotated[Array, "N", ("impact",)]
+    duration: Annotated[Array, "s", ("impact",)]
