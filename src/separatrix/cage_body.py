@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
+from separatrix.study import BallBearing, CageDesign
 from separatrix.units import Kilogram, KilogramMetre2, Metre
 
 NODES = 40
@@ -71,3 +73,56 @@ def ring_body(
         # pockets all around: half of what they lack about the axis, and their height twice
         transverse -= float((0.5 * (out + removed * t**2) + removed * z[:, None] ** 2).sum())
     return RingBody(volume=volume, axial=axial, transverse=transverse)
+
+
+NO_MASS = "Give it, or inner_diameter, outer_diameter and width and a material with its density."
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CageInertia:
+    """Mass of a cage, and its moments of inertia about its axis and about a diameter."""
+
+    mass: Kilogram
+    moment_of_inertia: KilogramMetre2
+    transverse_inertia: KilogramMetre2
+
+
+def cage_inertia(design: CageDesign, bearing: BallBearing) -> CageInertia:
+    """Mass and inertia as stated, else by the shape of the ring with its pockets, else of a thin ring.
+
+    Raises
+    ------
+    InputError
+        The mass is neither stated nor known from a shape and a density.
+    """
+    shape, mass = ring_of(design, bearing), design.mass
+    if mass is None:
+        density = design.material.density if design.material else None
+        if shape is None or density is None:
+            raise InputError("[cage] mass", "is missing", cure=NO_MASS)
+        mass = density * shape.volume
+    thin = mass * (bearing.pitch_diameter / 2.0) ** 2
+    axial, transverse = shape.inertia(mass) if shape is not None else (thin, thin / 2.0)
+    if shape is None and design.moment_of_inertia is not None:
+        transverse = design.moment_of_inertia / 2.0
+    return CageInertia(
+        mass=mass,
+        moment_of_inertia=design.moment_of_inertia or axial,
+        transverse_inertia=design.transverse_inertia or transverse,
+    )
+
+
+def ring_of(design: CageDesign, bearing: BallBearing) -> RingBody | None:
+    """Shape of the ring with its pockets; None where it is not given."""
+    if design.inner_diameter is None or design.outer_diameter is None or design.width is None:
+        return None
+    across = design.pocket_axial_clearance or design.pocket_clearance
+    return ring_body(
+        inner_radius=design.inner_diameter / 2.0,
+        outer_radius=design.outer_diameter / 2.0,
+        width=design.width,
+        pocket_count=bearing.ball_count,
+        pocket_along=bearing.ball_diameter + design.pocket_clearance,
+        pocket_across=bearing.ball_diameter + across,
+        pocket_shape=design.pocket_shape,
+    )

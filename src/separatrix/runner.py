@@ -14,7 +14,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from separatrix.cage import Ensemble, PlanarCage, run_ensemble
+from separatrix.cage import Ensemble, PlanarCage, SpaceEnsemble, run_ensemble
 from separatrix.ledger import Ledger, key_of
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Second
@@ -45,6 +45,7 @@ LOOK = 0.1
 PART = 16
 """Runs from each kick between two looks at whether to stop."""
 
+BY_BALL = ("pocket_impacts", "pocket_rubbing")
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
 
 
@@ -136,7 +137,8 @@ class Runner:
         if self.ledger is None:
             return self.call(_ensemble, *piece)
         key = key_of(cage, (settings.seed, settings.duration, settings.ball_scatter), *piece[2:])
-        known = _unpacked(self.ledger.get(key), (len(kicks), runs, cage.ball_count))
+        kind = Ensemble if cage.space is None else SpaceEnsemble
+        known = _unpacked(kind, self.ledger.get(key), (len(kicks), runs, cage.ball_count))
         if known is not None:
             self.ledger.taken += len(kicks) * runs
             return known
@@ -274,19 +276,22 @@ def joined(parts: Sequence[Ensemble]) -> Ensemble:
         values = [getattr(part, name) for part in parts]
         return np.concatenate(values, axis=1) if np.ndim(values[0]) > 1 else values[0]
 
-    return Ensemble(**{field.name: column(field.name) for field in fields(Ensemble)})
+    kind = type(parts[0])
+    return kind(**{field.name: column(field.name) for field in fields(kind)})
 
 
 def _packed(found: Ensemble) -> bytes:
     """Bytes of an ensemble, exact."""
-    arrays = (np.asarray(getattr(found, field.name)) for field in fields(Ensemble))
+    arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
     return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
 
 
-def _unpacked(known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:
-    """Ensemble of this shape (kicks, runs, balls) from its bytes; None if they are missing or damaged."""
-    shapes: dict[str, tuple[int, ...]] = {field.name: shape[:2] for field in fields(Ensemble)}
-    shapes |= {"kicks": shape[:1], "duration": (), "pocket_impacts": shape}
+def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:
+    """Ensemble of this kind and shape (kicks, runs, balls) from its bytes; None if they are of no use."""
+    names = [field.name for field in fields(kind)]
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(names, shape[:2])
+    by_ball = {name: shape for name in BY_BALL if name in names}
+    shapes |= {"kicks": shape[:1], "duration": (), **by_ball}
     sizes = {name: int(np.prod(size)) for name, size in shapes.items()}
     whole, data = 8 * sum(sizes.values()), b""
     with contextlib.suppress(zlib.error):
@@ -299,4 +304,4 @@ def _unpacked(known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | No
         kind = np.int64 if name in WHOLE_NUMBERS else np.float64
         values[name] = np.frombuffer(data, kind, size, at).reshape(shapes[name])
         at += 8 * size
-    return Ensemble(**values | {"duration": float(values["duration"])})
+    return kind(**values | {"duration": float(values["duration"])})

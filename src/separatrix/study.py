@@ -19,8 +19,8 @@ from separatrix.bearing_design import BallBearing as BallBearing
 from separatrix.bearing_design import Material as Material
 from separatrix.cage_design import BallModel as BallModel
 from separatrix.cage_design import CageDesign as CageDesign
-from separatrix.cage_design import MotionModel as MotionModel
 from separatrix.cage_design import Guidance as Guidance
+from separatrix.cage_design import MotionModel as MotionModel
 from separatrix.cage_design import PocketContact as PocketContact
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError

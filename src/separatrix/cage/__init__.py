@@ -14,6 +14,9 @@ from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion
 from separatrix.cage.runs import run_ensemble
+from separatrix.cage.space.ensemble import SpaceEnsemble
+from separatrix.cage.space.history import SpaceHistory, simulate_in_space
+from separatrix.cage.space_body import SpaceBody
 from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability, wilson_interval
 
 __all__ = [
@@ -25,6 +28,9 @@ __all__ = [
     "KickCount",
     "PlanarCage",
     "RunOutcome",
+    "SpaceBody",
+    "SpaceEnsemble",
+    "SpaceHistory",
     "Verdict",
     "drift_law",
     "follow",
@@ -37,6 +43,7 @@ __all__ = [
     "run_hard_ensemble",
     "settings_for",
     "simulate",
+    "simulate_in_space",
     "turning_critical_friction",
     "whirl_probability",
     "wilson_interval",

@@ -113,7 +113,7 @@ def _factors(solution: Solution, films: Sequence[Film], model: TractionModel) ->
             if model is TractionModel.STRIPS:
                 raise
             return None
-        k, mass = solution.ball_cage_stiffness, solution.design.mass
+        k, mass = solution.ball_cage_stiffness, solution.inertia.mass
         dampings = state.dampings(inner.slope, outer.slope)
         return restitution(*dampings, ball_cage_stiffness=k, cage_mass=mass)
 

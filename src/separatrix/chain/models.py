@@ -133,7 +133,7 @@ def _slopes(
         return replace(row, reason=str(error))
     dampings, factor = state.dampings(inner.slope, outer.slope), None
     if solution.study.cage is not None:
-        k, mass = solution.ball_cage_stiffness, solution.design.mass
+        k, mass = solution.ball_cage_stiffness, solution.inertia.mass
         factor = restitution(*dampings, ball_cage_stiffness=k, cage_mass=mass).restitution_factor
     return replace(
         row,

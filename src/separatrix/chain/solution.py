@@ -14,6 +14,8 @@ from typing import Any
 
 from separatrix.cage import PlanarCage
 from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
+from separatrix.cage.space_body import SpaceBody
+from separatrix.cage_body import CageInertia, cage_inertia
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
 from separatrix.chain.contacts import (
     BearingState,
@@ -24,6 +26,7 @@ from separatrix.chain.contacts import (
     race_traction,
     require_rolling,
 )
+from separatrix.chain.in_space import space_body
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
 from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, held_ball, impacts, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
@@ -41,9 +44,11 @@ from separatrix.chain.restitution import (
 )
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import (
+    BallModel,
     CageDesign,
     Candidate,
     Friction,
+    MotionModel,
     PocketContact,
     StabilitySettings,
     Study,
@@ -177,9 +182,9 @@ class Solution:
         if wall is None:
             rule = "is missing, and no cage material is known"
             raise InputError("[cage] ball_cage_stiffness", rule, cure=NO_STIFFNESS)
-        bearing, speed = self.study.bearing, self.impact_speed
+        bearing, speed, mass = self.study.bearing, self.impact_speed, self.inertia.mass
         stiffness = ball_pocket_stiffness(
-            bearing.ball_diameter, bearing.ball_material, wall, cage_mass=design.mass, impact_speed=speed
+            bearing.ball_diameter, bearing.ball_material, wall, cage_mass=mass, impact_speed=speed
         )
         name = "[cage] material" if wall.name == NAMELESS else wall.name
         return stiffness, f"Hertz, ball on a flat wall of {name} at {speed:.3g} m/s"
@@ -203,18 +208,20 @@ class Solution:
     @cached_property
     def restitution(self) -> Restitution:
         """Restitution factor of the cage's impacts, with the race damping behind it."""
-        mass = self.design.mass  # refused before anything is computed
+        mass = self.inertia.mass  # refused before anything is computed
         inner, outer = self.bearing.dampings(self.slopes.inner.slope, self.slopes.outer.slope)
         return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
 
     @property
     def impact_mass(self) -> Kilogram:
         """Mass that an impact feels, 1/(1/M + R^2/J): that of a cage that may turn, M/2 for a thin ring."""
-        design, radius = self.design, self.study.bearing.pitch_diameter / 2.0
-        turning = (
-            1.0 / design.mass if design.moment_of_inertia is None else radius**2 / design.moment_of_inertia
-        )
-        return 1.0 / (1.0 / design.mass + turning)
+        body, radius = self.inertia, self.study.bearing.pitch_diameter / 2.0
+        return 1.0 / (1.0 / body.mass + radius**2 / body.moment_of_inertia)
+
+    @cached_property
+    def inertia(self) -> CageInertia:
+        """Mass and moments of inertia of the cage: as stated, of its shape, or of a thin ring."""
+        return cage_inertia(self.design, self.study.bearing)
 
     @cached_property
     def mobility(self) -> Mobility:
@@ -256,7 +263,7 @@ class Solution:
             self.bearing.outer,
             self.study.film.material,
             ball_cage_stiffness=self.ball_cage_stiffness,
-            cage_mass=self.design.mass,
+            cage_mass=self.inertia.mass,
         )
 
     @cached_property
@@ -266,7 +273,7 @@ class Solution:
             self.bearing.equilibrium,
             ball_diameter=self.study.bearing.ball_diameter,
             ball_cage_stiffness=self.ball_cage_stiffness,
-            cage_mass=self.design.mass,
+            cage_mass=self.inertia.mass,
             damping_ratio=self.restitution.damping_ratio,
             impact_speed=self.impact_speed,
         )
@@ -315,7 +322,7 @@ class Solution:
         return self.cage_with(friction.mean if friction else 0.0)
 
     def cage_with(self, friction: Ratio) -> PlanarCage:
-        """Cage in the plane with the chain's race damping and any friction.
+        """Cage in the plane or in space, as the study says, with the chain's races and any friction.
 
         The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs
         faster and slower around as the equilibrium says. A cage without a stated inertia is a thin ring.
@@ -325,13 +332,13 @@ class Solution:
         ValidityWarning
             The balls lead and lag by more than half their clearance, so that the pockets drive them.
         """
-        study, design = self.study, self.design
+        study, design, body = self.study, self.design, self.inertia
         damping, waves, radius = self.restitution, self._waves, self.study.bearing.pitch_diameter / 2.0
-        inertia = design.mass * radius**2 if design.moment_of_inertia is None else design.moment_of_inertia
         hertz = design.pocket_contact is not PocketContact.LINEAR
         stiffness = damping.ball_cage_stiffness
         cage = PlanarCage(
-            moment_of_inertia=inertia,
+            mass=body.mass,
+            moment_of_inertia=body.moment_of_inertia,
             ball_count=study.bearing.ball_count,
             pitch_radius=radius,
             cage_speed=self.bearing.cage_speed,
@@ -341,17 +348,31 @@ class Solution:
             race_damping=damping.race_damping,
             ball_cage_friction=friction,
             # equal energy and depth in an impact at the impact speed
-            hertz_coefficient=hertz_coefficient_for(stiffness, design.mass, self.impact_speed)
+            hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, self.impact_speed)
             if hertz
             else None,
             orbital_cosines=waves.cosines,
             orbital_sines=waves.sines,
             ramp_time=study.operation.ramp_time,
             ramp_start=study.operation.ramp_start,
+            traction=self.mobility.traction if design.ball is BallModel.TRACTION else None,
+            space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
             **_as_designed(design),
         )
         _warn_if_balls_are_driven(cage)
         return cage
+
+    def _in_space(self, stiffness: NewtonPerMetre) -> SpaceBody:
+        return space_body(
+            self.design,
+            self.study.bearing,
+            self.bearing,
+            self.mobility,
+            self.stability,
+            stiffness=stiffness,
+            inertia=self.inertia,
+            impact_speed=self.impact_speed,
+        )
 
     @cached_property
     def _waves(self) -> OrbitalWaves:
@@ -368,7 +389,9 @@ class Solution:
 
 
 _NOT_COPIED = {
-    *("moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    *("mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    *("inner_diameter", "outer_diameter", "width", "transverse_inertia", "ball", "motion"),
+    *("land_spacing", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity", "added_mass"),
     *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
 }
 

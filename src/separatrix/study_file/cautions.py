@@ -113,7 +113,7 @@ def beyond_bearings(study: Study) -> Iterator[str]:
             "0.3, dry metal below about 1."
         )
     low, high = plausible_cage_masses(study)
-    if cage is not None and not low <= cage.mass <= high:
+    if cage is not None and cage.mass is not None and not low <= cage.mass <= high:
         named = cage.material is not None and cage.material.density is not None
         what = f"a ring of {cage.material.name}" if named and cage.material else "a polymer ring"
         (thin, narrow), (thick, wide) = SECTION

@@ -118,7 +118,7 @@ def run_in_space(
     spread(work, len(speeds), runs, size, jobs)
     if not forward:
         hits, heat = other_way_round(hits), other_way_round(heat)
-    names = [field.name for field in fields(SpaceEnsemble) if field.name in evidence.dtype.names]
+    names = [field.name for field in fields(SpaceEnsemble) if field.name in (evidence.dtype.names or ())]
     return SpaceEnsemble(
         kicks=speeds,
         pocket_impacts=hits,

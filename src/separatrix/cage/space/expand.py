@@ -62,7 +62,7 @@ def ramped(c: Array, column: int, first: float, rise: float, n: int) -> float:
     total = first * c[n, column]
     if n > 0:
         total += rise * c[n - 1, column]
-    return total
+    return float(total)
 
 
 @inlined_kernel
@@ -73,7 +73,7 @@ def ramped_twice(c: Array, column: int, first: float, rise: float, n: int) -> fl
         total += 2.0 * first * rise * c[n - 1, column]
     if n > 1:
         total += rise * rise * c[n - 2, column]
-    return total
+    return float(total)
 
 
 @inner_kernel
@@ -155,14 +155,14 @@ def pocket_forces(
 ) -> tuple[float, float, float, float, float, float]:
     """Coefficient n of the pockets' forces on the cage and of their moments over R; and of balls' motion."""
     fx = fy = fz = ts = ta = tb = 0.0
-    for b in range(parts.count[1]):
+    for b in range(parts.listed[1]):
         place_pocket(p, parts, parts.active[b], n)
-    if parts.count[0] > 0:
+    if parts.listed[0] > 0:
         press_pockets(p, parts, n)
         slide_pockets(p, parts, now, n)
         rub_pockets(p, parts, n)
         sum_pockets(parts, n)
-    for b in range(parts.count[1]):
+    for b in range(parts.listed[1]):
         j = parts.active[b]
         along = axial = 0.0
         cos, sin = parts.cosine[j], parts.sine[j]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from separatrix.cage.motion import LONGEST, MOST_STEPS, PRECISION, pace_at
+from separatrix.cage.motion import MOST_STEPS, pace_at
 from separatrix.cage.records import ORDER, POWERS, Whole
 from separatrix.cage.series import ROUNDING
 from separatrix.cage.space.events import (
@@ -62,6 +62,7 @@ from separatrix.cage.space.records import (
     Z,
 )
 from separatrix.cage.space.tally import enter_step, kinetic
+from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -79,7 +80,7 @@ def list_contacts(parts: Parts) -> None:
             if parts.kind[i] != NONE:
                 parts.touching[touching] = i
                 touching += 1
-    parts.count[0], parts.count[1] = touching, active
+    parts.listed[0], parts.listed[1] = touching, active
 
 
 @inlined_kernel
@@ -90,11 +91,11 @@ def step_length(p: Numbers, parts: Parts) -> float:
     for k in range(VX, VB + 1):
         scale += abs(first[k])
         last, before = max(last, abs(one[k])), max(before, abs(two[k]))
-    for b in range(parts.count[1]):
+    for b in range(parts.listed[1]):
         ball = parts.ball[parts.active[b]]
         last = max(last, abs(ball[ORDER, SPEED]), ORDER * abs(ball[ORDER, AXIAL]))
         before = max(before, abs(ball[ORDER - 1, SPEED]), (ORDER - 1) * abs(ball[ORDER - 1, AXIAL]))
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         c = parts.contact[parts.touching[a]]
         for k in (PUSH, RUB_R, FT, FZ):
             last = max(last, abs(c[ORDER - 1, k]) / ORDER)
@@ -108,7 +109,7 @@ def step_length(p: Numbers, parts: Parts) -> float:
         h = min(h, (scale / last) ** (1.0 / ORDER))
     if before > 0.0:
         h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
-    return h
+    return float(h)
 
 
 @inlined_kernel
@@ -127,11 +128,11 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
     state.vx, state.vy, state.vz, state.vs = cage[VX], cage[VY], cage[VZ], cage[VS]
     state.va, state.vb = cage[VA], cage[VB]
     state.clock += t
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         at_time(parts.contact[i], t, DEPTH + 1, here)
         parts.contact[i, 0, DEPTH] = here[DEPTH]
-    for b in range(parts.count[1]):
+    for b in range(parts.listed[1]):
         j = parts.active[b]
         at_time(parts.ball[j], t, STATE, here)
         ball = parts.ball[j, 0]
@@ -149,7 +150,7 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
 @inlined_kernel
 def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
     """Balls that touch nothing and hardly move come to rest in their orbit and their groove."""
-    for b in range(parts.count[1]):
+    for b in range(parts.listed[1]):
         j = parts.active[b]
         if parts.kind[2 * j] != NONE or parts.kind[2 * j + 1] != NONE:
             continue

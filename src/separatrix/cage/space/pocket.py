@@ -79,7 +79,7 @@ def place_pocket(p: Numbers, parts: Parts, j: int, n: int) -> None:
 @inlined_kernel
 def press_pockets(p: Numbers, parts: Parts, n: int) -> None:
     """Coefficient n of the penetration of all contacts, of the force and its direction."""
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         if parts.kind[i] == ROUND_END:
             measure_round(p, parts, i, n)
@@ -87,7 +87,7 @@ def press_pockets(p: Numbers, parts: Parts, n: int) -> None:
             press_flat(p, parts, i, n)
     if n == 0:
         return
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         if parts.kind[i] == ROUND_END:
             # |w| p = -w, coefficient by coefficient
@@ -142,7 +142,7 @@ def press_flat(p: Numbers, parts: Parts, i: int, n: int) -> None:
 @inlined_kernel
 def slide_pockets(p: Numbers, parts: Parts, now: Pace, n: int) -> None:
     """Coefficient n of the sliding of all contacts, outward and across the force."""
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         c, ball = parts.contact[i], parts.ball[i // 2]
         spin = now.share * (p.spin_t * c[n, PZ] - p.spin_z * c[n, PT])
@@ -164,7 +164,7 @@ def slide_pockets(p: Numbers, parts: Parts, now: Pace, n: int) -> None:
 @inlined_kernel
 def rub_pockets(p: Numbers, parts: Parts, n: int) -> None:
     """Coefficient n of the friction of all contacts: |v|^2 = v_r^2 + v_q^2 + v_0^2, and G |v| = f N."""
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         c = parts.contact[parts.touching[a]]
         if n == 0:
             c[0, SLIDE] = math.sqrt(c[0, SLIDE_R] ** 2 + c[0, SLIDE_Q] ** 2 + p.pivoting)
@@ -177,13 +177,13 @@ def rub_pockets(p: Numbers, parts: Parts, n: int) -> None:
             vv += c[m, SLIDE] * c[n - m, SLIDE]
         first = 2.0 * (c[0, SLIDE_R] * c[n, SLIDE_R] + c[0, SLIDE_Q] * c[n, SLIDE_Q])
         c[n, SLIDE] = 0.5 * (first + rr + qq - vv) * c[0, PER_SLIDE]
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         c = parts.contact[parts.touching[a]]
         share = 0.0
         for m in range(1, n + 1):
             share += c[m, SLIDE] * c[n - m, SHARE]
         c[n, SHARE] = (p.friction * c[n, PUSH] - share) * c[0, PER_SLIDE]
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         c = parts.contact[parts.touching[a]]
         out = across = 0.0
         for m in range(n + 1):
@@ -196,7 +196,7 @@ def rub_pockets(p: Numbers, parts: Parts, n: int) -> None:
 @inlined_kernel
 def sum_pockets(parts: Parts, n: int) -> None:
     """Coefficient n of all contacts' forces along the axis and the orbit, and of their couples."""
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         c = parts.contact[i]
         if parts.kind[i] != ROUND_END:

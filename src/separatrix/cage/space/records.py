@@ -154,7 +154,7 @@ class Parts(NamedTuple):
     strip: Array  # shape (strip, power, column)
     touching: Whole  # contacts that touch, in order
     active: Whole  # balls that move, in order
-    count: Whole  # how many of both
+    listed: Whole  # how many of both
     c: Array  # room for a series
     here: Array  # values at a time: of the cage, a ball, a contact, a strip, shape (4, column)
 
@@ -379,7 +379,7 @@ def parts_of(cage: PlanarCage) -> Parts:
         strip=np.zeros((heights.size, POWERS, STRIP_COLUMNS)),
         touching=np.zeros(2 * Z, np.int64),
         active=np.zeros(Z, np.int64),
-        count=np.zeros(2, np.int64),
+        listed=np.zeros(2, np.int64),
         c=np.zeros(POWERS),
         here=np.zeros((4, CAGE_COLUMNS)),
     )

@@ -128,20 +128,20 @@ def enter_step(
         ux, uy = cage[VX], cage[VY]
         enter_motion(p, cage, weight, look)
         frame_work(p, cage, now, at, weight, step)
-        for b in range(parts.count[1]):
+        for b in range(parts.listed[1]):
             pocket_work(p, parts, parts.active[b], now, at, weight, step, heat)
         for k in range(parts.mode.size):
             if parts.mode[k] != CLEAR:
                 strip_work(p, parts, k, now, at, weight, step, look)
     # What the pockets do less what their springs have taken: their friction
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         i = parts.touching[a]
         before, depth = parts.contact[i, 0, DEPTH], parts.contact[i, ORDER, DEPTH]
         for n in range(ORDER - 1, -1, -1):
             depth = depth * t + parts.contact[i, n, DEPTH]
         step.pocket_friction += 0.5 * p.stiffness * (depth - before) * (depth + before)
     close(works, step)
-    for a in range(parts.count[0]):
+    for a in range(parts.listed[0]):
         scaled(parts.contact[parts.touching[a]], PUSH, h, parts.c)
         look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
     for k in range(parts.mode.size):

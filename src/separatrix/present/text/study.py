@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import asin, degrees, isclose, pi
 from typing import TYPE_CHECKING, Any
 
+from separatrix.cage_body import cage_inertia
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.present.text.tables import (
     ABSENT,
@@ -40,7 +41,8 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
         material = {None: "", "given in the study": "material given in the study, "}.get(name, f"{name}, ")
         kind = study.cage.guidance.value
         guided = "guided by the balls" if kind == "ball" else f"{kind}-guided"
-        lines.append(("Cage", f"{material}{shown(study.cage.mass, 'kg')}, {guided}"))
+        mass = cage_inertia(study.cage, study.bearing).mass
+        lines.append(("Cage", f"{material}{shown(mass, 'kg')}, {guided}"))
         lines += clearances(study.cage)
     if study.ranking is not None:
         names = ", ".join(candidate.name for candidate in study.ranking.candidates)

@@ -1,0 +1,59 @@
+"""What a study's cage has in space."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from separatrix.cage.space_body import SpaceBody
+from separatrix.pocket_shape import PocketShape
+from separatrix.study import Guidance
+from separatrix.units import MetrePerSecond, NewtonPerMetre
+
+if TYPE_CHECKING:
+    from separatrix.cage_body import CageInertia
+    from separatrix.chain.contacts import BearingState
+    from separatrix.chain.mobility import Mobility
+    from separatrix.study import BallBearing, CageDesign, StabilitySettings
+
+
+def space_body(
+    design: CageDesign,
+    bearing: BallBearing,
+    state: BearingState,
+    mobility: Mobility,
+    settings: StabilitySettings,
+    *,
+    stiffness: NewtonPerMetre,
+    inertia: CageInertia,
+    impact_speed: MetrePerSecond,
+) -> SpaceBody:
+    """What the cage has in space: inertia, the spin of the balls, the yielding of their grooves, lands.
+
+    The balls spin as on average; the pivoting speed is that of a contact as wide as in an impact at the
+    impact speed: 8/(3 pi) times its radius and the ball's spin (Contensou).
+    """
+    spin = state.equilibrium.ball_spin.mean(axis=0)
+    depth = impact_speed * math.sqrt(inertia.mass / 2.0 / stiffness)
+    radius = math.sqrt(bearing.ball_diameter / 2.0 * depth)
+    spacing = design.land_spacing or 0.0
+    square = design.pocket_shape is PocketShape.SQUARE
+    outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
+    land = design.land_diameter or outer
+    return SpaceBody(
+        transverse_inertia=inertia.transverse_inertia,
+        ball_spin=(float(spin[0]), float(spin[1]), float(spin[2])),
+        ball_diameter=bearing.ball_diameter,
+        axial_play=design.pocket_clearance / 2.0 if square else math.inf,
+        groove_damping=mobility.linear.groove_damping,
+        groove_stiffness=mobility.linear.groove_stiffness,
+        pivot_speed=8.0 / (3.0 * math.pi) * radius * math.hypot(*spin),
+        land_heights=(-spacing / 2.0, spacing / 2.0) if design.land_count == 2 else (0.0,),
+        land_width=design.land_width,
+        land_radius=land / 2.0 if land is not None else None,
+        axial_gravity=design.axial_gravity,
+        dynamic_unbalance=design.dynamic_unbalance,
+        added_mass=design.added_mass,
+        axial_kick=settings.axial_kick,
+        tilt_kick=settings.tilt_kick,
+    )
