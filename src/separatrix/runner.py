@@ -301,7 +301,7 @@ def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, 
     at = 0
     values: dict[str, Any] = {}
     for name, size in sizes.items():
-        kind = np.int64 if name in WHOLE_NUMBERS else np.float64
-        values[name] = np.frombuffer(data, kind, size, at).reshape(shapes[name])
+        number = np.int64 if name in WHOLE_NUMBERS else np.float64
+        values[name] = np.frombuffer(data, number, size, at).reshape(shapes[name])
         at += 8 * size
     return kind(**values | {"duration": float(values["duration"])})

@@ -189,7 +189,6 @@ class Works:
     land_damping: float
     gravity: float
     moving_frame: float
-    unbalance: float
     gross: float
 
 
