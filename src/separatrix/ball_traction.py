@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -53,6 +53,14 @@ class BallTraction:
     def capacity(self) -> Newton:
         """Largest force of the law, at infinite speed; infinite with a damper."""
         return sum(c * v for c, v in zip(self.slopes, self.speeds, strict=True))
+
+    def stiffened(self, ratio: float) -> BallTraction:
+        """Return the law with slopes this many times as large, of the same capacity and mass."""
+        return replace(
+            self,
+            slopes=tuple(c * ratio for c in self.slopes),
+            speeds=tuple(v / ratio for v in self.speeds),
+        )
 
     def force(self, speed: Array) -> Array:
         """F(u) at speeds beyond the free orbit, same shape [N]."""
