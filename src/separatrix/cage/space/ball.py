@@ -33,25 +33,26 @@ def traction(p: Numbers, parts: Parts, j: int, now: Pace, n: int) -> float:
     ball[n, SLOW] = ball[n, SPEED] / now.share
     if n > 0:
         ball[n, SLOW] -= now.rise * ball[n - 1, SLOW] / now.share
-    square = 0.0
-    for m in range(n + 1):
+    slow = ball[n, SLOW]
+    square = 2.0 * slow * ball[0, SLOW] if n > 0 else slow * slow
+    for m in range(1, n):
         square += ball[m, SLOW] * ball[n - m, SLOW]
     total = 0.0
     for k in range(p.elements):
         w, g = ELEMENTS + 2 * k, ELEMENTS + 2 * k + 1
-        ball[n, w] = parts.steep[k] * square
+        here = parts.steep[k] * square
         if n == 0:
-            ball[0, w] += 1.0
+            ball[0, w] = 1.0 + here
             ball[0, g] = 1.0 / math.sqrt(ball[0, w])
-        else:
-            power = 0.0
-            for m in range(n):
-                power -= 0.5 * (n + m) * ball[n - m, w] * ball[m, g]
-            ball[n, g] = power / (n * ball[0, w])
-        force = 0.0
-        for m in range(n + 1):
+            total += parts.slope[k] * ball[0, g] * slow
+            continue
+        power = force = 0.0
+        for m in range(1, n):
+            power -= 0.5 * (n + m) * ball[n - m, w] * ball[m, g]
             force += ball[m, g] * ball[n - m, SLOW]
-        total += parts.slope[k] * force
+        ball[n, w] = here
+        ball[n, g] = (power - 0.5 * n * here * ball[0, g]) / (n * ball[0, w])
+        total += parts.slope[k] * (force + ball[0, g] * slow + ball[n, g] * ball[0, SLOW])
     return total
 
 
