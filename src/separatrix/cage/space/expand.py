@@ -35,6 +35,8 @@ from separatrix.cage.space.records import (
     GY,
     LAST,
     LEAN,
+    MOMENT_A,
+    MOMENT_B,
     NONE,
     PRESSED,
     PUSH,
@@ -59,15 +61,12 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
-from separatrix.cage.step import LONGEST
+from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 FEW, MORE = 7, 10
 """Powers at which the series may end where a step is short; else they go on to `ORDER`."""
-
-PRECISION = 2.0**-32
-"""Share of the speeds below which the last terms of a series must be: balances of work close to 1e-11."""
 
 
 @inlined_kernel
@@ -277,6 +276,12 @@ def accelerate(
         for m in range(n + 1):
             cross = cage[m, COS] * cage[n - m, FORCE_Y] - cage[m, SIN] * cage[n - m, FORCE_X]
             ts -= p.eccentricity * cross / p.radius
+    if p.leaning != 0.0:
+        # The geometric axis, on which the contacts' moments act, leans by L (sin theta, -cos theta) more
+        cage[n, MOMENT_A], cage[n, MOMENT_B] = ta, tb
+        for m in range(n + 1):
+            turned = cage[m, COS] * cage[n - m, MOMENT_A] + cage[m, SIN] * cage[n - m, MOMENT_B]
+            ts += p.leaning * turned / p.radius
     twist, axial = 0.0, 0.0
     if n == 0:
         twist, axial = -rise * p.radius, p.axial_gravity

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 X, Y, Z, S, A, B, VX, VY, VZ, VS, VA, VB = range(12)
 """Of the cage: centre of mass, slip of rotation, tilt about x and y times R; and their rates."""
 
-GX, GY, GA, GB, COS, SIN, FORCE_X, FORCE_Y = range(12, 20)
-"""Geometric centre and tilt; cosine and sine of the rotation; force of the contacts across the axis."""
+GX, GY, GA, GB, COS, SIN, FORCE_X, FORCE_Y, MOMENT_A, MOMENT_B = range(12, 22)
+"""Geometric centre and tilt; cosine and sine of the rotation; force of the contacts across the axis, and
+their moments about x and y."""
 
-FRAME = 20
+FRAME = 22
 """First column of cosine and sine of the turning of the frame and of its multiples, and after them of the
 ways that free balls go by these."""
 
@@ -297,7 +298,7 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
         spin_z=spin[0],
         spin_r=spin[1],
         spin_t=spin[2],
-        pivoting=(body.pivot_speed * T) ** 2,
+        pivoting=(max(body.pivot_speed, LEAST_PIVOT) * T) ** 2,
         lever=body.lever / R,
         yielding=M / (cage.race_damping * T) if law is None else 0.0,
         groove_yielding=M / (body.groove_damping * T),
@@ -324,6 +325,9 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
     )
     return cast("Numbers", np.array([tuple(given)], dtype_of(Numbers))[0])
 
+
+LEAST_PIVOT = 1e-9
+"""Pivoting speed that keeps a friction finite where nothing slides [m/s]."""
 
 STILL_PLAY = 1e-9
 """Share of the clearance that a ball that is called at rest would still have gone."""

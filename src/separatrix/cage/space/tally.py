@@ -277,7 +277,7 @@ def pocket_work(
         vy * cos - vx * sin + cage[VS],
         cage[VZ] - (vb * cos - va * sin),
     )
-    tilt_r, tilt_t = cage[VA] * cos + cage[VB] * sin, cage[VB] * cos - cage[VA] * sin
+    tilt_r, tilt_t = va * cos + vb * sin, vb * cos - va * sin
     force_t = force_z = 0.0
     for i in range(2 * j, 2 * j + 2):
         if parts.kind[i] == NONE:
@@ -296,7 +296,7 @@ def pocket_work(
         speed = value_at(ball, SPEED, last, at)
         step.races -= weight * value_at(ball, HOLD, last, at) * speed
     step.grooves -= weight * give * settles
-    step.ball_drive -= weight * force_t * free
+    step.ball_drive += weight * force_t * free
     step.pocket_friction -= weight * (force_t * (speed + free) + force_z * settles)
 
 
