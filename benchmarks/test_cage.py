@@ -1,4 +1,4 @@
-"""Speed of the cage in the plane and in space: simulated seconds and impacts per second and core, of the shipped class too.
+"""Speed of the cage in the plane and in space: simulated seconds and impacts per second and core.
 
 Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
 second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`, with the impacts
