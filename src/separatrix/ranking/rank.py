@@ -54,7 +54,7 @@ Key = tuple[NewtonPerMetre, Ratio]
 
 
 Piece = tuple[NewtonPerMetre, Ratio | Node] | Case | Second
-"""A verdict, or with the pocket stiffness a node of its curve; of a case's drawn bearings; a second verdict."""
+"""A verdict, or with the pocket stiffness a node of its curve; of drawn bearings; a second verdict."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
+from separatrix.present.text.second import by_the_other_ball
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
@@ -83,6 +84,7 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
         paragraph(in_short(found), indent=""),
         section(_title(found.environment), verdicts(rows), *legend),
         *_over_inputs(rows, study),
+        *by_the_other_ball(found, rows),
         section(
             f"Evidence: {_ensemble(found)}",
             _short_evidence(rows),
@@ -116,6 +118,7 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         paragraph(in_short(found), indent=""),
         environment(found, own),
         *_over_inputs(own.materials, study),
+        *by_the_other_ball(found, own.materials),
         paragraph(LEGEND),
         paragraph(EVIDENCE_LEGEND),
         *detail,
