@@ -288,7 +288,7 @@ def own_left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: fl
     if row.change == 0:
         return row.start + float(balls.side[j]) * depth_change(balls, j, t)
     sign = -float(row.change)
-    left = balls.play[j] + p.onset
+    left: float = balls.play[j] + p.onset
     left += sign * (balls.cosine[j] * now[1] - balls.sine[j] * now[0] + now[2] - balls.lead[j])
     left -= sign * way_at(balls, j, t)
     return left - sign * gone_at(p, balls, room.gone[AT_END], j)
