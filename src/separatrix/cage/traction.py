@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from separatrix.cage.records import (
+    AT_END,
     BENT,
     CREEP,
     GRIP,
@@ -21,14 +22,16 @@ from separatrix.cage.records import (
     TRACTION,
     WAY,
     Balls,
+    Candidate,
     Coefficients,
     Ledger,
     Pace,
+    Room,
     Series,
     State,
     Whole,
 )
-from separatrix.cage.series import AFTER, bends, centre, copy_column, knots, value
+from separatrix.cage.series import AFTER, Place, bends, centre, copy_column, gone_at, knots, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -276,6 +279,19 @@ def way_knots(
 def depth_change(balls: Balls, j: int, t: float) -> float:
     """How much an own series of a penetration has risen at a time."""
     return value(balls.depth[:, j], t) - float(balls.depth[0, j])
+
+
+@inner_kernel
+def own_left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float, room: Room) -> float:
+    """What is queued, as `events.left_at`, of pockets with own series and of balls that coast."""
+    j = row.ball
+    if row.change == 0:
+        return row.start + float(balls.side[j]) * depth_change(balls, j, t)
+    sign = -float(row.change)
+    left: float = balls.play[j] + p.onset
+    left += sign * (balls.cosine[j] * now[1] - balls.sine[j] * now[0] + now[2] - balls.lead[j])
+    left -= sign * way_at(balls, j, t)
+    return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 
 @inner_kernel
