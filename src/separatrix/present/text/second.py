@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 HEADERS = ("material", "damper:\nP(stable)", "\nverdict", "force over\ncapacity", "traction:\nP(stable)")
 MORE_HEADERS = ("\nverdict", "force over\ncapacity")
 WHY = {
-    True: "beyond its traction a ball slides along with the cage and takes the energy of the impact, where the "
-    "damper returns it",
+    True: "beyond its traction a ball slides along with the cage and takes the energy of the impact, where "
+    "the damper returns it",
     False: "a ball with traction yields less to weak impacts than the damper, and goes on moving after them",
 }
 """Why the model with traction may find more runs stable, or fewer."""
@@ -25,21 +25,23 @@ WHY = {
 
 def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
     """Return verdicts by both models of a ball, and where they differ; nothing where forces are small."""
-    both = []
+    runs = 0
+    both: list[tuple[str, Judgement, Judgement]] = []
     for row in rows:
         if isinstance(row, NotMeasured) or row.judgement is None or row.other_ball is None:
             continue
-        pair = (row.judgement, row.other_ball)
-        both.append((row.name, *(pair if found.ball is BallModel.DAMPER else pair[::-1])))
+        first, second = row.judgement, row.other_ball
+        runs = second.runs
+        is_damper = found.ball is BallModel.DAMPER
+        both.append((row.name, first, second) if is_damper else (row.name, second, first))
     if not both:
         return []
     cells = [[name, *_cells(found, damper), *_cells(found, traction)] for name, damper, traction in both]
-    runs = both[0][2 if found.ball is BallModel.DAMPER else 1].runs
-    largest = max(one.largest_contact_force for _, damper, _ in both for one in [damper])
+    largest = max(damper.largest_contact_force for _, damper, _ in both)
     text = (
         f"The races transmit at most {quantity(found.capacity, 'N', 3)} to a ball before it slides; the "
-        f"damper presses pockets with up to {quantity(largest, 'N', 3)}. The other model has {runs} runs from "
-        f"each kick. {_differences(both)}"
+        f"damper presses pockets with up to {quantity(largest, 'N', 3)}. The other model has {runs} runs "
+        f"from each kick. {_differences(both)}"
     )
     title = "Balls as dampers (the paper), and with their inertia and the traction of their races"
     return [section(title, table((*HEADERS, *MORE_HEADERS), cells, left=1), "", paragraph(text))]
