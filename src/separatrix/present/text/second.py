@@ -32,7 +32,7 @@ def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
             continue
         first, second = row.judgement, row.other_ball
         runs = second.runs
-        is_damper = found.ball is BallModel.DAMPER
+        is_damper = found.ball_model is BallModel.DAMPER
         both.append((row.name, first, second) if is_damper else (row.name, second, first))
     if not both:
         return []
