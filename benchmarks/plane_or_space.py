@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import separatrix
-from separatrix.cage import PlanarCage, SpaceBody
+from separatrix.cage import PlanarCage
 from separatrix.limits import critical_friction
 from separatrix.limits.growth import GrowthCounter
 from separatrix.study import BallModel, MotionModel, PocketShape, StabilitySettings
@@ -74,6 +74,8 @@ def rows(ball: BallModel) -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    print("ball,pocket_shape,pitch_deg,kick_m_s,cage_speed_rad_s,plane,plane_low,plane_high,space,space_low,space_high")
+    print(
+        "ball,pocket_shape,pitch_deg,kick_m_s,cage_speed_rad_s,plane,plane_low,plane_high,space,space_low,space_high"
+    )
     for line in rows(BallModel(sys.argv[1]) if len(sys.argv) > 1 else BallModel.DAMPER):
         print(line, flush=True)
