@@ -1,7 +1,7 @@
 """Critical friction in the plane against that in space, over speed, pocket shape, pitch angle and kick.
 
-python benchmarks/plane_or_space.py > docs/theory/plane-or-space.csv: about half an hour on two cores. The cage
-is that of the shipped turbopump with its outer land; its balls spin as they do at full speed.
+python benchmarks/plane_or_space.py > docs/theory/plane-or-space.csv: about half an hour on two cores. The
+cage is that of the shipped turbopump with its outer land; its balls spin as they do at full speed.
 """
 
 from __future__ import annotations
