@@ -14,7 +14,7 @@ from separatrix.study import BallBearing, BallModel, Material, MotionModel, Pock
 from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
 
 SLOW: Ratio = 5.0
-"""Reference kick over the pocket speed from which rotation no longer keeps a cage with round pockets level."""
+"""Reference kick over the pocket speed beyond which a cage with round pockets may tilt rather than whirl."""
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
@@ -83,8 +83,8 @@ def _beyond_plane(solution: Solution) -> Iterator[str]:
     if kick > SLOW * speed:
         yield (
             f"The pockets are round, and the reference kick, {kick:.3g} m/s, is more than {SLOW:g} times the "
-            f"speed {speed:.3g} m/s of a cage half a pocket clearance off the axis: so slow a rotation lets a "
-            "cage tilt, and it may whirl at lower friction than in the plane. Check with `--motion space`."
+            f"speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So slow a rotation "
+            "lets a cage tilt, and it may whirl at lower friction than in the plane: `--motion space`."
         )
 
 
