@@ -84,7 +84,7 @@ def _beyond_plane(solution: Solution) -> Iterator[str]:
         yield (
             f"The pockets are round, and the reference kick, {kick:.3g} m/s, is more than {SLOW:g} times the "
             f"speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So slow a rotation "
-            "lets a cage tilt, and it may whirl at lower friction than in the plane: `--motion space`."
+            "lets a cage tilt, and the plane may be far off: `--motion space` shows it."
         )
 
 
