@@ -180,4 +180,4 @@ def test_the_answer_names_its_models(capsys, tmp_path, monkeypatch):
     """The origin of a model that is asked for on the command line is the option."""
     monkeypatch.chdir(tmp_path)
     found = document(capsys, "simulate", "cryogenic-turbopump", "--ball", "traction")
-    assert found["provenance"]["inputs"]["cage"]["ball"] == {"value": "traction", "origin": "--ball traction"}
+    assert found["study"]["cage"]["ball"] == {"value": "traction", "origin": "--ball traction"}
