@@ -82,9 +82,9 @@ def _beyond_plane(solution: Solution) -> Iterator[str]:
     kick = max(solution.stability.kicks)
     if kick > STRONG * speed:
         yield (
-            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times the "
-            f"speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage tilts, "
-            "and in space it may whirl at a fifth to a third less friction: `--motion space` shows it."
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
+            f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
+            "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
         )
 
 
