@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from separatrix.cage import Judgement
     from separatrix.ranking import Ranking, Row
 
-HEADERS = ("material", "damper:\nP(stable)", "\nverdict", "force over\ncapacity", "traction:\nP(stable)")
-MORE_HEADERS = ("\nverdict", "force over\ncapacity")
+HEADERS = ("material", "damper:\nverdict", "force over\ncapacity")
+MORE_HEADERS = ("traction:\nverdict", "P(stable)\n(95 %)", "force over\ncapacity")
 WHY = {
     True: "beyond its traction a ball slides along with the cage and takes the energy of the impact, where "
     "the damper returns it",
@@ -37,6 +37,9 @@ def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
     if not both:
         return []
     cells = [[name, *_cells(found, damper), *_cells(found, traction)] for name, damper, traction in both]
+    for row, (_, _, traction) in zip(cells, both, strict=True):
+        ends = traction.probability_low, traction.probability_high
+        row.insert(-1, interval(traction.probability_stable, *ends))
     largest = max(damper.largest_contact_force for _, damper, _ in both)
     text = (
         f"The races transmit at most {quantity(found.capacity, 'N', 3)} to a ball before it slides; the "
@@ -48,8 +51,7 @@ def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
 
 
 def _cells(found: Ranking, one: Judgement) -> list[str]:
-    share = interval(one.probability_stable, one.probability_low, one.probability_high)
-    return [share, one.verdict.name, f"{one.largest_contact_force / found.capacity:.2g}"]
+    return [one.verdict.name, f"{one.largest_contact_force / found.capacity:.2g}"]
 
 
 def _differences(both: Sequence[tuple[str, Judgement, Judgement]]) -> str:
