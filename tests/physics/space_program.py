@@ -14,7 +14,6 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from separatrix.cage import PlanarCage
-from separatrix.cage.space.records import body_of
 from separatrix.units import Array
 
 
@@ -76,15 +75,17 @@ class SmallSteps:
     its lead and its place along the groove.
     """
 
-    def __init__(self, plane: PlanarCage) -> None:
-        self.body, self.plane = body_of(plane), plane
-        self.angles = np.array(plane.ball_angles)
-        across = self.body.transverse_inertia
-        self.inertia = np.diag([across, across, plane.moment_of_inertia])
+    def __init__(self, cage: PlanarCage) -> None:
+        if cage.space is None:
+            raise LookupError
+        self.cage, self.plane = cage.space, cage
+        self.angles = np.array(cage.ball_angles)
+        across = cage.space.transverse_inertia
+        self.inertia = np.diag([across, across, cage.moment_of_inertia])
 
     def forces(self, t: float, state: Array) -> tuple[Array, Array, Array]:
         """Force and moment on the cage, and the rates of the balls, shape (ball, 2)."""
-        body, plane, D = self.body, self.plane, self.body.ball_diameter
+        cage, plane, D = self.cage, self.plane, self.cage.ball_diameter
         r, v, w = state[:3], state[7:10], state[10:13]
         turned = Rotation.from_quat(state[3:7])
         balls = state[13:].reshape(-1, 2)
@@ -99,16 +100,16 @@ class SmallSteps:
             if depth > 0.0:
                 push = plane.ball_cage_stiffness * depth
                 ball_speed = plane.cage_speed * np.cross([0.0, 0.0, 1.0], ball)
-                spin = body.ball_spin[0] * np.array([0.0, 0.0, 1.0])
-                spin = spin + body.ball_spin[1] * out + body.ball_spin[2] * along
+                spin = cage.ball_spin[0] * np.array([0.0, 0.0, 1.0])
+                spin = spin + cage.ball_spin[1] * out + cage.ball_spin[2] * along
                 spin = spin + np.array([0.0, 0.0, plane.cage_speed])
                 _, slip = sliding(v, w, r, ball, ball_speed, spin, away, D / 2.0)
-                rub = plane.ball_cage_friction * push * slip / math.sqrt(slip @ slip + body.pivot_speed**2)
+                rub = plane.ball_cage_friction * push * slip / math.sqrt(slip @ slip + cage.pivot_speed**2)
                 pull = push * away + rub
                 force += pull
-                moment += np.cross(ball - r, push * away) + np.cross(ball + body.lever * away - r, rub)
+                moment += np.cross(ball - r, push * away) + np.cross(ball + cage.lever * away - r, rub)
             rates[j, 0] = -pull @ along / plane.race_damping
-            rates[j, 1] = (-pull[2] - body.groove_stiffness * axial) / body.groove_damping
+            rates[j, 1] = (-pull[2] - cage.groove_stiffness * axial) / cage.groove_damping
         return force, moment, rates
 
     def rates(self, t: float, state: Array) -> Array:
@@ -117,22 +118,19 @@ class SmallSteps:
         turned = Rotation.from_quat(state[3:7])
         w = state[10:13]
         local = turned.inv().apply(w)
-        twist = np.linalg.solve(
-            self.inertia, turned.inv().apply(moment) - np.cross(local, self.inertia @ local)
-        )
+        own = turned.inv().apply(moment) - np.cross(local, self.inertia @ local)
+        twist = turned.apply(np.linalg.solve(self.inertia, own))
         x, y, z, s = state[3:7]
         spin = 0.5 * np.array(
             [s * w[0] + w[1] * z - w[2] * y, s * w[1] + w[2] * x - w[0] * z, s * w[2] + w[0] * y - w[1] * x,
              -w[0] * x - w[1] * y - w[2] * z]
         )  # fmt: skip
-        return np.concatenate(
-            [state[7:10], spin, force / self.plane.mass, turned.apply(twist), balls.ravel()]
-        )
+        return np.concatenate([state[7:10], spin, force / self.plane.mass, twist, balls.ravel()])
 
     def run(self, speed: Array, spin: Array, leads: Array, times: Array, step: float) -> Array:
         """States in the frame that turns with the balls: x, y, z, tilt about x, y and z, at all times."""
         W = self.plane.cage_speed
-        start = np.concatenate([np.zeros(3), [0.0, 0.0, 0.0, 1.0], speed, spin + np.array([0.0, 0.0, W])])
+        start = np.concatenate([np.zeros(3), [0.0, 0.0, 0.0, 1.0], speed, [*spin[:2], spin[2] + W]])
         start = np.concatenate([start, np.stack([leads, 0.0 * leads], 1).ravel()])
         found = solve_ivp(
             self.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-13,

@@ -73,7 +73,7 @@ def space_body(
 
 
 def warn_if_balls_are_driven(cage: PlanarCage) -> None:
-    """Warn where free balls would lead and lag by more than their clearance, so that the pockets drive them."""
+    """Warn where free balls would lead and lag by more than their clearance."""
     if cage.lead_amplitude > cage.half_play:
         lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
         warnings.warn(

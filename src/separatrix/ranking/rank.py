@@ -54,7 +54,7 @@ Key = tuple[NewtonPerMetre, Ratio]
 
 
 Piece = tuple[NewtonPerMetre, Ratio | Node] | Case | Second
-"""A verdict, or with the pocket stiffness a node of its curve; of a case's drawn bearings; a second verdict."""
+"""A verdict, or with the pocket stiffness a node of its curve; of drawn bearings; a second verdict."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,8 +148,8 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             kicks=question.settings.kicks,
             runs=question.settings.runs,
             duration=question.settings.duration,
-            ball=reference.design.ball,
-            motion=reference.design.motion,
+            ball_model=reference.design.ball,
+            motion_model=reference.design.motion,
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, ranked[environment]),
             complete=found.complete,

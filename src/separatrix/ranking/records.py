@@ -138,9 +138,9 @@ class Ranking:
     unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
     Where candidates differ in stiffness, each has its curve in `own_curves`, at the restitution factors
     `own_eta`. `notes` say where pocket forces or offsets leave the range of the model. `complete` is False if
-    an interrupt left something out. `ball` and `motion` are the models of the verdicts, `capacity` is what
-    the races can transmit to the most loaded ball; beyond a tenth of it each candidate has a second verdict,
-    by the other model of the ball.
+    an interrupt left something out. `ball_model` and `motion_model` are those of the verdicts, `capacity` is
+    what the races can transmit to the most loaded ball; beyond a tenth of it each candidate has a second
+    verdict, by the other model of the ball.
     """
 
     environment: str
@@ -160,8 +160,8 @@ class Ranking:
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int
     duration: Second
-    ball: BallModel
-    motion: MotionModel
+    ball_model: BallModel
+    motion_model: MotionModel
     capacity: Newton
     notes: tuple[str, ...] = ()
     complete: bool

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 from separatrix.cage import Judgement, PlanarCage, judge
 from separatrix.chain.solution import Solution, solve
@@ -17,7 +16,8 @@ NOTICED: Ratio = 0.1
 percent below its slope."""
 
 
-class Second(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Second:
     """What a second verdict is about."""
 
     stiffness: NewtonPerMetre
