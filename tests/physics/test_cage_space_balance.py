@@ -90,9 +90,8 @@ def drawn(rng):
         }
     if pick(2):
         elements = pick(1, 3)
-        plane["traction"] = BallTraction(
-            mass=6e-3, slopes=(188.0, 50.0)[:elements], speeds=(0.4, 2.0)[:elements]
-        )
+        slopes, speeds, sharpness = (188.0, 50.0)[:elements], (0.4, 2.0)[:elements], int(rng.choice([2, 4]))
+        plane["traction"] = BallTraction(mass=6e-3, slopes=slopes, speeds=speeds, sharpness=sharpness)
     body = {
         "land_heights": (-6e-3, 6e-3) if guided and lands == 2 else (0.0,),
         "land_width": float(rng.choice([0.0, 3e-3])),
