@@ -13,8 +13,8 @@ from separatrix.chain.solution import Solution
 from separatrix.study import BallBearing, BallModel, Material, MotionModel, PocketShape, Study
 from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
 
-SLOW: Ratio = 5.0
-"""Reference kick over the pocket speed beyond which a cage with round pockets may tilt rather than whirl."""
+STRONG: Ratio = 5.0
+"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
@@ -77,14 +77,14 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
 
 
 def _beyond_plane(solution: Solution) -> Iterator[str]:
-    """A sentence where a cage with round pockets turns so slowly that it may tilt more than it whirls."""
+    """A sentence where a cage with round pockets is kicked so hard that it tilts."""
     speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
-    kick = solution.stability.middle_kick
-    if kick > SLOW * speed:
+    kick = max(solution.stability.kicks)
+    if kick > STRONG * speed:
         yield (
-            f"The pockets are round, and the reference kick, {kick:.3g} m/s, is more than {SLOW:g} times the "
-            f"speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So slow a rotation "
-            "lets a cage tilt, and it may whirl at lower friction than in the plane: `--motion space`."
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
+            f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
+            "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
         )
 
 

@@ -37,9 +37,9 @@ def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
     if not both:
         return []
     cells = [[name, *_cells(found, damper), *_cells(found, traction)] for name, damper, traction in both]
-    for row, (_, _, traction) in zip(cells, both, strict=True):
+    for cell, (_, _, traction) in zip(cells, both, strict=True):
         ends = traction.probability_low, traction.probability_high
-        row.insert(-1, interval(traction.probability_stable, *ends))
+        cell.insert(-1, interval(traction.probability_stable, *ends))
     largest = max(damper.largest_contact_force for _, damper, _ in both)
     text = (
         f"The races transmit at most {quantity(found.capacity, 'N', 3)} to a ball before it slides; the "
