@@ -1,6 +1,6 @@
 """Critical friction of round pockets, with the tilt held and free, over starts, spacing, lands and balls.
 
-python benchmarks/round_pockets.py: some minutes. A turbopump's cage: 13 balls, 25 g, 3e6 N/m, .3 mm of play, a
+python benchmarks/round_pockets.py: some minutes. A turbopump cage: 13 balls, 25 g, 3e6 N/m, .3 mm of play, a
 kick of .5 m/s. A run counts as growing if its end energy exceeds that of its kick; weak whirls that friction
 sustains do not count here.
 """
