@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -68,7 +69,7 @@ class Whirl:
     cage_speed : float
         Mean angular speed :math:`\omega_c` of the cage about the bearing axis [rad/s].
     offset_ratio, tilt_ratio : float or None
-        :math:`\int (r \times r')_x dt / (\omega_c \int |r|^2 dt)` of the centre's offset, and of the lean of
+        :math:`\int (r \times r')_z dt / (\omega_c \int |r|^2 dt)` of the centre's offset, and of the lean of
         the axis (a cone): 1 turns with the cage, 0 stands still in space. None without a motion or rotation.
     tilt_phase : float or None
         Angle from the offset to the lean, in the sense of the rotation: 0 is a forward cone, whose axis leans
@@ -152,7 +153,7 @@ class Rubbing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpaceAnalysis:
-    """What one run in space shows; statistics are of its judged part unless stated.
+    r"""What one run in space shows; statistics are of its judged part unless stated.
 
     Attributes
     ----------
@@ -217,7 +218,7 @@ def analyse(cage: PlanarCage, history: SpaceHistory, *, capacity: Newton | None 
             axial=history.position[:, 2],
             slip_rate=history.rotation_rate,
         ),
-        impacts=_impacts(cage, history, speed),
+        impacts=_impacts(history, speed),
         rubbing=_rubbing(cage, history),
         force_share=share,
     )
@@ -303,7 +304,7 @@ def _whirl(history: SpaceHistory, speed: Array, here: slice) -> Whirl:
         return mean, _ratio(orbit, mean), _ratio(cone, mean)
 
     edges = np.unique(np.linspace(0, time.size - 1, WINDOWS + 1).astype(int))
-    windows = [slice(int(a), int(b) + 1) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    windows = [slice(int(a), int(b) + 1) for a, b in pairwise(edges)]
     found = [ratios(window) for window in windows]
     slips = [cage_slip(time[one], speed[one], history.rotation_rate[one]) for one in windows]
     mean, offset, tilt = ratios(here)
@@ -321,7 +322,7 @@ def _whirl(history: SpaceHistory, speed: Array, here: slice) -> Whirl:
     )
 
 
-def _impacts(cage: PlanarCage, history: SpaceHistory, speed: Array) -> Impacts:
+def _impacts(history: SpaceHistory, speed: Array) -> Impacts:
     time = history.time
     seen = touches(time, history.contact_force, history.contact_angle)
     length, turns = float(time[-1]), integral(time, speed + history.rotation_rate) / (2.0 * math.pi)

@@ -22,7 +22,7 @@ class Spectra:
     frequency : ndarray
         Rises from negative (backward) to positive (forward, as the cage turns) [Hz].
     offset, lean : ndarray
-        Of the centre and of the lean of the cage's axis as complex numbers y + iz in the fixed frame.
+        Of the centre and of the lean of the cage's axis as complex numbers x + iy in the fixed frame.
     tone : ndarray
         From 0 up [Hz].
     axial, slip_rate : ndarray
