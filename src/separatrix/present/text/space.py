@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from separatrix.cage import SpaceAnalysis
     from separatrix.study import Study
 
+BASIS = 3
+"""Facts of the chain that leave the text on a screen: bearing, operation, film."""
+
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
@@ -40,7 +43,7 @@ def simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
         section("The run", facts(ended)),
         section(f"Motion in space: means {part}", facts([*_motion(found), clearance_fact(cage)])),
         section("Forces and rubbing of the whole run", facts(_forces(answer))),
-        section("What it holds for", facts(basis(study, answer))),
+        section("What it holds for", facts(basis(study, answer)[:BASIS])),
         paragraph(single, indent=""),
     ]
 
