@@ -62,7 +62,10 @@ def draw(
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
     with journal():
         if other is not None:
-            pair = [(literal_texts(one), name) for one, name in zip((data, other), names, strict=True)]
+            pair = [
+                (literal_texts(space.in_plane(one)), name)
+                for one, name in zip((data, other), names, strict=True)
+            ]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
             yield "comparison", settled(simulation.comparison(pair[0][0], pair[1][0], titles))
         elif verb in FIGURES:

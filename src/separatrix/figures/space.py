@@ -57,9 +57,15 @@ def is_in_space(data: xr.Dataset) -> bool:
 
 
 def in_plane(data: xr.Dataset) -> xr.Dataset:
-    """Return the run with the names of a planar one, for what draws its orbit and energy."""
+    """Return a run in space with the names of a planar one, for what draws or compares such; others as is."""
+    if not is_in_space(data):
+        return data
     return data.assign(
-        position=data["centre"], velocity=data["centre_velocity"], spring_energy=data["stored_energy"]
+        position=data["centre"],
+        velocity=data["centre_velocity"],
+        spring_energy=data["stored_energy"],
+        land_energy=0.0 * data["stored_energy"],
+        land_force=data["land_force"].sum("strip"),
     )
 
 
@@ -290,7 +296,8 @@ def _lands(axes: Axes, data: xr.Dataset) -> None:
         axes.set_ylim(0.0, 1.0)
         axes.set_title("c  Ball-guided: the cage has no land")
         return
-    for (name, force), look in zip(found, ({"color": VERMILION}, {"color": BLACK, "ls": "--"}), strict=False):
+    looks: tuple[Look, ...] = ({"color": VERMILION}, {"color": BLACK, "ls": "--"})
+    for (name, force), look in zip(found, looks, strict=False):
         axes.plot(milliseconds(data), force, lw=0.7, label=name, **look)
     most = max(float(force.max(initial=0.0)) for _, force in found)
     axes.set_ylim(0.0, 1.08 * most or 1.0)

@@ -127,9 +127,9 @@ def _pose(body: PolyCollection, at: SpaceScene, faces: Array, frame: int) -> Non
     widths = np.repeat([0.25, 0.8, 1.6], [len(flat), len(discs), len(rings)])
     order = np.argsort(depths, kind="stable")
     body.set_verts([shapes[i] for i in order])
-    body.set_facecolor(fills[order])
-    body.set_edgecolor(np.array(edge)[order])
-    body.set_linewidth(widths[order])
+    body.set_facecolor(list(map(tuple, fills[order])))
+    body.set_edgecolor([edge[i] for i in order])
+    body.set_linewidth(widths[order].tolist())
 
 
 def _shades(faces: Array, turn: float) -> Array:

@@ -164,7 +164,7 @@ def space_scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Spa
     enlarged = float(f"{max(1.0, min(most, default=1.0)):.2g}")
     land, thickness = land_boundary(data), 2.0 * THICK * ball
     side = 0 if land is None else (-1 if str(data["cage_guidance"].values) == "inner" else 1)
-    heights = np.atleast_1d(data["cage_space_land_heights"].values) if side else []
+    heights = np.atleast_1d(data["cage_space_land_heights"].values if side else np.zeros(0))
     return SpaceScene(
         radius=radius,
         ball=ball,
