@@ -64,7 +64,8 @@ SAMPLES_A_WHIRL = 15
 """Samples of a simulated run in a period of the linear whirl."""
 
 MOST_SHOWN = 20_000
-"""Samples of a simulated run."""
+FEWEST_SHOWN = (1000, 4000)
+"""Samples of a simulated run; the fewest in the plane, and in space, where axial impacts are shorter."""
 
 LAST_RUN = MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
@@ -302,7 +303,7 @@ def simulate(
         "seed": settings.seed,
         "duration": settings.duration,
         "ball_scatter": settings.ball_scatter,
-        "samples": int(min(max(samples, 1000), MOST_SHOWN)),
+        "samples": int(min(max(samples, FEWEST_SHOWN[cage.space is not None]), MOST_SHOWN)),
     }
     if cage.space is not None:
         course = simulate_in_space(cage, **asked)

@@ -66,7 +66,7 @@ def in_plane(data: xr.Dataset) -> xr.Dataset:
         spring_energy=data["stored_energy"],
         land_energy=0.0 * data["stored_energy"],
         land_force=data["land_force"].sum("strip"),
-    )
+    ).drop_vars("contact_angle")
 
 
 def course(data: xr.Dataset) -> Figure:

@@ -138,16 +138,16 @@ class Rubbing:
 
     Attributes
     ----------
-    pocket, land : ndarray
-        Of each pocket, shape (ball,), and of each land, shape (land,) [J].
+    pocket_sliding, land_sliding : ndarray
+        Of each pocket, shape (ball,), and of each land, shape (guide,) [J].
     pocket_power, land_power : ndarray
-        Friction times that, over the run: mean power turned into heat, shapes (ball,) and (land,) [W].
+        Friction times that, over the run: mean power turned into heat, shapes (ball,) and (guide,) [W].
     """
 
-    pocket: Annotated[Array, "J", ("ball",)]
-    land: Annotated[Array, "J", ("land",)]
+    pocket_sliding: Annotated[Array, "J", ("ball",)]
+    land_sliding: Annotated[Array, "J", ("guide",)]
     pocket_power: Annotated[Array, "W", ("ball",)]
-    land_power: Annotated[Array, "W", ("land",)]
+    land_power: Annotated[Array, "W", ("guide",)]
     total_power: Watt
 
 
@@ -379,8 +379,8 @@ def _rubbing(cage: PlanarCage, history: SpaceHistory) -> Rubbing:
     pocket_power = cage.ball_cage_friction * history.pocket_rubbing / length
     land_power = cage.land_friction * land / length
     return Rubbing(
-        pocket=history.pocket_rubbing,
-        land=land,
+        pocket_sliding=history.pocket_rubbing,
+        land_sliding=land,
         pocket_power=pocket_power,
         land_power=land_power,
         total_power=float(pocket_power.sum() + land_power.sum()),

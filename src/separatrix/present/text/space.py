@@ -37,6 +37,8 @@ def simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
         ("Drift rate", drift),
         ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
     ]
+    if cage.rotation_sense < 0:
+        ended.append(("Shown", "as its mirror image, in which the balls go round forward"))
     single = "A single run is not evidence: another seed may end differently. See stability and rank."
     part = "of the whole run" if found.whole_run else "of the judged part"
     return [
@@ -91,7 +93,7 @@ def _forces(answer: SpaceSimulationAnswer) -> list[tuple[str, str]]:
     pocket = quantity(history.largest_contact_force, "N")
     if found.force_share is not None:
         pocket += f", {number(found.force_share, 2)} of what the races can transmit to a ball"
-    land = quantity(history.largest_land_force, "N") if rubbing.land.size else "the cage has no land"
+    land = quantity(history.largest_land_force, "N") if rubbing.land_power.size else "the cage has no land"
     rows = [("Pocket, largest", pocket), ("Land, largest", land)]
     turns = impacts.rate_per_turn
     count = f"{impacts.count} in pockets, {impacts.land_count} at lands"
