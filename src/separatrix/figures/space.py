@@ -244,8 +244,8 @@ def _ratios(axes: Axes, data: xr.Dataset) -> None:
 def forces(data: xr.Dataset) -> Figure:
     """Forces of pockets and lands against time, where on the pocket they fall, and how large they are."""
     figure = Figure(figsize=(PAGE, 7.2), layout="constrained")
-    parts: Any = figure.subfigures(nrows=2, height_ratios=[1.25, 1.0])
-    raster, largest, land = parts[0].subplots(nrows=3, sharex=True, height_ratios=[1.5, 1.0, 1.0])
+    grid = figure.add_gridspec(4, 3, height_ratios=[1.5, 1.0, 1.0, 2.7])
+    raster, largest, land = (figure.add_subplot(grid[row, :]) for row in range(3))
     _raster(raster, data)
     largest.plot(milliseconds(data), data["contact_force"].values.max(axis=1), color=BLUE, lw=0.7)
     peak = float(data["largest_contact_force"])
@@ -256,11 +256,11 @@ def forces(data: xr.Dataset) -> Figure:
         time_axis(axes, data)
         if axes is not land:
             axes.set_xlabel("")
-    parts[0].align_ylabels([raster, largest, land])
-    clock = parts[1].add_subplot(1, 3, 1, projection="polar")
-    dots = parts[1].add_subplot(1, 3, 2, projection="polar")
+            axes.tick_params(labelbottom=False)
+    figure.align_ylabels([raster, largest, land])
+    clock, dots = (figure.add_subplot(grid[3, column], projection="polar") for column in range(2))
     _clocks(clock, dots, data)
-    _sizes(parts[1].add_subplot(1, 3, 3), data)
+    _sizes(figure.add_subplot(grid[3, 2]), data)
     return figure
 
 

@@ -106,9 +106,6 @@ def settled(figure: Figure) -> Figure:
     if layout is not None:
         for _ in range(2):  # the labels beside the axes are known after the first
             layout.execute(figure)
-    for axes in figure.axes:  # the solver's last digits vary, and names in an SVG are made from them
-        places = axes.get_position(original=True).bounds
-        axes.set_position([round(place, 7) for place in places], which="original")
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
     return figure
 
