@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -21,8 +21,8 @@ MOST_ELEMENTS = 4
 class BallTraction:
     r"""A ball pushed along its orbit: :math:`m_e \dot u = N - F(u)` with saturating elements.
 
-    :math:`F(u) = \sum_i C_i u / \sqrt{1 + (u/v_i)^2}`, where u is the speed beyond its free orbit. The law is
-    odd and rises with u; an element of infinite speed is a damper.
+    :math:`F(u) = \sum_i C_i u / (1 + (u/v_i)^n)^{1/n}`, where u is the speed beyond its free orbit. The law
+    is odd and rises with u; an element of infinite speed is a damper.
 
     Parameters
     ----------
@@ -30,6 +30,8 @@ class BallTraction:
         Effective mass m_e: of the ball with the spin that follows it at once [kg].
     slopes, speeds : tuple of float
         C_i [N s/m] and v_i [m/s] of at most `MOST_ELEMENTS` elements.
+    sharpness : int
+        n, 2 or 4: how sharp the knee is from creep to sliding [-].
 
     Raises
     ------
@@ -40,6 +42,7 @@ class BallTraction:
     mass: Kilogram
     slopes: Annotated[tuple[NewtonSecondPerMetre, ...], ("element",)]
     speeds: Annotated[tuple[MetrePerSecond, ...], ("element",)]
+    sharpness: int = 2
 
     def __post_init__(self) -> None:
         _check.settle(_check.positive(self, "mass", 1e-12, 1e3), _refused_elements(self))
@@ -54,11 +57,20 @@ class BallTraction:
         """Largest force of the law, at infinite speed; infinite with a damper."""
         return sum(c * v for c, v in zip(self.slopes, self.speeds, strict=True))
 
+    def stiffened(self, ratio: float) -> BallTraction:
+        """Return the law with slopes this many times as large, of the same capacity and mass."""
+        return replace(
+            self,
+            slopes=tuple(c * ratio for c in self.slopes),
+            speeds=tuple(v / ratio for v in self.speeds),
+        )
+
     def force(self, speed: Array) -> Array:
         """F(u) at speeds beyond the free orbit, same shape [N]."""
         u = np.asarray(speed, dtype=np.float64)[..., None]
         slopes, speeds = np.array(self.slopes), np.array(self.speeds)
-        return np.asarray(np.sum(slopes * u / np.hypot(1.0, u / speeds), axis=-1))
+        root = (1.0 + (u / speeds) ** self.sharpness) ** (1.0 / self.sharpness)
+        return np.asarray(np.sum(slopes * u / root, axis=-1))
 
 
 def _refused_elements(law: BallTraction) -> Iterator[InputError]:
@@ -70,3 +82,5 @@ def _refused_elements(law: BallTraction) -> Iterator[InputError]:
         yield InputError("BallTraction.slopes", "must each be finite and > 0 [N s/m]", str(law.slopes))
     if not all(v > 0.0 for v in law.speeds):
         yield InputError("BallTraction.speeds", "must each be > 0 [m/s]", str(law.speeds))
+    if law.sharpness not in (2, 4):
+        yield InputError("BallTraction.sharpness", "must be 2 or 4 [-]", str(law.sharpness))

@@ -77,3 +77,17 @@ def _name(study: Study) -> str:
         return ""
     material = study.cage.material
     return study.cage.material_name or (material.name if material and material.name != NAMELESS else "")
+
+
+def ranking_question(study: Study) -> RankingQuestion:
+    """Return what a study wants ranked.
+
+    Raises
+    ------
+    InputError
+        Nothing.
+    """
+    if study.ranking is None or not study.ranking.candidates:
+        cure = 'Write friction = "pin-on-disk-77K" there, or [[ranking.candidates]].'
+        raise InputError(study.name, "lacks the section [ranking] with candidate materials", cure=cure)
+    return study.ranking

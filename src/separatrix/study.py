@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
@@ -331,6 +331,28 @@ def _stiffness_of_unknown_origin(study: Study) -> _check.Problems:
         who = f'the candidate "{bare[0]}"' if bare else "the cage"
         rule = f"is missing, and {who} has no material to compute it from"
         yield InputError("CageDesign.ball_cage_stiffness", rule, cure="Give the stiffness or the material.")
+
+
+def with_models(study: Study, models: Mapping[str, str]) -> Study:
+    """Return the study with other models of its cage: `motion` and `ball`, as on the command line.
+
+    Raises
+    ------
+    InputError
+        A model is not known, or the cage cannot have it.
+    """
+    chosen: dict[str, Enum] = {}
+    for name, kind in (("motion", MotionModel), ("ball", BallModel)):
+        known = {str(one.value): one for one in kind}
+        if name in models and models[name] not in known:
+            raise InputError(f"--{name}", f"must be one of {', '.join(known)}", shown(models[name]))
+        if name in models:
+            chosen[name] = known[models[name]]
+    if study.cage is None:
+        raise InputError(study.name, "lacks the section [cage]")
+    origins = {f"cage.{name}": f"--{name} {value.value}" for name, value in chosen.items()}
+    cage = replace(study.cage, **chosen)  # type: ignore[arg-type]  # the enums of these fields
+    return replace(study, cage=cage, origins={**study.origins, **origins})
 
 
 SECTIONS: dict[str, type] = {

@@ -27,6 +27,7 @@ from separatrix.cage import simulate as follow
 from separatrix.cage_choice import (
     cage_candidate,
     environment_of,
+    ranking_question,
     reference_candidate,
     required_environment,
 )
@@ -53,7 +54,6 @@ from separatrix.limits.map import stability_map, value_here
 from separatrix.limits.map_parameters import KICK
 from separatrix.limits.map_records import MapQuestion
 from separatrix.ranking import rank as rank_materials
-from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
 from separatrix.runner import Progress, Runner, made_into

@@ -191,7 +191,7 @@ def _others(rows: Sequence[Document]) -> Iterator[Column]:
     units = field_units(Judgement) | field_units(Ranked)
     for key in dict.fromkeys(key for row in rows for key in row if key not in known):
         if any(isinstance(row.get(key), str | int | float) for row in rows):
-            unit = units.get(key.removeprefix("uncertain_"))
+            unit = units.get(key.removeprefix("uncertain_").removeprefix("other_ball_"))
             heading = key.replace("_", " ") + (f" ({unit})" if unit else "")
             yield Column(key, heading, "0.000E+00" if unit != "-" else "0.000", 14)
 

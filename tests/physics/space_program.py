@@ -1,8 +1,8 @@
 """A plain program for the cage in space: exact rotations, a fixed frame, one small step after another.
 
-It shares nothing with the package's engine but the physics: rotation matrices instead of first-order tilts, the
-frame of the housing instead of one that turns, scipy's integrator instead of series, forces that begin and end
-without being located in time.
+It shares nothing with the package's engine but the physics: rotation matrices instead of first-order tilts,
+the frame of the housing instead of one that turns, scipy's integrator instead of series, forces that begin
+and end without being located in time.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from separatrix.cage.space.body import SpaceCage
+from separatrix.cage import PlanarCage
 from separatrix.units import Array
 
 
@@ -69,17 +69,19 @@ def land_gap(
 
 
 class SmallSteps:
-    """The cage of a `SpaceCage` with bores and dampers, in the frame of the housing.
+    """A cage in space with bores and dampers, in the frame of the housing.
 
     State: centre (3), rotation vector's quaternion (4), velocity (3), spin in space (3), then for every ball
     its lead and its place along the groove.
     """
 
-    def __init__(self, cage: SpaceCage) -> None:
-        self.cage, self.plane = cage, cage.plane
-        self.angles = np.array(cage.plane.ball_angles)
-        plane = cage.plane
-        self.inertia = np.diag([cage.transverse_inertia, cage.transverse_inertia, plane.moment_of_inertia])
+    def __init__(self, cage: PlanarCage) -> None:
+        if cage.space is None:
+            raise LookupError
+        self.cage, self.plane = cage.space, cage
+        self.angles = np.array(cage.ball_angles)
+        across = cage.space.transverse_inertia
+        self.inertia = np.diag([across, across, cage.moment_of_inertia])
 
     def forces(self, t: float, state: Array) -> tuple[Array, Array, Array]:
         """Force and moment on the cage, and the rates of the balls, shape (ball, 2)."""
@@ -116,18 +118,19 @@ class SmallSteps:
         turned = Rotation.from_quat(state[3:7])
         w = state[10:13]
         local = turned.inv().apply(w)
-        twist = np.linalg.solve(self.inertia, turned.inv().apply(moment) - np.cross(local, self.inertia @ local))
+        own = turned.inv().apply(moment) - np.cross(local, self.inertia @ local)
+        twist = turned.apply(np.linalg.solve(self.inertia, own))
         x, y, z, s = state[3:7]
         spin = 0.5 * np.array(
             [s * w[0] + w[1] * z - w[2] * y, s * w[1] + w[2] * x - w[0] * z, s * w[2] + w[0] * y - w[1] * x,
              -w[0] * x - w[1] * y - w[2] * z]
         )  # fmt: skip
-        return np.concatenate([state[7:10], spin, force / self.plane.mass, turned.apply(twist), balls.ravel()])
+        return np.concatenate([state[7:10], spin, force / self.plane.mass, twist, balls.ravel()])
 
     def run(self, speed: Array, spin: Array, leads: Array, times: Array, step: float) -> Array:
         """States in the frame that turns with the balls: x, y, z, tilt about x, y and z, at all times."""
         W = self.plane.cage_speed
-        start = np.concatenate([np.zeros(3), [0.0, 0.0, 0.0, 1.0], speed, spin + [0.0, 0.0, W]])
+        start = np.concatenate([np.zeros(3), [0.0, 0.0, 0.0, 1.0], speed, [*spin[:2], spin[2] + W]])
         start = np.concatenate([start, np.stack([leads, 0.0 * leads], 1).ravel()])
         found = solve_ivp(
             self.rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-13,

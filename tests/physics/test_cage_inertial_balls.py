@@ -125,7 +125,7 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
 
 
 def test_at_light_traction_the_cage_goes_on_with_the_ball_it_knocked():
-    """1.3 N hold the ball of a wheel: its pocket rebounds from slow impacts and follows the ball after fast."""
+    """1.3 N hold the ball of a wheel: its pocket rebounds from slow impacts, follows after fast."""
     R, rebounds = AT_REST.pitch_radius, []
     wheel = one_ball(WHEEL, mass=0.005, moment_of_inertia=0.005 * R * R, ball_cage_stiffness=1e6)
     for kick in (0.02, 0.1, 0.5, 2.0):

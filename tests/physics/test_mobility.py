@@ -163,27 +163,23 @@ def test_push_saturates_below_the_capacity(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_law_of_traction(name):
-    """Exact slope at rest; its knee is rounder than that of the slip fields, by a tenth of the capacity."""
+    """Exact slope at rest; two hundredths of the capacity from the slip fields at most."""
     found = mobility(*records(name))
     assert found.traction.slope == pytest.approx(found.linear.damping, rel=1e-12)
     assert found.traction.mass == found.linear.effective_mass
-    assert found.law_error < 0.12
+    assert found.law_error < 0.02
     assert found.law_error == pytest.approx(
         np.abs(found.force_law - 0.5 * (found.force_forward + found.force_backward)).max() / found.capacity
     )
 
 
-@pytest.mark.parametrize(
-    ("slopes", "speeds"),
-    [((200.0,), (0.4,)), ((150.0, 50.0), (0.1, 1.0)), ((100.0, 60.0, 40.0), (0.05, 0.3, 2.0))],
-)
-def test_law_finds_its_own_elements(slopes, speeds):
-    """A curve that is such a law is met within a thousandth of its largest force."""
-    made = BallTraction(mass=1e-3, slopes=slopes, speeds=speeds)
+def test_law_finds_its_own_speed():
+    """A curve that is such a law is met to the tolerance of the search."""
+    made = BallTraction(mass=1e-3, slopes=(200.0,), speeds=(0.4,), sharpness=4)
     u = np.geomspace(1e-3, 5.0, 40)
     law = fitted_law(u, made.force(u), slope=made.slope, mass=1e-3)
-    assert law.slope == pytest.approx(made.slope, rel=1e-12)
-    assert law.force(u) == pytest.approx(made.force(u), abs=1e-3 * made.force(u).max())
+    assert law.slope == made.slope
+    assert law.force(u) == pytest.approx(made.force(u), rel=1e-7)
 
 
 def test_law_of_a_force_that_falls_again_stays():

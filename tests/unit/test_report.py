@@ -14,6 +14,7 @@ from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
 from separatrix.ranking import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
+from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study
 
 STUDY = read_study("cryogenic-turbopump")
@@ -119,6 +120,9 @@ def found(*rows, names=("air",)) -> Ranking:
         kicks=(0.1, 2.0),
         runs=64,
         duration=0.3,
+        ball_model=BallModel.DAMPER,
+        motion_model=MotionModel.PLANE,
+        capacity=100.0,
         complete=True,
     )
 

@@ -279,6 +279,12 @@ def test_the_template_is_a_valid_study(read):
     assert len(filled.ranking.candidates) == 7
 
 
+IN_SPACE = (
+    *("transverse_inertia", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity"),
+    "added_mass",
+)
+
+
 def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     """The commented alternatives are right too: each key is taken, alone, in place of what it excludes."""
     excluded = {
@@ -294,6 +300,11 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
         "pocket_axial_clearance": 'pocket_shape = "elongated"',
         "pocket_axial_offset": 'pocket_shape = "cylindrical"',
         "land_lobes": 'land_out_of_round = "20 um"',
+        "inner_diameter": 'outer_diameter = "72 mm"\nwidth = "14 mm"',
+        "outer_diameter": 'inner_diameter = "58 mm"\nwidth = "14 mm"',
+        "width": 'inner_diameter = "58 mm"\nouter_diameter = "72 mm"',
+        "land_spacing": 'motion = "space"\nland_count = 2',
+        **dict.fromkeys(IN_SPACE, 'motion = "space"'),
     }
     lines = template().splitlines()
     for line in lines:
@@ -459,7 +470,10 @@ def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
         "origin": 'cryogenic-turbopump.toml, line 7: "11.1125 mm"',
     }
     assert inputs["operation"]["outer_speed"] == {"value": 0.0, "unit": "rad/s", "origin": "default"}
-    assert inputs["cage"]["moment_of_inertia"]["origin"] == "default: a thin ring at the pitch diameter"
+    assert (
+        inputs["cage"]["moment_of_inertia"]["origin"]
+        == "default: of the ring's shape, or a thin ring at the pitch diameter"
+    )
     assert inputs["stability"]["runs"]["origin"] == "default"
     assert inputs["film"]["material"]["confidence"] == "modulus: guess, Poisson's ratio: guess"
     armalon = next(c for c in inputs["ranking"]["candidates"] if c["name"] == "Armalon")

@@ -193,7 +193,7 @@ def test_the_template_says_what_the_text_file_says(tmp_path):
             keys = [cell.value.split(".")[0] for cell in book[one.section]["A"][1:] if cell.value]
             assert one.key in keys
     known = {f"{one.section}.{one.key}" for one in template_keys()}
-    assert {"bearing.contact_angle", "film.race_friction", "cage.mass"} < {
+    assert {"bearing.contact_angle", "film.race_friction", "cage.pocket_clearance"} < {
         f"{one.section}.{one.key}" for one in template_keys() if one.is_required
     }
     assert known - {f"{s}.{k}" for s in READERS for k in READERS[s]} == {

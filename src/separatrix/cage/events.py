@@ -34,6 +34,7 @@ from separatrix.cage.series import (
     earliest_zero,
     falling,
     fourths,
+    gone_at,
     grip_at,
     knots,
     larger,
@@ -41,7 +42,7 @@ from separatrix.cage.series import (
     top,
     value,
 )
-from separatrix.cage.traction import depth_change, subtract_way, way_at, way_knots
+from separatrix.cage.traction import own_left_at, subtract_way, way_knots
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -93,15 +94,6 @@ def learn_wave(c: Array, k: int, waves: Array) -> None:
     """Knots of the way that balls go by one wave of their free speeds, and bounds of what bends it."""
     waves[0, k], waves[1, k], waves[2, k], waves[3, k], waves[4, k], waves[5, k] = knots(c)
     waves[EARLY_BOUND, k], waves[LATE_BOUND, k] = bends(c)
-
-
-@inlined_kernel
-def gone_at(p: Coefficients, balls: Balls, knot: Array, j: int) -> float:
-    """How far ball j has gone at a knot by its free speed, or how fast it goes."""
-    total = 0.0
-    for k in range(2 * p.harmonics):
-        total += balls.drive[k, j] * knot[k]
-    return total
 
 
 @inlined_kernel
@@ -319,18 +311,16 @@ def place_all(p: Coefficients, w: Series, t: float, room: Room) -> Place:
 def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float, room: Room) -> float:
     """What is queued, from the motion at a time by `place_all`: falls to zero at its event."""
     j = row.ball
+    if p.own:
+        return own_left_at(p, balls, row, now, t, room)
     x, y, s, ex, ey, es, kept = now
     cos, sin = balls.cosine[j], balls.sine[j]
-    if row.change == 0 and p.own:
-        return row.start + float(balls.side[j]) * depth_change(balls, j, t)
     if row.change == 0:
         sign = float(balls.side[j])
         left: float = row.start + sign * (balls.penetration[j] * (kept - 1.0) + cos * ey - sin * ex + es)
         return left - sign * gone_at(p, balls, room.felt[AT_END], j)
     sign = -float(row.change)
     left = balls.play[j] + p.onset + sign * (cos * y - sin * x + s - balls.lead[j])
-    if p.inertial:
-        left -= sign * way_at(balls, j, t)
     return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 

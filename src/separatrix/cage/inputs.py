@@ -74,6 +74,8 @@ def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
         lightness=0.0 if cage.traction is None else M / cage.traction.mass,
         damper=damper,
         elements=len(slopes),
+        sharp=cage.traction is not None and cage.traction.sharpness == 4,
+        power=1.0 / (2 if cage.traction is None else cage.traction.sharpness),
         slopes=_padded(slopes),
         bends=_padded(bends),
         coast_end=COAST_END * SLOWEST * kick * T,
@@ -99,12 +101,12 @@ def balls_of(cage: PlanarCage) -> Balls:
 
 
 def law_numbers(cage: PlanarCage) -> tuple[float, list[float], list[float]]:
-    """Sum of C_i / m_e of the dampers; C_i / m_e and 1 / v_i^2 of the elements that saturate."""
+    """Sum of C_i / m_e of the dampers; C_i / m_e and 1 / v_i^n of the elements that saturate."""
     if cage.traction is None:
         return 0.0, [], []
     T, law = time_unit(cage), cage.traction
     pairs = [(C * T / law.mass, v * T) for C, v in zip(law.slopes, law.speeds, strict=True)]
-    bent = [(C, 1.0 / v**2) for C, v in pairs if v < math.inf]
+    bent = [(C, 1.0 / v**law.sharpness) for C, v in pairs if v < math.inf]
     return sum(C for C, v in pairs if v == math.inf), [C for C, _ in bent], [b for _, b in bent]
 
 

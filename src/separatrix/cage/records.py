@@ -32,9 +32,9 @@ KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
 """Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
-SPEED, WAY, TRACTION, CREEP, SQUARE, GRIP, BENT = range(7)
+SPEED, WAY, TRACTION, CREEP, SQUARE, FOURTH, GRIP, BENT = range(8)
 """Series of a ball with inertia: u, what it goes by u while it coasts, F(u) / m_e, the creep u / lambda, its
-square, F over the creep, and from `BENT` on (1 + (creep / v_i)^2)^(-1/2) of each element."""
+square and fourth power, F over the creep, and from `BENT` on (1 + (creep / v_i)^n)^(-1/n) of each element."""
 
 LANES = 4
 """Balls whose series are made side by side."""
@@ -84,7 +84,9 @@ class Coefficients(NamedTuple):
     lightness: float  # M / m_e
     damper: float  # elements of infinite speed: sum of C_i, over m_e
     elements: int  # of a finite speed
-    slopes: Array  # their C_i over m_e, and 1 / v_i^2
+    sharp: bool  # the law has the power 4, else 2
+    power: float  # its inverse
+    slopes: Array  # their C_i over m_e, and 1 / v_i^n
     bends: Array
     coast_end: float  # speed at which a ball that coasts is put to rest
     coast_time: float  # m_e / sum of C_i: it comes to rest at this time times its speed

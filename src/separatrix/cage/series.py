@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from separatrix.cage.records import ORDER, POWERS, Coefficients, Series
+from separatrix.cage.records import ORDER, POWERS, Balls, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -231,6 +231,15 @@ def bends(c: Array) -> tuple[float, float]:
     for n in range(4, ORDER + 1):
         early, late = early + EARLY[n] * abs(c[n]), late + LATE[n] * abs(c[n])
     return early, late
+
+
+@inlined_kernel
+def gone_at(p: Coefficients, balls: Balls, knot: Array, j: int) -> float:
+    """How far ball j has gone at a knot by its free speed, or how fast it goes."""
+    total = 0.0
+    for k in range(2 * p.harmonics):
+        total += balls.drive[k, j] * knot[k]
+    return total
 
 
 @inlined_kernel

@@ -1,9 +1,9 @@
 r"""Balls with inertia among races whose traction saturates, as power series.
 
 A ball goes at the speed :math:`u` beyond its free orbit, :math:`m_e\dot u = N - F(u)`, with
-:math:`F(u) = \sum_i C_i c / \sqrt{1 + (c/v_i)^2}` of the creep :math:`c = u/\lambda`: in a ramp all speeds
-are a share :math:`\lambda` of their values, and traction is a matter of their ratio. A ball that no pocket
-touches coasts by itself until it is at rest in its free orbit.
+:math:`F(u) = \sum_i C_i c / (1 + (c/v_i)^n)^{1/n}`, n = 2 or 4, of the creep :math:`c = u/\lambda`: in a
+ramp all speeds are a share :math:`\lambda` of their values, and traction is a matter of their ratio. A ball
+that no pocket touches coasts by itself until it is at rest in its free orbit.
 """
 
 from __future__ import annotations
@@ -11,8 +11,10 @@ from __future__ import annotations
 import math
 
 from separatrix.cage.records import (
+    AT_END,
     BENT,
     CREEP,
+    FOURTH,
     GRIP,
     LANES,
     ORDER,
@@ -21,14 +23,16 @@ from separatrix.cage.records import (
     TRACTION,
     WAY,
     Balls,
+    Candidate,
     Coefficients,
     Ledger,
     Pace,
+    Room,
     Series,
     State,
     Whole,
 )
-from separatrix.cage.series import AFTER, bends, centre, copy_column, knots, value
+from separatrix.cage.series import AFTER, Place, bends, centre, copy_column, gone_at, knots, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -86,10 +90,14 @@ def coast(p: Coefficients, moving: Array, used: int, now: Pace, n: int) -> None:
                           p.damper * creep[first + 3])  # fmt: skip
         if p.elements > 0:
             square_term(creep, square, n)
+            if p.sharp:
+                fourth = moving[b, FOURTH]
+                square_term(square, fourth, n)
+                square = fourth
             for m in range(first, first + LANES):
                 grip[m] = 0.0
             for e in range(p.elements):
-                grip_term(p.bends[e], p.slopes[e], square, moving[b, BENT + e], grip, n)
+                grip_term(p.bends[e], p.slopes[e], p.power, square, moving[b, BENT + e], grip, n)
             # Four sums side by side: each waits for its own terms only
             k = first
             for i in range(0, first + LANES, LANES):
@@ -118,25 +126,29 @@ def square_term(c: Array, square: Array, n: int) -> None:
 
 
 @inlined_kernel
-def grip_term(bend: float, slope: float, square: Array, bent: Array, grip: Array, n: int) -> None:
-    """Add coefficient n of slope (1 + bend square)^(-1/2) to those of `grip`, a block of them."""
+def grip_term(
+    bend: float, slope: float, power: float, square: Array, bent: Array, grip: Array, n: int
+) -> None:
+    """Add coefficient n of slope (1 + bend square)^-power to those of `grip`, a block of them."""
     first = k = LANES * n
     if n == 0:
         for m in range(LANES):
-            bent[m] = 1.0 / math.sqrt(1.0 + bend * square[m])
+            root = math.sqrt(1.0 + bend * square[m])
+            bent[m] = 1.0 / (root if power == 0.5 else math.sqrt(root))
             grip[m] += slope * bent[m]
         return
-    # g = w^(-1/2) has w dg/dt = -g dw/dt / 2, whence n w_0 g_n = -sum_(i<n) ((n - i) / 2 + i) w_(n-i) g_i
+    # g = w^-a has w dg/dt = -a g dw/dt, whence n w_0 g_n = -sum_(i<n) (a (n - i) + i) w_(n-i) g_i
     r0 = r1 = r2 = r3 = 0.0
-    factor = -0.5 * n
+    factor = -power * n
     for i in range(0, first, LANES):
         r0, r1 = r0 + factor * square[k] * bent[i], r1 + factor * square[k + 1] * bent[i + 1]
         r2, r3 = r2 + factor * square[k + 2] * bent[i + 2], r3 + factor * square[k + 3] * bent[i + 3]
-        factor -= 0.5
+        factor -= 1.0 - power
         k -= LANES
     bent[first], bent[first + 1], bent[first + 2], bent[first + 3] = r0, r1, r2, r3
     for m in range(LANES):
-        bent[first + m] *= bend * bent[m] * bent[m] * AFTER[n - 1]
+        per = bent[m] * bent[m]  # 1/w_0 = g_0^(1/a)
+        bent[first + m] *= bend * (per if power == 0.5 else per * per) * AFTER[n - 1]
         grip[first + m] += slope * bent[first + m]
 
 
@@ -276,6 +288,19 @@ def way_knots(
 def depth_change(balls: Balls, j: int, t: float) -> float:
     """How much an own series of a penetration has risen at a time."""
     return value(balls.depth[:, j], t) - float(balls.depth[0, j])
+
+
+@inner_kernel
+def own_left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float, room: Room) -> float:
+    """What is queued, as `events.left_at`, of pockets with own series and of balls that coast."""
+    j = row.ball
+    if row.change == 0:
+        return row.start + float(balls.side[j]) * depth_change(balls, j, t)
+    sign = -float(row.change)
+    left: float = balls.play[j] + p.onset
+    left += sign * (balls.cosine[j] * now[1] - balls.sine[j] * now[0] + now[2] - balls.lead[j])
+    left -= sign * way_at(balls, j, t)
+    return left - sign * gone_at(p, balls, room.gone[AT_END], j)
 
 
 @inner_kernel

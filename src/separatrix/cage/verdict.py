@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,7 @@ from separatrix.cage import reason
 from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion, cage_motion, largest_room, left_pockets
+from separatrix.cage.space.ensemble import SpaceEnsemble
 from separatrix.units import (
     Array,
     Hertz,
@@ -21,6 +23,7 @@ from separatrix.units import (
     MetrePerSecond,
     Newton,
     PerSecond,
+    Radian,
     Ratio,
     Rows,
     Second,
@@ -127,6 +130,12 @@ class Judgement:
         Asked for, and of the longest run [s].
     runs : int
         Runs at each kick.
+    largest_tilt, axial_travel : float or None
+        Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
+        None in the plane.
+    cone_ratio, impact_rate : float or None
+        The same medians as of the whirl, in space: speed at which the lean of the axis goes round, in the
+        fixed frame, over the ball set's [-]; impacts of all pockets [1/s]. None in the plane.
     """
 
     verdict: Verdict
@@ -163,6 +172,10 @@ class Judgement:
     duration: Second
     longest_run: Second
     runs: int
+    largest_tilt: Radian | None = None
+    axial_travel: Metre | None = None
+    cone_ratio: Ratio | None = None
+    impact_rate: PerSecond | None = None
 
 
 def whirl_probability(ensemble: Ensemble) -> Array:
@@ -258,7 +271,20 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         duration=ensemble.duration,
         longest_run=float(ensemble.followed.max()),
         runs=ensemble.outcome.shape[1],
+        **(_in_space(cage, ensemble, median) if isinstance(ensemble, SpaceEnsemble) else {}),
     )
+
+
+def _in_space(
+    cage: PlanarCage, ensemble: SpaceEnsemble, median: Callable[[str], float]
+) -> dict[str, float | None]:
+    """Evidence that only a cage in space has."""
+    return {
+        "largest_tilt": float(ensemble.largest_tilt.max()),
+        "axial_travel": float((ensemble.axial_high - ensemble.axial_low).max()),
+        "cone_ratio": _whirl_ratio(cage, median("cone_speed")),
+        "impact_rate": median("strike_rate"),
+    }
 
 
 def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:

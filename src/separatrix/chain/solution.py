@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from separatrix.cage import PlanarCage
 from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
 from separatrix.cage.space_body import SpaceBody
 from separatrix.cage_body import CageInertia, cage_inertia
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
+from separatrix.chain.cage_of_design import as_designed, space_body, warn_if_balls_are_driven
 from separatrix.chain.contacts import (
     BearingState,
     RaceSlopes,
@@ -26,7 +26,6 @@ from separatrix.chain.contacts import (
     race_traction,
     require_rolling,
 )
-from separatrix.chain.in_space import space_body
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
 from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, held_ball, impacts, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
@@ -58,7 +57,6 @@ from separatrix.units import (
     MetrePerSecond,
     NewtonPerMetre,
     Ratio,
-    format_quantity,
 )
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
@@ -357,9 +355,9 @@ class Solution:
             ramp_start=study.operation.ramp_start,
             traction=self.mobility.traction if design.ball is BallModel.TRACTION else None,
             space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
-            **_as_designed(design),
+            **as_designed(design),
         )
-        _warn_if_balls_are_driven(cage)
+        warn_if_balls_are_driven(cage)
         return cage
 
     def _in_space(self, stiffness: NewtonPerMetre) -> SpaceBody:
@@ -386,28 +384,3 @@ class Solution:
         None where all balls run alike, as under an axial load.
         """
         return self._waves.share
-
-
-_NOT_COPIED = {
-    *("mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
-    *("inner_diameter", "outer_diameter", "width", "transverse_inertia", "ball", "motion"),
-    *("land_spacing", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity", "added_mass"),
-    *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
-}
-
-
-def _as_designed(design: CageDesign) -> dict[str, Any]:
-    """What the cage in the plane takes from the design as it is: all other fields, under the same names."""
-    return {f.name: getattr(design, f.name) for f in fields(design) if f.name not in _NOT_COPIED}
-
-
-def _warn_if_balls_are_driven(cage: PlanarCage) -> None:
-    if cage.lead_amplitude > cage.half_play:
-        lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
-        warnings.warn(
-            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
-            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
-            "wear.",
-            ValidityWarning,
-            stacklevel=3,
-        )

@@ -48,6 +48,7 @@ def _command(verb: Verb) -> Callable[..., int]:
             full=given.get("full", False),
             cluster=given.get("cluster"),
             animate=animate,
+            models={name: given[name] for name in ("motion", "ball") if given.get(name) is not None},
             question=question,
         )
         kept = verb.keeps_runs and not (options.json and options.out is None)

@@ -42,6 +42,8 @@ VERDICTS_HELP = "Run the ensemble of every case, too."
 ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, and check some of them."
 CASES_HELP = "CSV: parameters in its first row, then a case a row."
 CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
+MOTION_HELP = "Where the cage moves [default: as the study says, or in the plane]."
+BALL_HELP = "What a ball does that is pushed [default: as the study says, or a damper]."
 KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
 
@@ -53,6 +55,8 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "runs": (Annotated[int, typer.Option(**WHOLE, help="Most runs of a point.")], 16),
     "kick": (Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)], None),
     "adaptive": (Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)], False),
+    "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
+    "ball": (Annotated[str | None, typer.Option(metavar="damper|traction", help=BALL_HELP)], None),
     "run": (Annotated[int, typer.Option("--run", **WHOLE, help="Which run of the ensemble.")], 0),
     "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),
     "samples": (Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")], 512),
@@ -91,7 +95,8 @@ class Verb:
     def options(self) -> tuple[str, ...]:
         """Names of what its command takes, in order."""
         full, cluster = ("full",) * self.has_full, ("cluster",) * self.keeps_runs
-        return ("study", *self.question, *full, "json", "out", "quiet", "jobs", *cluster)
+        models = ("motion", "ball") * ("cage" in self.needs)
+        return ("study", *self.question, *models, *full, "json", "out", "quiet", "jobs", *cluster)
 
 
 VERBS: tuple[Verb, ...] = (

@@ -68,8 +68,8 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
+    from separatrix.cage_choice import ranking_question
     from separatrix.chain.solution import solve
-    from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
     keys: set[tuple[float, Ratio]] = set()
@@ -89,8 +89,8 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
+    from separatrix.cage_choice import ranking_question
     from separatrix.chain.solution import solve
-    from separatrix.ranking import ranking_question
 
     asked = ranking_question(study)
     smooth = SOBOL_DRAWS * (2 + sum(1 for key in study.distributions if not key.startswith("ranking.")))

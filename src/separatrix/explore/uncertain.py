@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
-from separatrix.cage_choice import reference_candidate, required_environment
+from separatrix.cage_choice import ranking_question, reference_candidate, required_environment
 from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
 from separatrix.distribution import described
@@ -37,7 +37,6 @@ from separatrix.explore.records import (
     UncertainStudy,
 )
 from separatrix.explore.shares import sobol_shares
-from separatrix.ranking import ranking_question
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
 from separatrix.ranking.plausible import Moved, beyond_motion

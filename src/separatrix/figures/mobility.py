@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.style import BLACK, BLUE, GREEN, GREY, PAGE, VERMILION, Look, canvas
+from separatrix.figures.style import BLACK, BLUE, GREEN, GREY, PAGE, VERMILION, Look, canvas, legend_below
 
 DASHED = (0, (4, 2))
 
@@ -58,7 +58,8 @@ def _size(axes: Axes, data: xr.Dataset) -> None:
     low = float(size.min())
     axes.set(xscale="log", yscale="log", ylim=(0.5 * low, 2.0 * float(size.max())))
     axes.set(title="b  Mobility; dotted: rates", xlabel="frequency [Hz]", ylabel="speed over force [mm/s/N]")
-    axes.legend(loc="lower left", handlelength=2.2)
+    look: Look = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 0.9}
+    axes.legend(loc="lower left", handlelength=2.2, **look)
 
 
 def _push(axes: Axes, data: xr.Dataset) -> None:
@@ -99,11 +100,10 @@ def impacts(data: xr.Dataset) -> Figure:
     returned.axhline(nominal, color=BLACK, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=words)
     returned.set(xscale="log", title="a  Share of the speed that returns", xlabel="speed of the impact [m/s]")
     returned.set(ylabel="restitution [-]", ylim=(None, 1.0))
-    returned.legend(loc="upper right", fontsize=6.5, handlelength=2.6)
     capacity = float(data["capacity"])
     force.plot(v, data["impacts_peak_force"], color=BLUE, label="largest force of the pocket")
     force.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity of the races {capacity:.3g} N")
     force.set(xscale="log", yscale="log", title="b  Largest force", xlabel="speed of the impact [m/s]")
     force.set(ylabel="force [N]")
-    force.legend(loc="upper left", handlelength=2.6)
+    legend_below(figure, columns=3)
     return figure

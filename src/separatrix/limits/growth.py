@@ -50,9 +50,16 @@ class Count:
 
 
 def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
-    """Return the same cage with the race damping of this restitution factor, and this pocket friction."""
+    """Return the same cage with the race damping of this restitution factor, and this pocket friction.
+
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at eta
+    = 1 their races grip them.
+    """
     damping = race_damping_at(cage, restitution_factor)
-    return replace(cage, race_damping=damping, ball_cage_friction=friction)
+    law = cage.traction
+    if law is not None:
+        law = law.stiffened(damping / cage.race_damping) if damping < inf else None
+    return replace(cage, race_damping=damping, ball_cage_friction=friction, traction=law)
 
 
 def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:

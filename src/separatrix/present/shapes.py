@@ -221,12 +221,13 @@ def _(found: SpaceSimulationAnswer) -> Node:
 @shape.register(NotMeasured)
 def _(row: Ranked | NotFinished | NotMeasured) -> Node:
     """The evidence on the level of the row."""
-    judged, drawn = (getattr(row, name, None) for name in ("judgement", "over_inputs"))
-    evidence, over = (absent(Judgement) if one is None else shape(one) for one in (judged, drawn))
+    all_three = (getattr(row, name, None) for name in ("judgement", "over_inputs", "other_ball"))
+    evidence, over, other = (absent(Judgement) if one is None else shape(one) for one in all_three)
     names = ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
     node = evidence | absent(Ranked) | {"extrapolation": Leaf(())} | fields_of(row)
-    del node["judgement"], node["over_inputs"]
-    return node | {f"uncertain_{name}": over[name] for name in names}
+    del node["judgement"], node["over_inputs"], node["other_ball"]
+    more = {f"other_ball_{name}": other[name] for name in (*names, "largest_contact_force")}
+    return node | {f"uncertain_{name}": over[name] for name in names} | more
 
 
 @shape.register(UncertainMaterial)

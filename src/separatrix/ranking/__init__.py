@@ -2,7 +2,7 @@
 
 from separatrix.ranking.lowest import LowestFriction, probability_lowest
 from separatrix.ranking.order import ranks
-from separatrix.ranking.rank import rank, ranking_question
+from separatrix.ranking.rank import rank
 from separatrix.ranking.reason import PAPER_STATEMENT
 from separatrix.ranking.records import (
     NotFinished,
@@ -26,6 +26,5 @@ __all__ = [
     "Row",
     "probability_lowest",
     "rank",
-    "ranking_question",
     "ranks",
 ]

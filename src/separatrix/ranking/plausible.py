@@ -10,8 +10,11 @@ from separatrix.cage import KickCount
 from separatrix.chain.pocket import contact_radius
 from separatrix.chain.restitution import hertz_coefficient
 from separatrix.chain.solution import Solution
-from separatrix.study import BallBearing, Material, Study
+from separatrix.study import BallBearing, BallModel, Material, MotionModel, PocketShape, Study
 from separatrix.units import Metre, Newton, Pascal, Ratio, format_quantity
+
+STRONG: Ratio = 5.0
+"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
@@ -42,13 +45,16 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     if not rows:
         return
     most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
-    if most > limit:
+    design = solution.design
+    if most > limit and design.ball is BallModel.DAMPER:
         yield (
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
             f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
-            "the ball slips, and the linear race damping is outside its range. It then returns too much "
-            "speed to the cage; what that does to a verdict is not known."
+            "the ball slides, and the linear race damping is outside its range. It then returns too much "
+            "speed to the cage: `--ball traction` gives the answer with the ball's inertia and traction."
         )
+    if design.motion is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
+        yield from _beyond_plane(solution)
     yield from _beyond_strength(solution.study, rows)
     cage = solution.cage_with(0.0)
     gap = cage.land_gap
@@ -67,6 +73,18 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
             f"Friction on the land, {cage.land_friction:g}, keeps the cage whirling in some runs: "
             f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
             "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
+        )
+
+
+def _beyond_plane(solution: Solution) -> Iterator[str]:
+    """A sentence where a cage with round pockets is kicked so hard that it tilts."""
+    speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
+    kick = max(solution.stability.kicks)
+    if kick > STRONG * speed:
+        yield (
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
+            f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
+            "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
         )
 
 

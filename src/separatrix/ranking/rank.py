@@ -9,11 +9,15 @@ from typing import Any
 import numpy as np
 
 from separatrix.cage import Judgement, judge
-from separatrix.cage_choice import other_than_candidates, reference_candidate, required_environment
+from separatrix.cage_choice import (
+    other_than_candidates,
+    ranking_question,
+    reference_candidate,
+    required_environment,
+)
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case
-from separatrix.errors import InputError
 from separatrix.limits import (
     CriticalFriction,
     GrowthCounter,
@@ -29,7 +33,7 @@ from separatrix.limits.threshold import rising
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, measured, overall
 from separatrix.ranking.order import margin_interval, ranks, same_rank
-from separatrix.ranking.plausible import Moved, beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import (
     NotFinished,
@@ -40,6 +44,7 @@ from separatrix.ranking.records import (
     Ranking,
     Row,
 )
+from separatrix.ranking.second import Second, is_beyond, second_verdict
 from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import NewtonPerMetre, Ratio
@@ -47,8 +52,9 @@ from separatrix.units import NewtonPerMetre, Ratio
 Key = tuple[NewtonPerMetre, Ratio]
 """Pocket stiffness, and a friction: what a verdict is about."""
 
-Piece = tuple[NewtonPerMetre, Ratio | Node] | Case
-"""Piece of work: a verdict, or with the pocket stiffness a node of its curve; a case's drawn bearings."""
+
+Piece = tuple[NewtonPerMetre, Ratio | Node] | Case | Second
+"""A verdict, or with the pocket stiffness a node of its curve; of drawn bearings; a second verdict."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +67,7 @@ class _Question:
     stiffness: Mapping[str, NewtonPerMetre]
     reference: NewtonPerMetre
     drawn: DrawnBearings | None
+    own: frozenset[Key]
     runner: Runner
 
 
@@ -72,6 +79,7 @@ class _Findings:
     here: CriticalFriction | None
     judgements: Mapping[Key, Judgement]
     drawn: Mapping[Case, Judgement]
+    seconds: Mapping[Key, Judgement]
     traced: Mapping[NewtonPerMetre, bool]
     complete: bool
 
@@ -117,7 +125,8 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     keys = sorted(
         {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
-    question = replace(question, tracers=_tracers(question, study.stability, keys))
+    here = {(question.stiffness[n], f.mean) for n, f in frictions[environment].items() if f is not None}
+    question = replace(question, tracers=_tracers(question, study.stability, keys), own=frozenset(here))
 
     def ranking(found: _Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
@@ -139,6 +148,9 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             kicks=question.settings.kicks,
             runs=question.settings.runs,
             duration=question.settings.duration,
+            ball_model=reference.design.ball,
+            motion_model=reference.design.motion,
+            capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, ranked[environment]),
             complete=found.complete,
         )
@@ -157,20 +169,6 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
     return (*said, *beyond_motion(question.cages[question.reference], moved))
 
 
-def ranking_question(study: Study) -> RankingQuestion:
-    """Return what a study wants ranked.
-
-    Raises
-    ------
-    InputError
-        Nothing.
-    """
-    if study.ranking is None or not study.ranking.candidates:
-        cure = 'Write friction = "pin-on-disk-77K" there, or [[ranking.candidates]].'
-        raise InputError(study.name, "lacks the section [ranking] with candidate materials", cure=cure)
-    return study.ranking
-
-
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
     solved = {c.name: solve(study, c) for c in asked.candidates}
     cages = {one.ball_cage_stiffness: one for one in solved.values()}
@@ -182,6 +180,7 @@ def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question
         stiffness={name: one.ball_cage_stiffness for name, one in solved.items()},
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
+        own=frozenset(),
         runner=runner,
     )
 
@@ -217,14 +216,17 @@ def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findi
         here = points[question.reference].pop((OWN_DAMPING, None), None)
         judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
         drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
+        wanted = [key for key, found in judged.items() if _wants_second(question, key, found)]
+        seconds = {key: found for key in wanted if isinstance(found := results.get(Second(*key)), Judgement)}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-        every = (len(judged), len(drawn)) == (len(keys), len(cases))
+        every = (len(judged), len(drawn), len(seconds)) == (len(keys), len(cases), len(wanted))
         return ranking(
             _Findings(
                 points={k: rising(found.values()) for k, found in points.items()},
                 here=here,
                 judgements=judged,
                 drawn=drawn,
+                seconds=seconds,
                 traced=traced,
                 complete=here is not None and all(traced.values()) and every,
             )
@@ -243,6 +245,9 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
         if question.drawn is None:
             raise LookupError(piece)
         return question.drawn.judge(piece, question.settings.kicks, question.runner)
+    if isinstance(piece, Second):
+        solution = question.cages[piece.stiffness]
+        return second_verdict(solution, piece.friction, question.settings, question.runner)
     stiffness, what = piece
     if isinstance(what, tuple):
         return question.tracers[stiffness].point(what)
@@ -253,14 +258,21 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
 def _more(
     question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
 ) -> list[Piece]:
-    """Nodes of the same curve that are wanted once this one is known."""
-    if isinstance(piece, Case):
+    """Nodes of the same curve that are wanted once this one is known, or a second verdict."""
+    if isinstance(piece, Case | Second):
         return []
     stiffness, node = piece
+    found = results[piece]
     if not isinstance(node, tuple):
-        return []
+        second = isinstance(found, Judgement) and _wants_second(question, (stiffness, node), found)
+        return [Second(stiffness, node)] if second else []
     wanted = question.tracers[stiffness].more(node, _points_of(results, stiffness))
     return [(stiffness, node) for node in wanted]
+
+
+def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
+    """Whether a verdict of the bearing's own environment rests on forces beyond the range of its ball."""
+    return key in question.own and is_beyond(question.cages[key[0]], found)
 
 
 def _points_of(
@@ -270,7 +282,7 @@ def _points_of(
     return {
         what: found
         for piece, found in results.items()
-        if isinstance(found, CriticalFriction) and not isinstance(piece, Case)
+        if isinstance(found, CriticalFriction) and not isinstance(piece, Case | Second)
         for k, what in [piece]
         if k == stiffness and isinstance(what, tuple)
     }
@@ -353,13 +365,15 @@ def _row(
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
     drawn = found.drawn.get(case)
+    second = found.seconds.get((stiffness, friction.mean))
     threshold = _threshold(found, stiffness, friction)
     if threshold is None:
         unfinished = f"{judgement.reason} Its threshold: {NOT_FINISHED}."
-        return replace(row, judgement=judgement, over_inputs=drawn, reason=unfinished)
-    measured = {f.name: getattr(row, f.name) for f in fields(row)}
+        return replace(row, judgement=judgement, over_inputs=drawn, other_ball=second, reason=unfinished)
+    measured = {f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"}
     return Ranked(
-        **measured | {"judgement": judgement, "over_inputs": drawn, "reason": reason(threshold, judgement)},
+        **measured | {"judgement": judgement, "over_inputs": drawn, "other_ball": second},
+        reason=reason(threshold, judgement),
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,

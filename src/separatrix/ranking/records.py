@@ -8,7 +8,8 @@ from typing import Annotated
 from separatrix.cage import Judgement
 from separatrix.chain.pocket import PocketConditions
 from separatrix.limits import StabilityCurve
-from separatrix.units import MetrePerSecond, NewtonPerMetre, Ratio, Rows, Second
+from separatrix.study import BallModel, MotionModel
+from separatrix.units import MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +39,7 @@ class NotFinished:
     restitution_factor: Ratio
     judgement: Judgement | None = None
     over_inputs: Judgement | None = None
+    other_ball: Judgement | None = None
     reason: str
 
 
@@ -75,6 +77,9 @@ class Ranked:
     over_inputs : Judgement or None
         The same, where every run draws its own bearing from the uncertain inputs; None if the study states
         none.
+    other_ball : Judgement or None
+        By the other model of a ball, in the bearing's own environment, where a run presses a pocket with more
+        than a tenth of the races' capacity; else None.
     reason : str
         A sentence with the numbers.
     """
@@ -96,6 +101,7 @@ class Ranked:
     within_reach: bool
     judgement: Judgement
     over_inputs: Judgement | None = None
+    other_ball: Judgement | None = None
     reason: str
 
 
@@ -132,7 +138,9 @@ class Ranking:
     unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
     Where candidates differ in stiffness, each has its curve in `own_curves`, at the restitution factors
     `own_eta`. `notes` say where pocket forces or offsets leave the range of the model. `complete` is False if
-    an interrupt left something out.
+    an interrupt left something out. `ball_model` and `motion_model` are those of the verdicts, `capacity` is
+    what the races can transmit to the most loaded ball; beyond a tenth of it each candidate has a second
+    verdict, by the other model of the ball.
     """
 
     environment: str
@@ -152,5 +160,8 @@ class Ranking:
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int
     duration: Second
+    ball_model: BallModel
+    motion_model: MotionModel
+    capacity: Newton
     notes: tuple[str, ...] = ()
     complete: bool

@@ -40,7 +40,14 @@ _WITHOUT = {
     "stability.kicks": "default: 0.2, 1 and 4 times the reference kick",
     "stability.reference_kick": f"default: {_SCALED}",
     "stability.restitution_factors": "default: chosen where the curve bends",
-    "cage.moment_of_inertia": "default: a thin ring at the pitch diameter",
+    "cage.mass": "not given: that of the ring's shape",
+    "cage.inner_diameter": "not given",
+    "cage.outer_diameter": "not given",
+    "cage.width": "not given",
+    "cage.moment_of_inertia": "default: of the ring's shape, or a thin ring at the pitch diameter",
+    "cage.transverse_inertia": "default: of the ring's shape, or half that about the axis",
+    "cage.land_spacing": "not given",
+    "cage.land_diameter": "default: of the ring's shape, or the pitch diameter",
 }
 """What the absence of a value means."""
 

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from separatrix import library
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import (
+    BallModel,
     ContactPressure,
     Guidance,
     KinematicModel,
+    MotionModel,
     PocketContact,
     PocketShape,
     PressureSlip,
@@ -74,6 +76,8 @@ _CHOICES: dict[str, type[Enum]] = {
     "traction.pressure_slip": PressureSlip,
     "cage.guidance": Guidance,
     "cage.pocket_shape": PocketShape,
+    "cage.ball": BallModel,
+    "cage.motion": MotionModel,
     "cage.pocket_contact": PocketContact,
 }
 _NAMES = {

@@ -48,8 +48,9 @@ races' force along the orbit."""
 DZ, DT, CR, CZ, CT = range(7, 12)
 """Of a pocket against its ball: along axis and orbit; and the pocket's velocity: out, axial, along."""
 
-ELEMENTS = 12
-"""First of two columns for each element of the law of traction: 1 + (u/v)^2, and its power -1/2."""
+ELEMENTS = 13
+"""First of two columns for each element of the law of traction: 1 + (u/v)^n and its power -1/n; before it the
+square of u over the share of the speed."""
 
 BALL_COLUMNS = ELEMENTS + 2 * MOST_ELEMENTS
 
@@ -113,6 +114,8 @@ class Numbers(NamedTuple):
     groove_stiffness: float
     ball_mass: float  # m_e over the mass; 0: damper
     elements: int
+    sharp: bool  # the law has the power 4, else 2
+    power: float  # its inverse
     still: float  # speed below which a ball is at rest
     resting: float  # place along the groove that is none
     slowest: float  # speed whose rounding is of no interest
@@ -140,7 +143,7 @@ class Parts(NamedTuple):
     play: Array  # what each pocket has more than the nominal half clearance
     drive: Array  # free speed, shape (2 harmonic, ball)
     slope: Array  # of each element of the law of traction
-    steep: Array  # 1 / v_i^2
+    steep: Array  # 1 / v_i^n
     height: Array  # of each strip over the pockets, over R
     strip_stiffness: Array
     strip_damping: Array
@@ -300,6 +303,8 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
         groove_stiffness=body.groove_stiffness * T * T / M,
         ball_mass=0.0 if law is None else law.mass / M,
         elements=0 if law is None else len(law.slopes),
+        sharp=law is not None and law.sharpness == 4,
+        power=1.0 / (2 if law is None else law.sharpness),
         still=STILL_PLAY * max(cage.pocket_clearance, 1e-9) * (law.slope / law.mass if law else 0.0) * T,
         resting=STILL_PLAY * max(cage.pocket_clearance, 1e-9),
         slowest=1e-2 * kick * T,
@@ -364,7 +369,7 @@ def parts_of(cage: PlanarCage) -> Parts:
         play=np.zeros(Z),
         drive=np.array(waves).reshape(len(waves), Z) * T,
         slope=slopes,
-        steep=1.0 / speeds**2,
+        steep=1.0 / speeds ** (2 if law is None else law.sharpness),
         height=heights / cage.pitch_radius,
         strip_stiffness=K * T * T / M,
         strip_damping=damping * share / whole * T / M,

@@ -65,7 +65,7 @@ class Mobility:
     forward and backward that of the slip fields, the slowest mode held; `force_law` is that of `traction`.
     `law_error` is the largest difference of the law from their mean, `asymmetry` half their largest
     difference, both over the capacity. After a unit force was put on, `step_damping` is F/u, shape
-    (instant,); |Y| and 1/Re Y of Y = u/F have shape (frequency,).
+    (instant,); the size of Y = u/F and 1/Re Y have shape (frequency,).
     """
 
     ball: int

@@ -128,6 +128,7 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
         ("P(stable)", f"{number(found.probability_stable, 2)} {ends}"),
         ("Growth rate", f"{growth}, from {found.worst_kick:g} m/s, the worst kick"),
         ("Offset", f"{stated(found, 'largest_offset')} at most; {mean}"),
+        *_space_facts(found),
         ("Drift rate", _drift_text(found.drift_rate, found.drift_rate_law)),
         ("Largest forces", f"{forces} at the land"),
         ("Impacts", _impacts_text(found)),
@@ -135,6 +136,18 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
         ("Energy at the end", energy),
         *_power_facts(found, found.rubbing_power),
         ("Runs", f"{found.runs} from each kick, of up to {stated(found, 'longest_run')}"),
+    ]
+
+
+def _space_facts(found: Judgement) -> list[tuple[str, str]]:
+    """Return the evidence that only a cage in space has."""
+    if found.largest_tilt is None or found.axial_travel is None:
+        return []
+    cone = "" if found.cone_ratio is None else f"; its lean goes round at {found.cone_ratio:.2f} of the balls"
+    return [
+        ("Tilt", f"{1e3 * found.largest_tilt:.3g} mrad at most{cone}"),
+        ("Axial motion", f"{stated(found, 'axial_travel')} from end to end"),
+        ("Impacts at pockets", f"{number(found.impact_rate or 0.0, 0)} 1/s in the last part"),
     ]
 
 

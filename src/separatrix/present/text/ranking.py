@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
+from separatrix.present.text.second import by_the_other_ball
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
@@ -32,8 +33,11 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)
+TILT = "tilt\nmrad"
+"""Column of a cage in space."""
+
 SHORT_EVIDENCE = (
-    *("material", "motion", "stable runs by kick", "largest\noffset", "drift\n1/s"),
+    *("material", "motion", "stable runs by kick", "largest\noffset", TILT, "drift\n1/s"),
     *("force at\na pocket", "force on\nthe land", "rubs\nwith"),
 )
 ETA = "bearing's\neta"
@@ -83,6 +87,7 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
         paragraph(in_short(found), indent=""),
         section(_title(found.environment), verdicts(rows), *legend),
         *_over_inputs(rows, study),
+        *by_the_other_ball(found, rows),
         section(
             f"Evidence: {_ensemble(found)}",
             _short_evidence(rows),
@@ -116,6 +121,7 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         paragraph(in_short(found), indent=""),
         environment(found, own),
         *_over_inputs(own.materials, study),
+        *by_the_other_ball(found, own.materials),
         paragraph(LEGEND),
         paragraph(EVIDENCE_LEGEND),
         *detail,
@@ -267,12 +273,16 @@ def _ensemble(found: Ranking) -> str:
 
 def _short_evidence(rows: Sequence[Row]) -> str:
     """Return motion, largest offset, drift, forces and rubbing of every candidate that has a verdict."""
+    judged = [found for row in rows if (found := judgement(row)) is not None]
+    flat = all(found.largest_tilt is None for found in judged)
+    headers = [header for header in SHORT_EVIDENCE if header != TILT or not flat]
     cells = [
         [
             row.name,
             motion_words(found.cage_motion),
             " ".join(str(kick.settles) for kick in found.by_kick),
             quantity(found.largest_offset, "m", 3),
+            *([] if flat else [number(1e3 * (found.largest_tilt or 0.0), 1)]),
             significant(found.drift_rate, 2),
             quantity(found.largest_contact_force, "N", 3),
             quantity(found.largest_land_force, "N", 3),
@@ -281,7 +291,7 @@ def _short_evidence(rows: Sequence[Row]) -> str:
         for row in rows
         if (found := judgement(row)) is not None
     ]
-    return table(SHORT_EVIDENCE, cells, left=3) if cells else "  none: no verdict was finished"
+    return table(headers, cells, left=3) if cells else "  none: no verdict was finished"
 
 
 def evidence(rows: Sequence[Row]) -> str:

@@ -1,20 +1,33 @@
-"""What a study's cage has in space."""
+"""From the cage of a study to the cage that moves."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+import warnings
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
+from separatrix.cage import PlanarCage
 from separatrix.cage.space_body import SpaceBody
+from separatrix.errors import ValidityWarning
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
-from separatrix.units import MetrePerSecond, NewtonPerMetre
+from separatrix.units import MetrePerSecond, NewtonPerMetre, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage_body import CageInertia
     from separatrix.chain.contacts import BearingState
     from separatrix.chain.mobility import Mobility
     from separatrix.study import BallBearing, CageDesign, StabilitySettings
+
+
+_OF_THE_CHAIN = {"mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"}
+
+
+def as_designed(design: CageDesign) -> dict[str, Any]:
+    """What the moving cage takes from the design as it is: the fields of one name that the chain leaves."""
+    shared = {f.name for f in fields(PlanarCage)} & {f.name for f in fields(design)}
+    return {name: getattr(design, name) for name in sorted(shared - _OF_THE_CHAIN)}
 
 
 def space_body(
@@ -57,3 +70,16 @@ def space_body(
         axial_kick=settings.axial_kick,
         tilt_kick=settings.tilt_kick,
     )
+
+
+def warn_if_balls_are_driven(cage: PlanarCage) -> None:
+    """Warn where free balls would lead and lag by more than their clearance."""
+    if cage.lead_amplitude > cage.half_play:
+        lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
+        warnings.warn(
+            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
+            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
+            "wear.",
+            ValidityWarning,
+            stacklevel=4,
+        )

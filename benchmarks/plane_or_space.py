@@ -1,0 +1,83 @@
+"""Critical friction in the plane against that in space, over speed, pocket shape, pitch angle and kick.
+
+python benchmarks/plane_or_space.py > docs/theory/plane-or-space.csv: about half an hour on two cores. The
+cage is that of the shipped turbopump with its outer land; its balls spin as they do at full speed.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import separatrix
+from separatrix.cage import PlanarCage
+from separatrix.limits import critical_friction
+from separatrix.limits.growth import GrowthCounter
+from separatrix.study import BallModel, MotionModel, PocketShape, StabilitySettings
+
+SPEEDS = (669.0, 400.0, 200.0, 100.0, 50.0, 0.0)
+ROUND, SQUARE = PocketShape.CYLINDRICAL, PocketShape.SQUARE
+KINDS = (
+    *((ROUND, 25.4, 0.5), (SQUARE, 25.4, 0.5), (ROUND, 14.0, 0.5)),
+    *((ROUND, 25.4, 0.1), (ROUND, 25.4, 2.0), (ROUND, 5.0, 0.5)),
+)
+"""Shape of the pockets, pitch of the balls' spin [deg], and kick [m/s]."""
+
+RUNS = 24
+HEAD = "ball,pocket_shape,pitch_deg,kick_m_s,cage_speed_rad_s"
+ENDS = "plane,plane_low,plane_high,space,space_low,space_high"
+
+
+def turbopump(ball: BallModel) -> PlanarCage:
+    """Cage of the shipped turbopump in space."""
+    study = separatrix.read_study("cryogenic-turbopump")
+    if study.cage is None:
+        raise LookupError(study.name)
+    design = replace(study.cage, motion=MotionModel.SPACE, ball=ball)
+    return separatrix.solve(replace(study, cage=design)).cage_with(0.1)
+
+
+def case(cage: PlanarCage, speed: float, shape: PocketShape, pitch: float) -> PlanarCage:
+    """The cage at another speed, with other pockets and another pitch of the balls' spin."""
+    if cage.space is None:
+        raise LookupError
+    spin, lean = math.hypot(*cage.space.ball_spin[:2]), math.radians(pitch)
+    turned = (-spin * math.cos(lean), spin * math.sin(lean), 0.0)
+    space = replace(cage.space, ball_spin=turned, axial_play=cage.pocket_clearance / 2.0)
+    ring = cage.inner_speed * speed / cage.cage_speed
+    return replace(cage, pocket_shape=shape, cage_speed=speed, inner_speed=ring or 1.0, space=space)
+
+
+def row(cage: PlanarCage, kick: float) -> str:
+    """Critical friction of both, with 95 % intervals; empty where there is none."""
+    if cage.space is None:
+        raise LookupError
+    settings = StabilitySettings(kicks=(kick,), reference_kick=kick, runs=RUNS)
+    lean = math.atan2(cage.space.ball_spin[1], -cage.space.ball_spin[0])
+    cells: list[str] = []
+    # in the plane only the outward part of the friction acts
+    for one, share in ((replace(cage, space=None), 1.0 / math.cos(lean)), (cage, 1.0)):
+        found = critical_friction(one, None, settings, counter=GrowthCounter(one, settings), band=False)
+        values = (found.critical_friction, found.scatter_low, found.scatter_high)
+        cells += ["" if value is None else f"{value * share:.4f}" for value in values]
+    return ",".join(cells)
+
+
+def rows(ball: BallModel) -> Iterator[str]:
+    """All cases, in order."""
+    cage = turbopump(ball)
+    cases = [(*kind, speed) for kind, speed in itertools.product(KINDS, SPEEDS)]
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        done = pool.map(lambda c: row(case(cage, c[3], c[0], c[1]), c[2]), cases)
+        for (shape, pitch, kick, speed), cells in zip(cases, done, strict=True):
+            yield f"{ball.value},{shape.value},{pitch:g},{kick:g},{speed:g},{cells}"
+
+
+if __name__ == "__main__":
+    print(f"{HEAD},{ENDS}", flush=True)
+    for line in rows(BallModel(sys.argv[1]) if len(sys.argv) > 1 else BallModel.DAMPER):
+        print(line, flush=True)
