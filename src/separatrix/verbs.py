@@ -280,7 +280,7 @@ def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
 def simulate(
     study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0
 ) -> SimulationAnswer | SpaceSimulationAnswer:
-    """Follow one run of the ensemble in the plane or in space, by default the first from the reference kick.
+    """Follow one run of the ensemble in plane or space, by default the first from the reference kick.
 
     Parameters
     ----------
@@ -309,9 +309,8 @@ def simulate(
         course = simulate_in_space(cage, **asked)
         found = analyse(cage, course, capacity=transmitted_force(solution))
         _warn_of_motion(solution, course.largest_contact_force, found.largest_offset)
-        return SpaceSimulationAnswer(
-            solution=solution, cage=cage, history=course, analysis=found, kick=speed, run=run
-        )
+        seen: dict[str, Any] = {"history": course, "analysis": found, "kick": speed, "run": run}
+        return SpaceSimulationAnswer(solution=solution, cage=cage, **seen)
     history = follow(cage, **asked)
     force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
     _warn_of_motion(solution, float(force), float(offset))
@@ -319,7 +318,6 @@ def simulate(
 
 
 def _warn_of_motion(solution: Solution, force: Newton, offset: Metre) -> None:
-    """Warn where the largest pocket force and offset of a run are outside the range of the model."""
     made_of = cage_candidate(solution.study)
     moved = Moved(made_of.name if made_of else "The cage", force, offset)
     for note in beyond_motion(solution, [moved]):

@@ -135,6 +135,19 @@ def _frame(high: float, low: float, half_width: float) -> Array:
     return np.stack([middle + half * c / corner, half_width * s / corner], axis=1)
 
 
+def _enlargement(data: xr.Dataset, ball: float, half_width: float, across: float | None) -> float:
+    """Return how many times movements are enlarged: bars stay between pockets, the cage in the picture."""
+    radius, play = float(data["cage_pitch_radius"]), data["half_play"].values
+    pitch = 2.0 * np.pi * radius / max(3, data.sizes["ball"])
+    tilted = radius * float(np.hypot(*data["lean"].values.T).max(initial=0.0))
+    far = max(tilted, float(np.hypot(*data["centre"].values.T).max(initial=0.0)))
+    far = max(far, float(np.abs(data["position"].values[:, 2]).max(initial=0.0)))
+    most = [0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball) / play.max()] if play.max() > 0.0 else []
+    most += [(RIM * half_width - ball) / across] if across else []
+    most += [FARTHEST * radius / far] if far > 0.0 else []
+    return float(f"{max(1.0, min(most, default=1.0)):.2g}")
+
+
 def space_scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> SpaceScene:
     """Return sizes and movements of a run at some samples.
 
@@ -153,15 +166,8 @@ def space_scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Spa
     study = study_of(data).get("cage", {})
     wide = study.get("width", {}).get("value") if isinstance(study.get("width"), dict) else None
     half_width = max(0.5 * float(wide) if wide else 0.0, WIDE * ball)
-    pitch = 2.0 * np.pi * radius / max(3, data.sizes["ball"])
     across = axial_play(data)
-    far = float(np.hypot(*data["centre"].values.T).max(initial=0.0))
-    tilted = radius * float(np.hypot(*data["lean"].values.T).max(initial=0.0))
-    far = max(far, tilted, float(np.abs(data["position"].values[:, 2]).max(initial=0.0)))
-    most = [0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball) / play.max()] if play.max() > 0.0 else []
-    most += [(RIM * half_width - ball) / across] if across else []
-    most += [FARTHEST * radius / far] if far > 0.0 else []
-    enlarged = float(f"{max(1.0, min(most, default=1.0)):.2g}")
+    enlarged = _enlargement(data, ball, half_width, across)
     land, thickness = land_boundary(data), 2.0 * THICK * ball
     side = 0 if land is None else (-1 if str(data["cage_guidance"].values) == "inner" else 1)
     heights = np.atleast_1d(data["cage_space_land_heights"].values if side else np.zeros(0))

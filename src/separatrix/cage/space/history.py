@@ -219,6 +219,14 @@ def _history(
     """Record of the rows that the kernel filled and of what it counted, back in SI units."""
     T, R, Z, M = time_unit(cage), cage.pitch_radius, cage.ball_count, cage.mass + body_of(cage).added_mass
     energy, at = M / T**2, MOTIONS + len(SOURCES)
+    counted = {name: float(evidence[name]) for name in FROM_ENSEMBLE}
+    counted["land_impulse"] = float(look["pressed"]) * M / T
+    forces = {
+        "land_rubbing": "rubbed",
+        "largest_contact_force": "force_max",
+        "largest_land_force": "land_max",
+    }
+    counted |= {name: float(look[key]) * energy for name, key in forces.items()}
     lead, axial = rows[:, at : at + Z], rows[:, at + Z : at + 2 * Z]
     more, angles = start[FIRST_LEAD + Z : FIRST_LEAD + 2 * Z], start[FIRST_LEAD + 2 * Z :]
     force, angle = contact_forces(cage, rows, lead, axial, more, angles)
@@ -249,15 +257,11 @@ def _history(
         pocket_impacts=hits.astype(np.float64),
         pocket_rubbing=heat * energy,
         land_impacts=int(look["land_hits"]),
-        land_impulse=float(look["pressed"]) * M / T,
-        land_rubbing=float(look["rubbed"]) * energy,
-        largest_contact_force=float(look["force_max"]) * energy,
-        largest_land_force=float(look["land_max"]) * energy,
         outcome=RunOutcome(int(evidence["outcome"])),
         cause=Cause(int(evidence["cause"])),
         judged_from=float(evidence["judged_from"]),
         judged_until=float(evidence["followed"]),
-        **{name: float(evidence[name]) for name in FROM_ENSEMBLE},
+        **counted,
     )
 
 
