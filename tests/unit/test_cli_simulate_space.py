@@ -57,11 +57,11 @@ const pen = new Proxy({}, { get: (t, k) => t[k] ?? ((...a) => { calls[k] = (call
   for (const v of a) if (typeof v === "number" && !Number.isFinite(v)) throw new Error(`${k} ${a}`); }),
   set: (t, k, v) => { t[k] = v; return true; } });
 const made = {};
-const element = (id) => made[id] ??= { id, value: "0",
 const element = (id) => made[id] ??= { id, value: "0", textContent: id === "run" ? data : "",
   clientWidth: 600, clientHeight: 400, checked: false, tagName: "X", getContext: () => pen,
   replaceChildren() {}, appendChild: (c) => c, setPointerCapture() {},
   addEventListener: (e, f) => { heard[id + " " + e] = f; } };
+let queue = [];
 global.document = { getElementById: element, createElement: () => ({ appendChild: (c) => c }),
   addEventListener: (e, f) => { heard["document " + e] = f; } };
 global.window = { devicePixelRatio: 2, addEventListener: (e, f) => { heard["window " + e] = f; } };
