@@ -14,6 +14,7 @@ from PIL import Image
 
 import separatrix
 from separatrix import figures, present
+from separatrix.cage import run_ensemble
 from separatrix.cli import main
 from separatrix.figures.animation import animate
 from separatrix.figures.space import in_plane, is_in_space, land_forces
@@ -130,6 +131,23 @@ def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
     assert 0.98 * counted < sampled <= counted * (1.0 + 1e-9)
     strips = np.trapezoid(data["land_force"].sum("strip"), data["time"])
     assert float(strips) == pytest.approx(float(data["land_impulse"]), rel=0.02)
+
+
+def test_whirl_of_the_samples_is_that_of_the_engine(folder):
+    """Whirl ratios, tilt and axial place of the judged part, by integrals of the engine within its steps.
+
+    The steps differ, so that motions part slowly: 1 % after two turns of the cage.
+    """
+    answer = separatrix.simulate(folder / "space.toml")
+    settings = answer.solution.stability
+    engine = run_ensemble(answer.cage, settings, kicks=[answer.kick], runs=1)
+    found, turn = answer.analysis, answer.cage.cage_speed
+    whirl = found.whirl
+    assert whirl.offset_ratio * whirl.cage_speed == pytest.approx(engine.orbit_speed[0, 0], abs=0.01 * turn)
+    assert whirl.tilt_ratio * whirl.cage_speed == pytest.approx(engine.cone_speed[0, 0], abs=0.01 * turn)
+    assert found.tilt.mean == pytest.approx(engine.mean_tilt[0, 0], rel=0.01)
+    assert found.offset.mean == pytest.approx(engine.mean_offset[0, 0], rel=0.01)
+    assert found.axial.mean == pytest.approx(engine.axial_place[0, 0], abs=1e-6)
 
 
 def test_work_and_energy_balance_in_the_samples(data):
