@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from separatrix.cage import History, PlanarCage
+from separatrix.cage import History, PlanarCage, SpaceAnalysis, SpaceHistory
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
@@ -110,6 +110,16 @@ class SimulationAnswer(OfCage):
     """One run of the ensemble, from one kick."""
 
     history: History
+    kick: MetrePerSecond
+    run: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpaceSimulationAnswer(OfCage):
+    """One run of a cage in space, from one kick."""
+
+    history: SpaceHistory
+    analysis: SpaceAnalysis
     kick: MetrePerSecond
     run: int
 

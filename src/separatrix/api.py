@@ -17,6 +17,7 @@ from separatrix.answers import (
     RestitutionAnswer,
     SensitivityAnswer,
     SimulationAnswer,
+    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
@@ -215,7 +216,7 @@ def mobility(study: Asked) -> Answer[MobilityAnswer]:
 
 def simulate(
     study: Asked, *, kick: str | MetrePerSecond | None = None, run: int = 0
-) -> Answer[SimulationAnswer]:
+) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
     return _answer("simulate", study, lambda one: verbs.simulate(one, kick=kick, run=run), "cage")
 

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from separatrix.answers import (
     CheckAnswer,
@@ -17,10 +18,11 @@ from separatrix.answers import (
     RestitutionAnswer,
     SensitivityAnswer,
     SimulationAnswer,
+    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import PlanarCage, linear_whirl_frequency
+from separatrix.cage import PlanarCage, analyse, linear_whirl_frequency, simulate_in_space
 from separatrix.cage import simulate as follow
 from separatrix.cage_choice import (
     cage_candidate,
@@ -53,16 +55,17 @@ from separatrix.limits.map_parameters import KICK
 from separatrix.limits.map_records import MapQuestion
 from separatrix.ranking import rank as rank_materials
 from separatrix.ranking.drawn import frictions_to_draw
-from separatrix.ranking.plausible import Moved, beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
 from separatrix.runner import Progress, Runner, made_into
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
-from separatrix.units import MetrePerSecond, format_quantity, parse
+from separatrix.units import Metre, MetrePerSecond, Newton, format_quantity, parse
 
 SAMPLES_A_WHIRL = 15
 """Samples of a simulated run in a period of the linear whirl."""
 
 MOST_SHOWN = 20_000
-"""Samples of a simulated run."""
+FEWEST_SHOWN = (1000, 4000)
+"""Samples of a simulated run; the fewest in the plane, and in space, where axial impacts are shorter."""
 
 LAST_RUN = MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
@@ -274,8 +277,10 @@ def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
     return speed
 
 
-def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the reference kick.
+def simulate(
+    study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0
+) -> SimulationAnswer | SpaceSimulationAnswer:
+    """Follow one run of the ensemble in plane or space, by default the first from the reference kick.
 
     Parameters
     ----------
@@ -292,21 +297,31 @@ def simulate(study: Study, *, kick: str | MetrePerSecond | None = None, run: int
     _warn_of_extrapolation(solution)
     speed = settings.middle_kick if given is None else given
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
-    history = follow(
-        cage,
-        kick=speed,
-        run=run,
-        seed=settings.seed,
-        duration=settings.duration,
-        ball_scatter=settings.ball_scatter,
-        samples=int(min(max(samples, 1000), MOST_SHOWN)),
-    )
-    made_of = cage_candidate(solution.study)
+    asked: dict[str, Any] = {
+        "kick": speed,
+        "run": run,
+        "seed": settings.seed,
+        "duration": settings.duration,
+        "ball_scatter": settings.ball_scatter,
+        "samples": int(min(max(samples, FEWEST_SHOWN[cage.space is not None]), MOST_SHOWN)),
+    }
+    if cage.space is not None:
+        course = simulate_in_space(cage, **asked)
+        found = analyse(cage, course, capacity=transmitted_force(solution))
+        _warn_of_motion(solution, course.largest_contact_force, found.largest_offset)
+        seen: dict[str, Any] = {"history": course, "analysis": found, "kick": speed, "run": run}
+        return SpaceSimulationAnswer(solution=solution, cage=cage, **seen)
+    history = follow(cage, **asked)
     force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
-    moved = Moved(made_of.name if made_of else "The cage", float(force), float(offset))
-    for note in beyond_motion(solution, [moved]):
-        warnings.warn(note, ValidityWarning, stacklevel=2)
+    _warn_of_motion(solution, float(force), float(offset))
     return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
+
+
+def _warn_of_motion(solution: Solution, force: Newton, offset: Metre) -> None:
+    made_of = cage_candidate(solution.study)
+    moved = Moved(made_of.name if made_of else "The cage", force, offset)
+    for note in beyond_motion(solution, [moved]):
+        warnings.warn(note, ValidityWarning, stacklevel=3)
 
 
 def rank(study: Study, runner: Runner) -> RankingAnswer:

@@ -14,6 +14,7 @@ from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion
 from separatrix.cage.runs import run_ensemble
+from separatrix.cage.space.analysis import SpaceAnalysis, analyse
 from separatrix.cage.space.ensemble import SpaceEnsemble
 from separatrix.cage.space.history import SpaceHistory, simulate_in_space
 from separatrix.cage.space_body import SpaceBody
@@ -28,10 +29,12 @@ __all__ = [
     "KickCount",
     "PlanarCage",
     "RunOutcome",
+    "SpaceAnalysis",
     "SpaceBody",
     "SpaceEnsemble",
     "SpaceHistory",
     "Verdict",
+    "analyse",
     "drift_law",
     "follow",
     "impact_restitution",

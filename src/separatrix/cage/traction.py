@@ -147,7 +147,8 @@ def grip_term(
         k -= LANES
     bent[first], bent[first + 1], bent[first + 2], bent[first + 3] = r0, r1, r2, r3
     for m in range(LANES):
-        bent[first + m] *= bend * AFTER[n - 1] / (1.0 + bend * square[m])
+        per = bent[m] * bent[m]  # 1/w_0 = g_0^(1/a)
+        bent[first + m] *= bend * (per if power == 0.5 else per * per) * AFTER[n - 1]
         grip[first + m] += slope * bent[first + m]
 
 

@@ -131,7 +131,7 @@ class Judgement:
     runs : int
         Runs at each kick.
     largest_tilt, axial_travel : float or None
-        Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m] in any run;
+        Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
         None in the plane.
     cone_ratio, impact_rate : float or None
         The same medians as of the whirl, in space: speed at which the lean of the axis goes round, in the

@@ -111,13 +111,14 @@ def compare(first: Path, second: Path, out: Path | None, *, as_json: bool) -> in
 
 def read(path: Path) -> Saved:
     """Return a saved answer of `simulate` or `rank` that has all that such an answer has."""
+    from separatrix.figures.space import in_plane
     from separatrix.present import load
 
     here = [file for verb in VERBS if (file := path / f"{verb}.nc").exists()] if path.is_dir() else [path]
     if not here or not here[0].exists():
         cure = "Make one with: separatrix simulate STUDY --out DIR, or separatrix rank STUDY --out DIR."
         raise InputError(str(path), "does not contain a saved simulation or ranking", cure=cure)
-    data = load(here[0])
+    data = in_plane(load(here[0]))
     verb, title = str(data.attrs.get("verb", "none")), str(data.attrs.get("title", ""))
     if verb not in VERBS:
         raise InputError(str(path), f"must be an answer of {' or '.join(VERBS)}", got=verb)

@@ -132,6 +132,8 @@ def _write_data(asked: tuple[str, object, Study, list[str]], folder: Path, optio
     import logging
 
     from separatrix import figures
+    from separatrix.figures.space import is_in_space
+    from separatrix.figures.space_page import write_page
     from separatrix.present import dataset, save
 
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
@@ -140,6 +142,8 @@ def _write_data(asked: tuple[str, object, Study, list[str]], folder: Path, optio
     figures.save_all(figures.draw(verb, data), folder)
     if verb == "sweep":
         _write_tables(data, folder)
+    if verb == "simulate" and is_in_space(data):
+        write_page(data, folder / "simulation.html")
     if options.animate is not None:
         from separatrix.figures.animation import animate
 

@@ -136,7 +136,7 @@ VERBS: tuple[Verb, ...] = (
     ),
     Verb(
         name="simulate",
-        help="Follow one run of the cage in the bearing plane.",
+        help="Follow one run of the cage, in the plane or in space.",
         needs=("cage",),
         epilog="An unresolved run says why. --animate mp4 needs the extra animation.",
         question=("kick", "run", "animate"),

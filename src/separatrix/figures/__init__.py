@@ -9,7 +9,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from separatrix.errors import InputError
-from separatrix.figures import chain, contact, map, mobility, ranking, sensitivity, simulation, stability
+from separatrix.figures import (
+    chain,
+    contact,
+    map,
+    mobility,
+    ranking,
+    sensitivity,
+    simulation,
+    space,
+    stability,
+)
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 
 __all__ = ["draw", "plot", "save", "save_all"]
@@ -21,7 +31,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "mobility": mobility.figures,
     "stability": stability.figures,
     "map": map.figures,
-    "simulate": simulation.figures,
+    "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
     "sweep": map.sweep_figures,
@@ -52,7 +62,10 @@ def draw(
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
     with journal():
         if other is not None:
-            pair = [(literal_texts(one), name) for one, name in zip((data, other), names, strict=True)]
+            pair = [
+                (literal_texts(space.in_plane(one)), name)
+                for one, name in zip((data, other), names, strict=True)
+            ]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
             yield "comparison", settled(simulation.comparison(pair[0][0], pair[1][0], titles))
         elif verb in FIGURES:

@@ -20,6 +20,7 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from separatrix.errors import InputError
+from separatrix.figures import space_film
 from separatrix.figures.motion import (
     AROUND,
     fastest_whirl,
@@ -31,6 +32,7 @@ from separatrix.figures.motion import (
 )
 from separatrix.figures.scene import ROUND, Scene, scene, turned
 from separatrix.figures.simulation import draw_energy, is_logarithmic, milliseconds, time_limits
+from separatrix.figures.space import is_in_space
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, heading, journal, literal_texts
 from separatrix.units import Array, format_number
 
@@ -89,7 +91,11 @@ def animate(
     data, moments = literal_texts(data), frame_moments(data)
 
     def film() -> Iterator[Image.Image]:
-        for done, image in enumerate(pictures(data, scene(data, moments, fixed=fixed), moments), start=1):
+        if is_in_space(data):
+            images = space_film.pictures(data, moments, fixed=fixed)
+        else:
+            images = pictures(data, scene(data, moments, fixed=fixed), moments)
+        for done, image in enumerate(images, start=1):
             yield image
             if progress is not None:
                 progress(done, moments.size)

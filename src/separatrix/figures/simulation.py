@@ -36,7 +36,7 @@ from separatrix.units import Array
 SPRINGS = ("spring_energy", "land_energy")
 SOURCES = (
     *("pocket friction", "race dampers", "moving frame", "land friction", "land damping"),
-    *("ball drive", "gravity", "unbalance"),
+    *("ball drive", "gravity", "unbalance", "races", "grooves"),
 )
 """What does work, in the order of its colours: one source looks alike in every picture."""
 
@@ -47,6 +47,9 @@ WIDE = 30.0
 
 COLUMNS = 600
 """Most columns of the picture of the forces; each shows the largest force of its samples."""
+
+GOES_ON = 1e-3
+"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
 
 TURNS, FEWEST, BEFORE = 6.0, 40, 0.15
 """Turns of the whirl and least samples of the close view; its least share before the largest force."""
@@ -71,7 +74,8 @@ def run(data: xr.Dataset) -> Figure:
     draw_energy(energy, data)
     energy.set_title("b  Energy; shaded: the judged part")
     _offset(offset, data)
-    _work(work, data)
+    draw_work(work, data)
+    work.set_title(f"d  Work; energy balance closes to {energy_gap(data):.0e}")
     if float(data["judged_until"]) > float(data["judged_from"]):
         for axes in (energy, offset, work):
             ends = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
@@ -92,8 +96,17 @@ def milliseconds(data: xr.Dataset) -> Array:
 
 
 def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: a motion that settles does so early."""
-    return any(str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 for run in runs)
+    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
+    return any(
+        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
+        for run in runs
+    )
+
+
+def _goes_on(data: xr.Dataset) -> bool:
+    """Whether a cage in space still moves in the last fifth of its run."""
+    energy = data["kinetic_energy"].values
+    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
 
 
 def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
@@ -170,14 +183,14 @@ def draw_energy(axes: Axes, *runs: xr.Dataset, looks: Sequence[Look] = ({"color"
     time_axis(axes, *runs)
 
 
-def _work(axes: Axes, data: xr.Dataset) -> None:
+def draw_work(axes: Axes, data: xr.Dataset) -> None:
     """Draw the work of each source since the start, named at the ends of the lines."""
     done = works(data)
     size, symbol = energy_unit(max((float(np.abs(work).max()) for work in done.values()), default=0.0))
     axes.axhline(0.0, color=GREY, lw=0.4)
     for name, work in done.items():
         axes.plot(milliseconds(data), work / size, lw=1.0, **source_look(name))
-    axes.set(ylabel=f"work [{symbol}]", title=f"d  Work; energy balance closes to {energy_gap(data):.0e}")
+    axes.set(ylabel=f"work [{symbol}]")
     time_axis(axes, data)
     last = float(axes.get_xlim()[1])
     ends = [(last, float(work[-1]) / size, name, source_look(name)["color"]) for name, work in done.items()]

@@ -16,10 +16,11 @@ from separatrix.answers import (
     RestitutionAnswer,
     SensitivityAnswer,
     SimulationAnswer,
+    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import History, Judgement
+from separatrix.cage import History, Judgement, SpaceHistory
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
@@ -178,7 +179,7 @@ def _(found: MapAnswer) -> Node:
     return shape(found.map) | _cage(found)
 
 
-def outcome_sentence(history: History) -> str:
+def outcome_sentence(history: History | SpaceHistory) -> str:
     """Return in words where the motion of a run ends."""
     cause = CAUSES.get(history.cause)
     return OUTCOME_SENTENCES[history.outcome] + (f" Cause: {cause}." if cause else "")
@@ -198,6 +199,18 @@ def _(found: SimulationAnswer) -> Node:
         "rubbing_power": Leaf(rubbing, "W"),
     }
     return node | shape(history) | _cage(found)
+
+
+@shape.register
+def _(found: SpaceSimulationAnswer) -> Node:
+    history, analysis = shape(found.history), shape(found.analysis)
+    node: Node = {
+        "kick": Leaf(found.kick, "m/s"),
+        "run": Leaf(found.run),
+        "outcome_sentence": Leaf(outcome_sentence(found.history)),
+    }
+    largest = {name: analysis.pop(name) for name in ("largest_offset", "largest_axial", "largest_tilt")}
+    return node | largest | history | {"analysis": Group(analysis)} | _cage(found)
 
 
 # Rankings. Every row has the keys of a ranked one, None where it has no value.

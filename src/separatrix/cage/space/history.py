@@ -33,9 +33,11 @@ from separatrix.cage.space_body import pocket_plays
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import StabilitySettings
-from separatrix.units import Array, MetrePerSecond, Ratio, Second
+from separatrix.units import Array, Joule, MetrePerSecond, Newton, PerSecond, Ratio, Second, Watt
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from separatrix.cage.planar import PlanarCage
 
 SOURCES = tuple(name for name in Works.__annotations__ if name != "gross")
@@ -47,7 +49,9 @@ MOTIONS = 14
 class SpaceHistory:
     """One run in space, sampled, seen in the frame that turns with the ball set.
 
-    A bearing that turns backward is shown as its mirror image, as it is run.
+    A bearing that turns backward is shown as its mirror image, as it is run. Forces and work are samples and
+    sums over the whole history; extremes of forces, impacts and rubbing are those of the engine's steps, none
+    of which falls between two samples.
 
     Attributes
     ----------
@@ -60,6 +64,12 @@ class SpaceHistory:
         leans towards (tilt_y, -tilt_x).
     rotation, rotation_rate : ndarray
         Of the cage against the ball set, shape (time,) [rad] and [rad/s].
+    centre, centre_velocity : ndarray
+        Geometric centre of the cage across the axis, shape (time, across) [m], [m/s]: of position without
+        unbalance.
+    lean, lean_rate : ndarray
+        Where its geometric axis leans to: the way of a point on it over its height, shape (time, across)
+        [rad], [rad/s].
     ball_lead, ball_axial : ndarray
         Lead of each ball, and its place along the groove, shape (time, ball) [m].
     contact_force, contact_angle : ndarray
@@ -73,7 +83,15 @@ class SpaceHistory:
         Of the cage in the turning frame; of springs and of balls that move, shape (time,) [J].
     work : dict of str to ndarray
         Work done since the start by each of `SOURCES`, shape (time,) [J].
-    outcome, cause
+    half_play : ndarray
+        Half the clearance along the orbit that each pocket has, shape (ball,) [m].
+    pocket_impacts, pocket_rubbing : ndarray
+        Impacts of each pocket, and its force times sliding speed over time, shape (ball,) [-], [J].
+    land_impacts, land_impulse, land_rubbing : float
+        Impacts of the strips of the lands, the integral of their force, and of that times the sliding speed.
+    largest_contact_force, largest_land_force : float
+        Of a pocket, and of a strip of a land [N].
+    outcome, cause, end_energy, growth_rate, drift_rate, pocket_power, land_power, energy_imbalance
         As in the ensemble.
     judged_from, judged_until : float
         The last part of the run, by which it was judged [s].
@@ -86,6 +104,10 @@ class SpaceHistory:
     tilt_rate: Annotated[Array, "rad/s", ("time", "tilt_axis")]
     rotation: Annotated[Array, "rad", ("time",)]
     rotation_rate: Annotated[Array, "rad/s", ("time",)]
+    centre: Annotated[Array, "m", ("time", "across")]
+    centre_velocity: Annotated[Array, "m/s", ("time", "across")]
+    lean: Annotated[Array, "rad", ("time", "across")]
+    lean_rate: Annotated[Array, "rad/s", ("time", "across")]
     ball_lead: Annotated[Array, "m", ("time", "ball")]
     ball_axial: Annotated[Array, "m", ("time", "ball")]
     contact_force: Annotated[Array, "N", ("time", "ball")]
@@ -96,10 +118,31 @@ class SpaceHistory:
     stored_energy: Annotated[Array, "J", ("time",)]
     work: Annotated[dict[str, Array], "J", ("time",)]
     pocket_angle: Annotated[Array, "rad", ("ball",)]
+    half_play: Annotated[Array, "m", ("ball",)]
+    pocket_impacts: Annotated[Array, "-", ("ball",)]
+    pocket_rubbing: Annotated[Array, "J", ("ball",)]
+    land_impacts: int
+    land_impulse: Annotated[float, "N s"]
+    land_rubbing: Joule
+    largest_contact_force: Newton
+    largest_land_force: Newton
     outcome: RunOutcome
     cause: Cause
     judged_from: Second
     judged_until: Second
+    end_energy: Joule
+    growth_rate: PerSecond
+    drift_rate: PerSecond
+    pocket_power: Watt
+    land_power: Watt
+    energy_imbalance: Ratio
+
+
+FROM_ENSEMBLE = (
+    *("end_energy", "growth_rate", "drift_rate", "pocket_power", "land_power"),
+    "energy_imbalance",
+)
+"""Numbers of the ensemble's run that its history has, too."""
 
 
 def simulate_in_space(
@@ -144,29 +187,50 @@ def simulate_in_space(
     unit, limits = time_unit(cage), run_limits(cage, kick, duration)
     times = np.linspace(0.0, length, samples)
     rows = np.zeros((samples, MOTIONS + len(SOURCES) + 2 * cage.ball_count + land_strips(cage)[0].size))
+    hits[:], heat[:] = 0, 0.0
+    books = books_for(1)
     filled = follow_run(
         numbers(cage, kick),
         parts_of(cage),
         starts[0],
         kick_speeds(cage, kick),
         cage.pocket_axial_offset,
-        books_for(1),
+        books,
         times / unit,
         limits.grown,
         rows,
         hits[0],
         heat[0],
     )
-    return _history(cage, starts[0], times[:filled], rows[:filled], evidence[0])
+    look = np.asarray(books.looks)[0]
+    return _history(cage, starts[0], times[:filled], rows[:filled], evidence[0], look, hits[0], heat[0])
 
 
-def _history(cage: PlanarCage, start: Array, times: Array, rows: Array, evidence: np.void) -> SpaceHistory:
-    """Record of the rows that the kernel filled, back in SI units."""
+def _history(
+    cage: PlanarCage,
+    start: Array,
+    times: Array,
+    rows: Array,
+    evidence: np.void,
+    look: np.void,
+    hits: NDArray[np.int64],
+    heat: Array,
+) -> SpaceHistory:
+    """Record of the rows that the kernel filled and of what it counted, back in SI units."""
     T, R, Z, M = time_unit(cage), cage.pitch_radius, cage.ball_count, cage.mass + body_of(cage).added_mass
     energy, at = M / T**2, MOTIONS + len(SOURCES)
+    counted = {name: float(evidence[name]) for name in FROM_ENSEMBLE}
+    counted["land_impulse"] = float(look["pressed"]) * M / T
+    forces = {
+        "land_rubbing": "rubbed",
+        "largest_contact_force": "force_max",
+        "largest_land_force": "land_max",
+    }
+    counted |= {name: float(look[key]) * energy for name, key in forces.items()}
     lead, axial = rows[:, at : at + Z], rows[:, at + Z : at + 2 * Z]
     more, angles = start[FIRST_LEAD + Z : FIRST_LEAD + 2 * Z], start[FIRST_LEAD + 2 * Z :]
     force, angle = contact_forces(cage, rows, lead, axial, more, angles)
+    place, rate = geometric(cage, rows)
     return SpaceHistory(
         time=times,
         position=rows[:, :3].copy(),
@@ -175,6 +239,10 @@ def _history(cage: PlanarCage, start: Array, times: Array, rows: Array, evidence
         tilt_rate=rows[:, 10:12] / (R * T),
         rotation=rows[:, 3] / R,
         rotation_rate=rows[:, 9] / (R * T),
+        centre=place[:, :2].copy(),
+        centre_velocity=rate[:, :2] / T,
+        lean=np.stack([place[:, 3], -place[:, 2]], axis=1) / R,
+        lean_rate=np.stack([rate[:, 3], -rate[:, 2]], axis=1) / (R * T),
         ball_lead=lead.copy(),
         ball_axial=axial.copy(),
         contact_force=force,
@@ -185,24 +253,38 @@ def _history(cage: PlanarCage, start: Array, times: Array, rows: Array, evidence
         stored_energy=rows[:, 13] * energy,
         work={name: rows[:, MOTIONS + i] * energy for i, name in enumerate(SOURCES)},
         pocket_angle=angles,
+        half_play=cage.half_play + more,
+        pocket_impacts=hits.astype(np.float64),
+        pocket_rubbing=heat * energy,
+        land_impacts=int(look["land_hits"]),
         outcome=RunOutcome(int(evidence["outcome"])),
         cause=Cause(int(evidence["cause"])),
         judged_from=float(evidence["judged_from"]),
         judged_until=float(evidence["followed"]),
+        **counted,
     )
+
+
+def geometric(cage: PlanarCage, rows: Array) -> tuple[Array, Array]:
+    """Geometric centre and tilt of the cage, and their rates: x, y, a and b of each row, shape (time, 4)."""
+    body, R = body_of(cage), cage.pitch_radius
+    e, lean = cage.unbalance / (cage.mass + body.added_mass), body.dynamic_unbalance * R
+    cos, sin, turn = np.cos(rows[:, 3] / R), np.sin(rows[:, 3] / R), rows[:, 9] / R
+    away = np.stack([-e * cos, -e * sin, lean * sin, -lean * cos], axis=1)
+    rate = np.stack([e * sin * turn, -e * cos * turn, lean * cos * turn, lean * sin * turn], axis=1)
+    columns = [0, 1, 4, 5]
+    return rows[:, columns] + away, rows[:, [c + 6 for c in columns]] + rate
 
 
 def contact_forces(
     cage: PlanarCage, rows: Array, lead: Array, axial: Array, more: Array, angles: Array
 ) -> tuple[Array, Array]:
     """Force of each pocket on its ball [N], and its angle on the ball [rad], both shape (time, ball)."""
-    body, R = body_of(cage), cage.pitch_radius
+    body = body_of(cage)
     around, apart, beside = pocket_plays(cage, body)
     cos, sin = np.cos(angles), np.sin(angles)
-    x, y, z, s, a, b = (rows[:, [i]] for i in range(6))
-    e, lean = cage.unbalance / (cage.mass + body.added_mass), body.dynamic_unbalance * R
-    x, y = x - e * np.cos(s / R), y - e * np.sin(s / R)
-    a, b = a + lean * np.sin(s / R), b - lean * np.cos(s / R)
+    x, y, a, b = (column[:, np.newaxis] for column in geometric(cage, rows)[0].T)
+    z, s = rows[:, [2]], rows[:, [3]]
     along = y * cos - x * sin + s - lead
     across = z - (b * cos - a * sin) - axial
     if cage.pocket_shape is PocketShape.SQUARE:

@@ -207,7 +207,7 @@ def enter_end(p: Numbers, books: Books, end: int, length: float, limits: Limits,
     out.orbit_speed = (orbit + p.turning) / p.unit
     cone = sums.tilt_swept / sums.tilt_squared if sums.tilt_squared > 0.0 else 0.0
     out.cone_speed = (cone + p.turning) / p.unit if sums.tilt_squared > 0.0 else 0.0
-    out.cone_phase = np.arctan2(sums.together, sums.crossed)
+    out.cone_phase = np.arctan2(sums.crossed, sums.together)
     out.mean_tilt = sums.tilt / time / p.radius
     out.axial_place = sums.axial / time
     out.axial_spread = np.sqrt(max(0.0, sums.axial_squared / time - out.axial_place**2))
