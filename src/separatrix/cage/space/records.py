@@ -67,9 +67,6 @@ sliding outward and across, friction over it, and the ball against the middle of
 three only the first coefficient is used: the inverse of the distance and of the sliding, and a bound of how
 far the penetration goes in a step."""
 
-WORKING = 8
-"""Columns of a contact that its work needs: the first ones."""
-
 CONTACT_COLUMNS = 20
 
 LX, LY, FAR_L, NX, NY, DEPTH_L, PUSH_L, AROUND, BESIDE, SLIDE_L, SHARE_L, RUB_T, RUB_Z = range(13)
