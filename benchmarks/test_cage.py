@@ -1,4 +1,4 @@
-"""Speed of the planar cage: simulated seconds and impacts per second and core, of the shipped class too.
+"""Speed of the cage in the plane and in space: simulated seconds and impacts per second and core.
 
 Run with ``pytest benchmarks/test_cage.py``; each round is `RUNS` runs of 0.3 s, so the simulated seconds per
 second are 0.3 `RUNS` over the mean time; they are printed as `simulated_seconds_per_second`, with the impacts
@@ -14,6 +14,8 @@ import small_step
 
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
+from separatrix.cage.space_body import SpaceBody
+from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance, StabilitySettings
 
 RUNS = 16
@@ -48,6 +50,35 @@ CASES = {
         SHIPPED, guidance=Guidance.BALL, cage_speed=0.0, traction=TURBOPUMP
     ),
 }
+BODY = SpaceBody(
+    transverse_inertia=13.8e-6,
+    ball_spin=(-4083.218, 1942.614, -3.53),
+    ball_diameter=11.1125e-3,
+    axial_play=3e-4,
+    groove_damping=766.0,
+    groove_stiffness=5.05e6,
+    pivot_speed=0.05,
+)
+SPACE_RUNS = 4
+LIKELY = replace(SHIPPED, race_damping=356.0, ball_cage_friction=0.08)
+IN_SPACE = {
+    "in space, settles": LIKELY,
+    "in space, whirls": replace(LIKELY, ball_cage_friction=0.3),
+    "in space, round pockets, settle": replace(LIKELY, pocket_shape=PocketShape.CYLINDRICAL),
+    "in space, balls with inertia, settle": replace(LIKELY, traction=TURBOPUMP),
+}
+
+
+@pytest.mark.parametrize("name", IN_SPACE)
+def test_motion_in_space(benchmark, name):
+    """Runs of 0.3 s on one core, as long as they are followed."""
+    settings = StabilitySettings(kicks=(0.5,), runs=SPACE_RUNS, duration=0.3)
+    cage = replace(IN_SPACE[name], space=BODY)
+    run_ensemble(cage, settings, runs=1)
+    found = benchmark(run_ensemble, cage, settings)
+    impacts = int(found.pocket_impacts.sum() + found.land_impacts.sum())
+    benchmark.extra_info["simulated_seconds_per_second"] = found.followed.sum() / benchmark.stats["mean"]
+    benchmark.extra_info["impacts_per_second"] = impacts / benchmark.stats["mean"]
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -100,6 +100,7 @@ class SpaceBody:
             _check.between(self, "axial_gravity", -1e6, 1e6),
             _check.between(self, "dynamic_unbalance", 0.0, 0.1),
             _refused_lengths(self),
+            _refused_limits(self),
         )
 
     @property
@@ -117,6 +118,21 @@ def _refused_lengths(body: SpaceBody) -> Iterator[InputError]:
         yield InputError("SpaceBody.ball_spin", "must be three numbers [rad/s]", str(len(body.ball_spin)))
     if len(body.land_heights) not in (1, 2):
         yield InputError("SpaceBody.land_heights", "must be one or two [m]", str(len(body.land_heights)))
+
+
+def _refused_limits(body: SpaceBody) -> Iterator[InputError]:
+    """An infinite damping holds a ball in its groove; flats at an infinite play are none."""
+    if not body.groove_damping > 0.0:
+        yield _check.problem(body, "groove_damping", "must be > 0")
+    if not body.axial_play >= 0.0:
+        yield _check.problem(body, "axial_play", "must be >= 0")
+    if body.friction_lever is not None:
+        yield from _check.between(body, "friction_lever", 0.0, 1e3)
+    yield from _check.positive(body, "land_radius", 1e-9, 1e3)
+    for name, unit in (("ball_spin", "rad/s"), ("land_heights", "m")):
+        wrong = [value for value in getattr(body, name) if not math.isfinite(value)]
+        if wrong:
+            yield InputError(f"SpaceBody.{name}", f"must each be a finite number [{unit}]", str(wrong[0]))
 
 
 def pocket_plays(cage: PlanarCage, body: SpaceBody) -> tuple[Metre, Metre, Metre]:

@@ -12,8 +12,8 @@ from separatrix.study import BallModel, StabilitySettings
 from separatrix.units import NewtonPerMetre, Ratio
 
 NOTICED: Ratio = 0.1
-"""Pocket force over the races' capacity from which the models of a ball may differ: there traction is about a
-percent below its slope."""
+"""Pocket force over the races' capacity from which the models of a ball may differ: there the law of
+traction still has its slope, and at the capacity itself a fifth less."""
 
 
 @dataclass(frozen=True, slots=True)

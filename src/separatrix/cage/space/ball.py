@@ -23,6 +23,16 @@ from separatrix.cage.space.records import (
     Parts,
 )
 from separatrix.compiled import inlined_kernel
+from separatrix.units import Array
+
+
+@inlined_kernel
+def squared(c: Array, column: int, n: int) -> float:
+    """Coefficient n of the square of a series."""
+    total = 0.0
+    for m in range(n + 1):
+        total += c[m, column] * c[n - m, column]
+    return float(total)
 
 
 @inlined_kernel
@@ -33,31 +43,27 @@ def traction(p: Numbers, parts: Parts, j: int, now: Pace, n: int) -> float:
     ball[n, SLOW] = ball[n, SPEED] / now.share
     if n > 0:
         ball[n, SLOW] -= now.rise * ball[n - 1, SLOW] / now.share
-    square = 0.0
-    for m in range(n + 1):
-        square += ball[m, SLOW] * ball[n - m, SLOW]
+    slow = ball[n, SLOW]
+    square = squared(ball, SLOW, n)
     ball[n, ELEMENTS - 1] = square
     if p.sharp:
-        square = 0.0
-        for m in range(n + 1):
-            square += ball[m, ELEMENTS - 1] * ball[n - m, ELEMENTS - 1]
+        square = squared(ball, ELEMENTS - 1, n)
     total = 0.0
     for k in range(p.elements):
         w, g = ELEMENTS + 2 * k, ELEMENTS + 2 * k + 1
-        ball[n, w] = parts.steep[k] * square
+        here = parts.steep[k] * square
         if n == 0:
-            ball[0, w] += 1.0
-            root = math.sqrt(ball[0, w])
-            ball[0, g] = 1.0 / (math.sqrt(root) if p.sharp else root)
-        else:
-            power = 0.0
-            for m in range(n):
-                power -= (p.power * (n - m) + m) * ball[n - m, w] * ball[m, g]
-            ball[n, g] = power / (n * ball[0, w])
-        force = 0.0
-        for m in range(n + 1):
+            root = math.sqrt(1.0 + here)
+            ball[0, w], ball[0, g] = 1.0 + here, 1.0 / (math.sqrt(root) if p.sharp else root)
+            total += parts.slope[k] * ball[0, g] * slow
+            continue
+        power = force = 0.0
+        for m in range(1, n):
+            power -= (p.power * (n - m) + m) * ball[n - m, w] * ball[m, g]
             force += ball[m, g] * ball[n - m, SLOW]
-        total += parts.slope[k] * force
+        ball[n, w] = here
+        ball[n, g] = (power - p.power * n * here * ball[0, g]) / (n * ball[0, w])
+        total += parts.slope[k] * (force + ball[0, g] * slow + ball[n, g] * ball[0, SLOW])
     return total
 
 

@@ -15,10 +15,14 @@ from separatrix.cage.motion import frame_angle
 from separatrix.cage.records import ORDER, Pace
 from separatrix.cage.space.ball import move_ball
 from separatrix.cage.space.land import dent_strip, press_strip, strip_forces
-from separatrix.cage.space.pocket import place_pocket, press_pockets, rub_pockets, slide_pockets, sum_pockets
+from separatrix.cage.space.pocket import expand_contact, place_pocket
 from separatrix.cage.space.records import (
+    AXIAL,
+    BALLS,
     CLEAR,
+    CONTACTS,
     COS,
+    FAR_L,
     FORCE_X,
     FORCE_Y,
     FRAME,
@@ -29,12 +33,17 @@ from separatrix.cage.space.records import (
     GONE,
     GX,
     GY,
+    LAST,
     LEAN,
+    MOMENT_A,
+    MOMENT_B,
     NONE,
     PRESSED,
+    PUSH,
     RUB_Q,
     RUB_R,
     SIN,
+    SPEED,
     SPIN,
     VA,
     VB,
@@ -52,8 +61,12 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
+from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
+
+FEW, MORE = 7, 10
+"""Powers at which the series may end where a step is short; else they go on to `ORDER`."""
 
 
 @inlined_kernel
@@ -126,8 +139,12 @@ def turn(p: Numbers, cage: Array, now: Pace, n: int) -> None:
 
 
 @inlined_kernel
-def expand(p: Numbers, parts: Parts, now: Pace) -> None:
-    """Fill the series of the motion from the state in their first coefficients."""
+def expand(p: Numbers, parts: Parts, now: Pace, aim: float) -> None:
+    """Fill the series of the motion from the state in their first coefficients.
+
+    As far as a step of length `aim` needs them: many steps end at an event long before 14 terms are used.
+    """
+    parts.listed[LAST] = ORDER
     cage = parts.cage
     for n in range(ORDER + 1):
         after = 1.0 / (n + 1.0)
@@ -147,6 +164,56 @@ def expand(p: Numbers, parts: Parts, now: Pace) -> None:
                 lx, ly, lz, ls, la, lb = strip_forces(p, parts, i, n)
                 fx, fy, fz, ts, ta, tb = fx + lx, fy + ly, fz + lz, ts + ls, ta + la, tb + lb
         accelerate(p, cage, now, fx, fy, fz, ts, ta, tb, n)
+        if n in (FEW, MORE) and is_enough(p, parts, n, aim):
+            parts.listed[LAST] = n
+            return
+
+
+@inlined_kernel
+def tails(p: Numbers, parts: Parts, n: int) -> tuple[float, float, float]:
+    """Sum of the speeds, and the largest coefficients n and n - 1 of any of them.
+
+    Of those too that each contact alone would give: forces of several may balance.
+    """
+    first, one, two = parts.cage[0], parts.cage[n], parts.cage[n - 1]
+    scale, last, before = p.slowest, 0.0, 0.0
+    for k in range(VX, VB + 1):
+        scale += abs(first[k])
+        last, before = max(last, abs(one[k])), max(before, abs(two[k]))
+    for b in range(parts.listed[BALLS]):
+        ball = parts.ball[parts.active[b]]
+        last = max(last, abs(ball[n, SPEED]), n * abs(ball[n, AXIAL]))
+        before = max(before, abs(ball[n - 1, SPEED]), (n - 1) * abs(ball[n - 1, AXIAL]))
+    after, at = 1.0 / n, 1.0 / (n - 1)
+    for a in range(parts.listed[CONTACTS]):
+        c = parts.contact[parts.touching[a]]
+        for k in (PUSH, RUB_R, FT, FZ):
+            last, before = max(last, abs(c[n - 1, k]) * after), max(before, abs(c[n - 2, k]) * at)
+    for i in range(parts.mode.size):
+        if parts.mode[i] != CLEAR:
+            last = max(last, n * abs(parts.strip[i, n, FAR_L]))
+            before = max(before, (n - 1) * abs(parts.strip[i, n - 1, FAR_L]))
+    return scale, last, before
+
+
+@inlined_kernel
+def is_enough(p: Numbers, parts: Parts, n: int, aim: float) -> bool:
+    """Whether the terms n and n - 1 of the series are below `PRECISION` of the speeds after a time."""
+    scale, last, before = tails(p, parts, n)
+    return max(last * aim, before) * aim ** (n - 1) < PRECISION * scale
+
+
+@inlined_kernel
+def step_length(p: Numbers, parts: Parts) -> float:
+    """Time for which the last two terms of the series stay below `PRECISION` of the speeds."""
+    n = parts.listed[LAST]
+    scale, last, before = tails(p, parts, n)
+    h, scale = LONGEST, PRECISION * scale
+    if last > 0.0:
+        h = min(h, (scale / last) ** (1.0 / n))
+    if before > 0.0:
+        h = min(h, (scale / before) ** (1.0 / (n - 1)))
+    return float(h)
 
 
 @inlined_kernel
@@ -155,14 +222,11 @@ def pocket_forces(
 ) -> tuple[float, float, float, float, float, float]:
     """Coefficient n of the pockets' forces on the cage and of their moments over R; and of balls' motion."""
     fx = fy = fz = ts = ta = tb = 0.0
-    for b in range(parts.listed[1]):
+    for b in range(parts.listed[BALLS]):
         place_pocket(p, parts, parts.active[b], n)
-    if parts.listed[0] > 0:
-        press_pockets(p, parts, n)
-        slide_pockets(p, parts, now, n)
-        rub_pockets(p, parts, n)
-        sum_pockets(parts, n)
-    for b in range(parts.listed[1]):
+    for a in range(parts.listed[CONTACTS]):
+        expand_contact(p, parts, parts.touching[a], now, n)
+    for b in range(parts.listed[BALLS]):
         j = parts.active[b]
         along = axial = 0.0
         cos, sin = parts.cosine[j], parts.sine[j]
@@ -212,6 +276,12 @@ def accelerate(
         for m in range(n + 1):
             cross = cage[m, COS] * cage[n - m, FORCE_Y] - cage[m, SIN] * cage[n - m, FORCE_X]
             ts -= p.eccentricity * cross / p.radius
+    if p.leaning != 0.0:
+        # The geometric axis, on which the contacts' moments act, leans by L (sin theta, -cos theta) more
+        cage[n, MOMENT_A], cage[n, MOMENT_B] = ta, tb
+        for m in range(n + 1):
+            turned = cage[m, COS] * cage[n - m, MOMENT_A] + cage[m, SIN] * cage[n - m, MOMENT_B]
+            ts += p.leaning * turned / p.radius
     twist, axial = 0.0, 0.0
     if n == 0:
         twist, axial = -rise * p.radius, p.axial_gravity
@@ -226,7 +296,7 @@ def accelerate(
         spun_b += cage[m, VS] * cage[n - m, VB]
         lean_a += cage[m, VS] * (now.share * cage[n - m, A])
         lean_b += cage[m, VS] * (now.share * cage[n - m, B])
-    for m in range(n):
+    for m in range(n if now.rise != 0.0 else 0):
         lean_a += cage[m, VS] * (now.rise * cage[n - 1 - m, A])
         lean_b += cage[m, VS] * (now.rise * cage[n - 1 - m, B])
     jt, jp = p.tilt_inertia, p.spin_inertia

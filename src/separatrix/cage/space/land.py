@@ -55,20 +55,20 @@ def dent_strip(p: Numbers, parts: Parts, i: int, n: int) -> None:
         strip[0, FAR_L], strip[0, NX], strip[0, NY] = far, strip[0, LX] / far, strip[0, LY] / far
         strip[0, DEPTH_L] = far - p.land_gap
         return
-    square = 2.0 * (strip[0, LX] * strip[n, LX] + strip[0, LY] * strip[n, LY])
-    xx = yy = ff = 0.0
-    for m in range(1, n):
-        xx += strip[m, LX] * strip[n - m, LX]
-        yy += strip[m, LY] * strip[n - m, LY]
-        ff += strip[m, FAR_L] * strip[n - m, FAR_L]
-    square += xx + yy - ff
-    strip[n, FAR_L] = square / (2.0 * strip[0, FAR_L])
     along, across = strip[n, LX], strip[n, LY]
-    for m in range(1, n + 1):
-        along -= strip[m, FAR_L] * strip[n - m, NX]
-        across -= strip[m, FAR_L] * strip[n - m, NY]
-    strip[n, NX], strip[n, NY] = along / strip[0, FAR_L], across / strip[0, FAR_L]
-    strip[n, DEPTH_L] = strip[n, FAR_L]
+    square, per = strip[0, LX] * along + strip[0, LY] * across, 1.0 / strip[0, FAR_L]
+    xx = yy = ff = back_x = back_y = 0.0
+    for m in range(1, n):
+        k = n - m
+        xx += strip[m, LX] * strip[k, LX]
+        yy += strip[m, LY] * strip[k, LY]
+        ff += strip[m, FAR_L] * strip[k, FAR_L]
+        back_x += strip[m, FAR_L] * strip[k, NX]
+        back_y += strip[m, FAR_L] * strip[k, NY]
+    far = (square + 0.5 * (xx + yy - ff)) * per
+    strip[n, NX] = (along - back_x - far * strip[0, NX]) * per
+    strip[n, NY] = (across - back_y - far * strip[0, NY]) * per
+    strip[n, FAR_L] = strip[n, DEPTH_L] = far
 
 
 @inlined_kernel
@@ -88,24 +88,24 @@ def press_strip(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
     strip[n, AROUND], strip[n, BESIDE] = around, beside
     if n == 0:
         strip[0, SLIDE_L] = math.sqrt(around * around + beside * beside + p.pivoting)
-        strip[0, SHARE_L] = p.land_friction * strip[0, PUSH_L] / strip[0, SLIDE_L]
-    else:
-        square = 2.0 * (strip[0, AROUND] * around + strip[0, BESIDE] * beside)
-        aa = bb = vv = 0.0
-        for m in range(1, n):
-            aa += strip[m, AROUND] * strip[n - m, AROUND]
-            bb += strip[m, BESIDE] * strip[n - m, BESIDE]
-            vv += strip[m, SLIDE_L] * strip[n - m, SLIDE_L]
-        strip[n, SLIDE_L] = (square + aa + bb - vv) / (2.0 * strip[0, SLIDE_L])
-        share = p.land_friction * strip[n, PUSH_L]
-        for m in range(1, n + 1):
-            share -= strip[m, SLIDE_L] * strip[n - m, SHARE_L]
-        strip[n, SHARE_L] = share / strip[0, SLIDE_L]
-    tangent = axial = 0.0
-    for m in range(n + 1):
-        tangent -= strip[m, SHARE_L] * strip[n - m, AROUND]
-        axial -= strip[m, SHARE_L] * strip[n - m, BESIDE]
-    strip[n, RUB_T], strip[n, RUB_Z] = tangent, axial
+        share = strip[0, SHARE_L] = p.land_friction * strip[0, PUSH_L] / strip[0, SLIDE_L]
+        strip[0, RUB_T], strip[0, RUB_Z] = -share * around, -share * beside
+        return
+    aa = bb = vv = lag = tangent = axial = 0.0
+    for m in range(1, n):
+        k = n - m
+        aa += strip[m, AROUND] * strip[k, AROUND]
+        bb += strip[m, BESIDE] * strip[k, BESIDE]
+        vv += strip[m, SLIDE_L] * strip[k, SLIDE_L]
+        lag += strip[m, SLIDE_L] * strip[k, SHARE_L]
+        tangent -= strip[m, SHARE_L] * strip[k, AROUND]
+        axial -= strip[m, SHARE_L] * strip[k, BESIDE]
+    first, per = strip[0, AROUND] * around + strip[0, BESIDE] * beside, 1.0 / strip[0, SLIDE_L]
+    size = (first + 0.5 * (aa + bb - vv)) * per
+    share = (p.land_friction * strip[n, PUSH_L] - lag - size * strip[0, SHARE_L]) * per
+    strip[n, SLIDE_L], strip[n, SHARE_L] = size, share
+    strip[n, RUB_T] = tangent - strip[0, SHARE_L] * around - share * strip[0, AROUND]
+    strip[n, RUB_Z] = axial - strip[0, SHARE_L] * beside - share * strip[0, BESIDE]
 
 
 @inlined_kernel

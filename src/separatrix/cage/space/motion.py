@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from separatrix.cage.motion import MOST_STEPS, pace_at
-from separatrix.cage.records import ORDER, POWERS, Whole
+from separatrix.cage.records import POWERS, Whole
 from separatrix.cage.series import ROUNDING
 from separatrix.cage.space.events import (
     LEAVE,
@@ -15,31 +15,28 @@ from separatrix.cage.space.events import (
     pocket_event,
     strip_event,
 )
-from separatrix.cage.space.expand import expand, load
+from separatrix.cage.space.expand import expand, load, step_length
 from separatrix.cage.space.land import dent_strip
 from separatrix.cage.space.records import (
     AXIAL,
     BALL_COLUMNS,
+    BALLS,
     CAGE_COLUMNS,
     CLEAR,
-    DEPTH,
+    CONTACTS,
     DEPTH_L,
     DZ,
-    FAR_L,
     FLAT_BACK,
     FLAT_FRONT,
     FORCE_X,
-    FT,
-    FZ,
     GONE,
+    LAST,
     LEAD,
     NONE,
     PRESSED,
-    PUSH,
     PUSH_L,
     RELEASED,
     ROUND_END,
-    RUB_R,
     SPEED,
     STATE,
     STRIP_COLUMNS,
@@ -62,7 +59,6 @@ from separatrix.cage.space.records import (
     Z,
 )
 from separatrix.cage.space.tally import enter_step, kinetic
-from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -80,43 +76,15 @@ def list_contacts(parts: Parts) -> None:
             if parts.kind[i] != NONE:
                 parts.touching[touching] = i
                 touching += 1
-    parts.listed[0], parts.listed[1] = touching, active
-
-
-@inlined_kernel
-def step_length(p: Numbers, parts: Parts) -> float:
-    """Time for which the last two terms of the series stay below `PRECISION` of the speeds."""
-    first, one, two = parts.cage[0], parts.cage[ORDER], parts.cage[ORDER - 1]
-    scale, last, before = p.slowest, 0.0, 0.0
-    for k in range(VX, VB + 1):
-        scale += abs(first[k])
-        last, before = max(last, abs(one[k])), max(before, abs(two[k]))
-    for b in range(parts.listed[1]):
-        ball = parts.ball[parts.active[b]]
-        last = max(last, abs(ball[ORDER, SPEED]), ORDER * abs(ball[ORDER, AXIAL]))
-        before = max(before, abs(ball[ORDER - 1, SPEED]), (ORDER - 1) * abs(ball[ORDER - 1, AXIAL]))
-    for a in range(parts.listed[0]):
-        c = parts.contact[parts.touching[a]]
-        for k in (PUSH, RUB_R, FT, FZ):
-            last = max(last, abs(c[ORDER - 1, k]) / ORDER)
-            before = max(before, abs(c[ORDER - 2, k]) / (ORDER - 1))
-    for i in range(parts.mode.size):
-        if parts.mode[i] != CLEAR:
-            last = max(last, ORDER * abs(parts.strip[i, ORDER, FAR_L]))
-            before = max(before, (ORDER - 1) * abs(parts.strip[i, ORDER - 1, FAR_L]))
-    h, scale = LONGEST, PRECISION * scale
-    if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / ORDER))
-    if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
-    return float(h)
+    parts.listed[CONTACTS], parts.listed[BALLS] = touching, active
 
 
 @inlined_kernel
 def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
     """State at the end of a step that lasts for t."""
     cage, here = parts.here[0], parts.here[1]
-    at_time(parts.cage, t, CAGE_COLUMNS if p.needs_frame else FORCE_X, cage)
+    last = parts.listed[LAST]
+    at_time(parts.cage, last, t, CAGE_COLUMNS if p.needs_frame else FORCE_X, cage)
     state.x, state.y, state.z, state.s, state.a, state.b = (
         cage[X],
         cage[Y],
@@ -128,13 +96,9 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
     state.vx, state.vy, state.vz, state.vs = cage[VX], cage[VY], cage[VZ], cage[VS]
     state.va, state.vb = cage[VA], cage[VB]
     state.clock += t
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        at_time(parts.contact[i], t, DEPTH + 1, here)
-        parts.contact[i, 0, DEPTH] = here[DEPTH]
-    for b in range(parts.listed[1]):
+    for b in range(parts.listed[BALLS]):
         j = parts.active[b]
-        at_time(parts.ball[j], t, STATE, here)
+        at_time(parts.ball[j], last, t, STATE, here)
         ball = parts.ball[j, 0]
         ball[LEAD], ball[SPEED], ball[AXIAL] = here[LEAD], here[SPEED], here[AXIAL]
     if p.harmonics > 0:
@@ -143,14 +107,14 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
                 parts.ball[j, 0, LEAD] += parts.drive[k, j] * cage[GONE + k]
     for i in range(parts.mode.size):
         if parts.mode[i] != CLEAR:
-            at_time(parts.strip[i], t, STRIP_COLUMNS, here)
+            at_time(parts.strip[i], last, t, STRIP_COLUMNS, here)
             parts.strip[i, 0, DEPTH_L], parts.strip[i, 0, PUSH_L] = here[DEPTH_L], here[PUSH_L]
 
 
 @inlined_kernel
 def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
     """Balls that touch nothing and hardly move come to rest in their orbit and their groove."""
-    for b in range(parts.listed[1]):
+    for b in range(parts.listed[BALLS]):
         j = parts.active[b]
         if parts.kind[2 * j] != NONE or parts.kind[2 * j + 1] != NONE:
             continue
@@ -238,15 +202,18 @@ def advance(
         now = pace_at(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
         list_contacts(parts)
         load(p, parts, state)
-        expand(p, parts, now)
-        h = min(step_length(p, parts), length - done)
+        expand(p, parts, now, state.reach)
+        longest = step_length(p, parts)
+        h = min(longest, length - done)
         if state.clock < p.ramp_time:
             h = min(h, p.ramp_time - state.clock)
         end, event, which, becomes = pocket_event(p, parts, h)
         end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
-        enter_step(p, parts, now, h, end, works, step, look, heat)
+        enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
         finish(p, parts, state, end * h)
         done = length if event == NOTHING and h == length - done else done + end * h
+        # What the next step may last: about twice the last ones where events end them
+        state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
         if event == STRIP:
             load(p, parts, state)
         if event != NOTHING:

@@ -8,8 +8,8 @@ surface on the pocket: outward :math:`h(O_t p_z - O_z p_t) - v_r`, and across th
 :math:`\hat q = (-p_t, p_z)`, :math:`-h O_r - v\cdot\hat q`, with the ball's spin O and :math:`h = D/2`. The
 ball's own speed of fractions of a metre a second is left out there.
 
-Each stage of a coefficient runs over all contacts before the next begins: their sums do not wait for each
-other.
+All sums of a coefficient that do not wait for each other are taken in one loop over the lower ones; what
+its own value adds follows.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ from separatrix.cage.space.records import (
     Z,
 )
 from separatrix.compiled import inlined_kernel
+from separatrix.units import Array
 
 
 @inlined_kernel
@@ -77,140 +78,113 @@ def place_pocket(p: Numbers, parts: Parts, j: int, n: int) -> None:
 
 
 @inlined_kernel
-def press_pockets(p: Numbers, parts: Parts, n: int) -> None:
-    """Coefficient n of the penetration of all contacts, of the force and its direction."""
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        if parts.kind[i] == ROUND_END:
-            measure_round(p, parts, i, n)
-        else:
-            press_flat(p, parts, i, n)
-    if n == 0:
-        return
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        if parts.kind[i] == ROUND_END:
-            # |w| p = -w, coefficient by coefficient
-            c = parts.contact[i]
-            z = t = 0.0
-            for m in range(1, n + 1):
-                far = c[m, FAR]
-                z += far * c[n - m, PZ]
-                t += far * c[n - m, PT]
-            c[n, PZ] = -(c[n, HERE_Z] + z) * c[0, PER_FAR]
-            c[n, PT] = -(c[n, HERE_T] + t) * c[0, PER_FAR]
-
-
-@inlined_kernel
-def measure_round(p: Numbers, parts: Parts, i: int, n: int) -> None:
-    """Coefficient n of the distance of a ball from the middle of the round part: |w|^2 = w_z^2 + w_t^2."""
-    j = i // 2
-    c, ball = parts.contact[i], parts.ball[j, n]
-    c[n, HERE_Z], c[n, HERE_T] = ball[DZ], ball[DT]
-    if n == 0:
-        c[0, HERE_T] -= parts.region[j] * p.apart
-        z, t = c[0, HERE_Z], c[0, HERE_T]
-        far = math.sqrt(z * z + t * t)
-        c[0, FAR], c[0, PER_FAR], c[0, PZ], c[0, PT] = far, 1.0 / far, -z / far, -t / far
-        c[0, DEPTH] = far - p.around - parts.play[j]
+def expand_contact(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
+    """Coefficient n of the penetration of a contact, of its force, its friction and their couples."""
+    if parts.kind[i] == ROUND_END:
+        expand_round(p, parts, i, now, n)
     else:
-        zz = tt = ff = 0.0
-        for m in range(1, n):
-            zz += c[m, HERE_Z] * c[n - m, HERE_Z]
-            tt += c[m, HERE_T] * c[n - m, HERE_T]
-            ff += c[m, FAR] * c[n - m, FAR]
-        first = 2.0 * (c[0, HERE_Z] * c[n, HERE_Z] + c[0, HERE_T] * c[n, HERE_T])
-        c[n, FAR] = 0.5 * (first + zz + tt - ff) * c[0, PER_FAR]
-        c[n, DEPTH] = c[n, FAR]
-    c[n, PUSH] = p.stiffness * c[n, DEPTH]
+        expand_flat(p, parts, i, now, n)
 
 
 @inlined_kernel
-def press_flat(p: Numbers, parts: Parts, i: int, n: int) -> None:
-    """Coefficient n of the force of a flat, or of the two that grip a ball."""
+def expand_flat(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
+    """Coefficient n of a flat, or of the two that grip a ball."""
     j = i // 2
     c, ball, along = parts.contact[i], parts.ball[j, n], i % 2 == 0
     side = 1.0 if parts.kind[i] == GRIPPED else float(parts.kind[i])
+    z, t = (0.0, -side) if along else (-side, 0.0)
     depth = side * (ball[DT] if along else ball[DZ])
+    out, across = -ball[CR], ball[CZ] * t - ball[CT] * z
     if n == 0:
         depth -= p.around + parts.play[j] if along else p.beside
-    c[n, DEPTH], c[n, PUSH] = depth, p.stiffness * depth
-    c[n, PZ] = -side if n == 0 and not along else 0.0
-    c[n, PT] = -side if n == 0 and along else 0.0
+    if n < 2:
+        out += now[n] * (p.spin_t * z - p.spin_z * t)
+        across -= p.spin_r * now[n]
+    push = p.stiffness * depth
+    c[n, DEPTH], c[n, PUSH] = depth, push
+    rub(p, c, push, out, across, n)
+    out, across = c[n, RUB_R], c[n, RUB_Q]
+    c[n, FZ], c[n, FT] = push * z - across * t, push * t + across * z
+    c[n, SPIN], c[n, LEAN] = -out * t, out * z
 
 
 @inlined_kernel
-def slide_pockets(p: Numbers, parts: Parts, now: Pace, n: int) -> None:
-    """Coefficient n of the sliding of all contacts, outward and across the force."""
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        c, ball = parts.contact[i], parts.ball[i // 2]
-        spin = now.share * (p.spin_t * c[n, PZ] - p.spin_z * c[n, PT])
-        axial = along = 0.0
-        if n > 0:
-            spin += now.rise * (p.spin_t * c[n - 1, PZ] - p.spin_z * c[n - 1, PT])
-        if parts.kind[i] == ROUND_END:
-            for m in range(n + 1):
-                axial += ball[m, CZ] * c[n - m, PT]
-                along += ball[m, CT] * c[n - m, PZ]
-        else:
-            axial, along = ball[n, CZ] * c[0, PT], ball[n, CT] * c[0, PZ]
-        across = axial - along
-        if n < 2:
-            across -= p.spin_r * now[n]
-        c[n, SLIDE_R], c[n, SLIDE_Q] = spin - ball[n, CR], across
-
-
-@inlined_kernel
-def rub_pockets(p: Numbers, parts: Parts, n: int) -> None:
-    """Coefficient n of the friction of all contacts: |v|^2 = v_r^2 + v_q^2 + v_0^2, and G |v| = f N."""
-    for a in range(parts.listed[0]):
-        c = parts.contact[parts.touching[a]]
-        if n == 0:
-            c[0, SLIDE] = math.sqrt(c[0, SLIDE_R] ** 2 + c[0, SLIDE_Q] ** 2 + p.pivoting)
-            c[0, PER_SLIDE] = 1.0 / c[0, SLIDE]
-            continue
-        rr = qq = vv = 0.0
+def expand_round(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
+    """Coefficient n of the round part of a pocket."""
+    j = i // 2
+    c, ball = parts.contact[i], parts.ball[j]
+    z, t = ball[n, DZ], ball[n, DT]
+    if n == 0:
+        t -= parts.region[j] * p.apart
+        far = math.sqrt(z * z + t * t)
+        pz, pt, depth = -z / far, -t / far, far - p.around - parts.play[j]
+        c[0, PER_FAR] = 1.0 / far
+        push = p.stiffness * depth
+        push_z, push_t = push * pz, push * pt
+        across = ball[0, CZ] * pt - ball[0, CT] * pz
+    else:
+        zz = tt = ff = back_z = back_t = axial = along = push_z = push_t = 0.0
         for m in range(1, n):
-            rr += c[m, SLIDE_R] * c[n - m, SLIDE_R]
-            qq += c[m, SLIDE_Q] * c[n - m, SLIDE_Q]
-            vv += c[m, SLIDE] * c[n - m, SLIDE]
-        first = 2.0 * (c[0, SLIDE_R] * c[n, SLIDE_R] + c[0, SLIDE_Q] * c[n, SLIDE_Q])
-        c[n, SLIDE] = 0.5 * (first + rr + qq - vv) * c[0, PER_SLIDE]
-    for a in range(parts.listed[0]):
-        c = parts.contact[parts.touching[a]]
-        share = 0.0
-        for m in range(1, n + 1):
-            share += c[m, SLIDE] * c[n - m, SHARE]
-        c[n, SHARE] = (p.friction * c[n, PUSH] - share) * c[0, PER_SLIDE]
-    for a in range(parts.listed[0]):
-        c = parts.contact[parts.touching[a]]
-        out = across = 0.0
-        for m in range(n + 1):
-            share = c[m, SHARE]
-            out += share * c[n - m, SLIDE_R]
-            across += share * c[n - m, SLIDE_Q]
-        c[n, RUB_R], c[n, RUB_Q] = out, across
+            k = n - m
+            zz += c[m, HERE_Z] * c[k, HERE_Z]
+            tt += c[m, HERE_T] * c[k, HERE_T]
+            ff += c[m, FAR] * c[k, FAR]
+            back_z += c[m, FAR] * c[k, PZ]
+            back_t += c[m, FAR] * c[k, PT]
+            axial += ball[m, CZ] * c[k, PT]
+            along += ball[m, CT] * c[k, PZ]
+            push_z += c[m, PUSH] * c[k, PZ]
+            push_t += c[m, PUSH] * c[k, PT]
+        # |w|^2 = w_z^2 + w_t^2 and |w| p = -w
+        per, z0, t0 = c[0, PER_FAR], c[0, PZ], c[0, PT]
+        far = (c[0, HERE_Z] * z + c[0, HERE_T] * t + 0.5 * (zz + tt - ff)) * per
+        pz, pt, depth = -(z + back_z + far * z0) * per, -(t + back_t + far * t0) * per, far
+        push = p.stiffness * depth
+        push_z += c[0, PUSH] * pz + push * z0
+        push_t += c[0, PUSH] * pt + push * t0
+        axial += ball[0, CZ] * pt + ball[n, CZ] * t0
+        along += ball[0, CT] * pz + ball[n, CT] * z0
+        across = axial - along
+    c[n, HERE_Z], c[n, HERE_T], c[n, FAR], c[n, PZ], c[n, PT] = z, t, far, pz, pt
+    c[n, DEPTH], c[n, PUSH] = depth, push
+    out = now.share * (p.spin_t * pz - p.spin_z * pt) - ball[n, CR]
+    if n > 0:
+        out += now.rise * (p.spin_t * c[n - 1, PZ] - p.spin_z * c[n - 1, PT])
+    if n < 2:
+        across -= p.spin_r * now[n]
+    rub(p, c, push, out, across, n)
+    rub_z = rub_t = spin = lean = 0.0
+    for m in range(n + 1):
+        z, t = c[n - m, PZ], c[n - m, PT]
+        rub_z += c[m, RUB_Q] * t
+        rub_t += c[m, RUB_Q] * z
+        spin += c[m, RUB_R] * t
+        lean += c[m, RUB_R] * z
+    c[n, FZ], c[n, FT], c[n, SPIN], c[n, LEAN] = push_z - rub_z, push_t + rub_t, -spin, lean
 
 
 @inlined_kernel
-def sum_pockets(parts: Parts, n: int) -> None:
-    """Coefficient n of all contacts' forces along the axis and the orbit, and of their couples."""
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        c = parts.contact[i]
-        if parts.kind[i] != ROUND_END:
-            z, t, out, across = c[0, PZ], c[0, PT], c[n, RUB_R], c[n, RUB_Q]
-            c[n, FZ], c[n, FT] = c[n, PUSH] * z - across * t, c[n, PUSH] * t + across * z
-            c[n, SPIN], c[n, LEAN] = -out * t, out * z
-            continue
-        push_z = push_t = rub_z = rub_t = spin = lean = 0.0
-        for m in range(n + 1):
-            z, t = c[n - m, PZ], c[n - m, PT]
-            push_z += c[m, PUSH] * z
-            push_t += c[m, PUSH] * t
-            rub_z += c[m, RUB_Q] * t
-            rub_t += c[m, RUB_Q] * z
-            spin += c[m, RUB_R] * t
-            lean += c[m, RUB_R] * z
-        c[n, FZ], c[n, FT], c[n, SPIN], c[n, LEAN] = push_z - rub_z, push_t + rub_t, -spin, lean
+def rub(p: Numbers, c: Array, push: float, out: float, across: float, n: int) -> None:
+    """Coefficient n of the friction of a contact: |v|^2 = v_r^2 + v_q^2 + v_0^2, and G |v| = f N."""
+    c[n, SLIDE_R], c[n, SLIDE_Q] = out, across
+    if n == 0:
+        size = math.sqrt(out * out + across * across + p.pivoting)
+        share = p.friction * push / size
+        c[0, SLIDE], c[0, PER_SLIDE], c[0, SHARE] = size, 1.0 / size, share
+        c[0, RUB_R], c[0, RUB_Q] = share * out, share * across
+        return
+    rr = qq = vv = lag = rub_r = rub_q = 0.0
+    for m in range(1, n):
+        k = n - m
+        rr += c[m, SLIDE_R] * c[k, SLIDE_R]
+        qq += c[m, SLIDE_Q] * c[k, SLIDE_Q]
+        vv += c[m, SLIDE] * c[k, SLIDE]
+        lag += c[m, SLIDE] * c[k, SHARE]
+        rub_r += c[m, SHARE] * c[k, SLIDE_R]
+        rub_q += c[m, SHARE] * c[k, SLIDE_Q]
+    first, per = c[0, SLIDE_R] * out + c[0, SLIDE_Q] * across, c[0, PER_SLIDE]
+    size = (first + 0.5 * (rr + qq - vv)) * per
+    share = (p.friction * push - lag - size * c[0, SHARE]) * per
+    c[n, SLIDE], c[n, SHARE] = size, share
+    c[n, RUB_R] = rub_r + c[0, SHARE] * out + share * c[0, SLIDE_R]
+    c[n, RUB_Q] = rub_q + c[0, SHARE] * across + share * c[0, SLIDE_Q]

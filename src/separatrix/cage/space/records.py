@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 X, Y, Z, S, A, B, VX, VY, VZ, VS, VA, VB = range(12)
 """Of the cage: centre of mass, slip of rotation, tilt about x and y times R; and their rates."""
 
-GX, GY, GA, GB, COS, SIN, FORCE_X, FORCE_Y = range(12, 20)
-"""Geometric centre and tilt; cosine and sine of the rotation; force of the contacts across the axis."""
+GX, GY, GA, GB, COS, SIN, FORCE_X, FORCE_Y, MOMENT_A, MOMENT_B = range(12, 22)
+"""Geometric centre and tilt; cosine and sine of the rotation; force of the contacts across the axis, and
+their moments about x and y."""
 
-FRAME = 20
+FRAME = 22
 """First column of cosine and sine of the turning of the frame and of its multiples, and after them of the
 ways that free balls go by these."""
 
@@ -58,17 +59,18 @@ STATE = 3
 """Columns of a ball that are its state: the first ones."""
 
 FZ, FT, RUB_R, RUB_Q, SPIN, LEAN, PUSH, SLIDE = range(8)
-DEPTH, FAR, PZ, PT, SLIDE_R, SLIDE_Q, SHARE, HERE_Z, HERE_T, PER_FAR, PER_SLIDE = range(8, 19)
+DEPTH, FAR, PZ, PT, SLIDE_R, SLIDE_Q, SHARE, HERE_Z, HERE_T, PER_FAR, PER_SLIDE, WAY = range(8, 20)
 """Of a contact in a pocket: force along the axis and the orbit; friction outward and across; couples of the
 friction about the axis and the orbit's direction; normal force, and the size of the sliding. Then
 penetration, distance of the ball from the middle of the round part, direction of the force on the cage,
 sliding outward and across, friction over it, and the ball against the middle of the round part. Of the last
-two only the first coefficient is used: the inverse of the distance and of the sliding."""
+three only the first coefficient is used: the inverse of the distance and of the sliding, and a bound of how
+far the penetration goes in a step."""
 
 WORKING = 8
 """Columns of a contact that its work needs: the first ones."""
 
-CONTACT_COLUMNS = 19
+CONTACT_COLUMNS = 20
 
 LX, LY, FAR_L, NX, NY, DEPTH_L, PUSH_L, AROUND, BESIDE, SLIDE_L, SHARE_L, RUB_T, RUB_Z = range(13)
 """Of a strip of a land: the cage's centre at its height, its distance and direction, depth, force; sliding
@@ -80,6 +82,9 @@ NONE, ROUND_END, FLAT_BACK, FLAT_FRONT, GRIPPED = 0, 2, -1, 1, 3
 """What a contact of a pocket is: not touching, the round part, a flat on the side of -1 or +1, both flats."""
 
 CLEAR, PRESSED, RELEASED = range(3)
+
+CONTACTS, BALLS, LAST = range(3)
+"""Of `Parts.listed`: how many contacts touch, how many balls move, the last power of the series."""
 
 STRIPS = 3
 """Gauss strips of a land of some width: they hold its force and moment while all of it touches."""
@@ -157,7 +162,7 @@ class Parts(NamedTuple):
     strip: Array  # shape (strip, power, column)
     touching: Whole  # contacts that touch, in order
     active: Whole  # balls that move, in order
-    listed: Whole  # how many of both
+    listed: Whole  # how many of both, and the last power of the series of a step
     c: Array  # room for a series
     here: Array  # values at a time: of the cage, a ball, a contact, a strip, shape (4, column)
 
@@ -178,7 +183,7 @@ class Motion:
     va: float
     vb: float
     clock: float
-    rows: int
+    reach: float  # how long a step may last before an event ends it, from the last ones
 
 
 class Works:
@@ -296,7 +301,7 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
         spin_z=spin[0],
         spin_r=spin[1],
         spin_t=spin[2],
-        pivoting=(body.pivot_speed * T) ** 2,
+        pivoting=(max(body.pivot_speed, LEAST_PIVOT) * T) ** 2,
         lever=body.lever / R,
         yielding=M / (cage.race_damping * T) if law is None else 0.0,
         groove_yielding=M / (body.groove_damping * T),
@@ -325,6 +330,9 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
     )
     return cast("Numbers", np.array([tuple(given)], dtype_of(Numbers))[0])
 
+
+LEAST_PIVOT = 1e-9
+"""Pivoting speed that keeps a friction finite where nothing slides [m/s]."""
 
 STILL_PLAY = 1e-9
 """Share of the clearance that a ball that is called at rest would still have gone."""
@@ -383,7 +391,7 @@ def parts_of(cage: PlanarCage) -> Parts:
         strip=np.zeros((heights.size, POWERS, STRIP_COLUMNS)),
         touching=np.zeros(2 * Z, np.int64),
         active=np.zeros(Z, np.int64),
-        listed=np.zeros(2, np.int64),
+        listed=np.zeros(3, np.int64),
         c=np.zeros(POWERS),
         here=np.zeros((4, CAGE_COLUMNS)),
     )

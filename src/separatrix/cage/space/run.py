@@ -39,6 +39,7 @@ from separatrix.cage.space.records import (
     SpaceEvidence,
 )
 from separatrix.cage.space.tally import held, kinetic, total
+from separatrix.cage.step import LONGEST
 from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
@@ -52,7 +53,7 @@ def begin(p: Numbers, parts: Parts, start: Array, kicks: Array, state: Motion, a
     """Put the cage and its balls where a run starts; `kicks` across, along the axis and of the tilt."""
     count = parts.moving.size
     state.x, state.z = p.eccentricity, axial_place
-    state.b = p.leaning
+    state.b, state.reach = p.leaning, LONGEST
     state.vx, state.vy = kicks[0] * np.cos(start[DIRECTION]), kicks[0] * np.sin(start[DIRECTION])
     state.vz = kicks[1] * start[AXIAL_WAY] if p.axial_swiftness > 0.0 else 0.0
     if p.tilt_swiftness > 0.0:
@@ -206,7 +207,7 @@ def enter_end(p: Numbers, books: Books, end: int, length: float, limits: Limits,
     out.orbit_speed = (orbit + p.turning) / p.unit
     cone = sums.tilt_swept / sums.tilt_squared if sums.tilt_squared > 0.0 else 0.0
     out.cone_speed = (cone + p.turning) / p.unit if sums.tilt_squared > 0.0 else 0.0
-    out.cone_phase = np.arctan2(sums.together, sums.crossed)
+    out.cone_phase = np.arctan2(sums.crossed, sums.together)
     out.mean_tilt = sums.tilt / time / p.radius
     out.axial_place = sums.axial / time
     out.axial_spread = np.sqrt(max(0.0, sums.axial_squared / time - out.axial_place**2))

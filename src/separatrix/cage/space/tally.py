@@ -6,32 +6,30 @@ import math
 
 import numpy as np
 
-from separatrix.cage.records import ORDER, Pace
+from separatrix.cage.records import Pace
 from separatrix.cage.series import peak
 from separatrix.cage.space.events import at_time, scaled
 from separatrix.cage.space.records import (
-    ALONG,
     AROUND,
     AXIAL,
+    BALLS,
     BESIDE,
     CAGE_COLUMNS,
     CLEAR,
-    CR,
-    CT,
-    CZ,
+    CONTACTS,
+    COS,
     DEPTH,
     DEPTH_L,
-    ELEMENTS,
     FORCE_X,
     FRAME,
     FT,
     FZ,
     GA,
     GB,
-    GIVE,
     GX,
     GY,
     HOLD,
+    LAST,
     LEAN,
     NONE,
     PRESSED,
@@ -41,6 +39,7 @@ from separatrix.cage.space.records import (
     RUB_R,
     RUB_T,
     RUB_Z,
+    SIN,
     SLIDE,
     SLIDE_L,
     SPEED,
@@ -52,7 +51,7 @@ from separatrix.cage.space.records import (
     VX,
     VY,
     VZ,
-    WORKING,
+    WAY,
     A,
     B,
     Motion,
@@ -67,9 +66,18 @@ from separatrix.cage.space.records import (
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
-_AT, _WEIGHT = np.polynomial.legendre.leggauss(5)
-NODES, WEIGHTS = 0.5 * (_AT + 1.0), 0.5 * _WEIGHT
-"""Gauss's points and weights on 0 to 1: exact to the 9th power of the time in a step."""
+FEWEST, MOST = 3, 5
+NODES, WEIGHTS = np.zeros((MOST + 1, MOST)), np.zeros((MOST + 1, MOST))
+for _n in range(FEWEST, MOST + 1):
+    _at, _weight = np.polynomial.legendre.leggauss(_n)
+    NODES[_n, :_n], WEIGHTS[_n, :_n] = 0.5 * (_at + 1.0), 0.5 * _weight
+"""Gauss's points and weights on 0 to 1 by their number; 5 are exact to the 9th power of the time."""
+
+SHORT, SHORTER = 0.6, 0.25
+"""Shares of the time for which the series are good, up to which a step has four points, and three."""
+
+BITS = 36.0
+"""Of a value at a time: powers whose terms are below 2 to the minus this are left out."""
 
 
 @inner_kernel
@@ -110,44 +118,79 @@ def enter_step(
     now: Pace,
     h: float,
     end: float,
+    share: float,
     works: Works,
     step: Works,
     look: SpaceLook,
     heat: Array,
 ) -> None:
-    """Add a step of length `end` h to the ledger and to the tally of its look, by Gauss's rule."""
-    t, cage = end * h, parts.here[0]
+    """Add a step of length `end` h to the ledger and to the tally of its look, by Gauss's rule.
+
+    It is this share of the time for which its series are good.
+    """
+    t, cage, last = end * h, parts.here[0], parts.listed[LAST]
+    count = FEWEST if share < SHORTER else (MOST - 1 if share < SHORT else MOST)
+    if share < 1.0:
+        # The terms fall by 2^(-34 / last) and this share from one to the next
+        last = min(last, 2 + int(BITS / (BITS / last - math.log2(max(share, 1e-9)))))
     columns = CAGE_COLUMNS if p.needs_frame else FORCE_X
     clear(step)
     look.offset_max = max(look.offset_max, parts.cage[0, GX] ** 2 + parts.cage[0, GY] ** 2)
     ux, uy = parts.cage[0, VX], parts.cage[0, VY]
-    for i in range(NODES.size):
-        at, weight = t * NODES[i], WEIGHTS[i] * t
-        at_time(parts.cage, at, columns, cage)
+    for i in range(count):
+        at, weight = t * NODES[count, i], WEIGHTS[count, i] * t
+        at_time(parts.cage, last, at, columns, cage)
         look.turning += angle(ux, uy, cage[VX], cage[VY])
         ux, uy = cage[VX], cage[VY]
         enter_motion(p, cage, weight, look)
         frame_work(p, cage, now, at, weight, step)
-        for b in range(parts.listed[1]):
-            pocket_work(p, parts, parts.active[b], now, at, weight, step, heat)
+        for b in range(parts.listed[BALLS]):
+            pocket_work(p, parts, parts.active[b], now, last, at, weight, step, heat)
         for k in range(parts.mode.size):
             if parts.mode[k] != CLEAR:
-                strip_work(p, parts, k, now, at, weight, step, look)
+                strip_work(p, parts, k, now, last, at, weight, step, look)
     # What the pockets do less what their springs have taken: their friction
-    for a in range(parts.listed[0]):
-        i = parts.touching[a]
-        before, depth = parts.contact[i, 0, DEPTH], parts.contact[i, ORDER, DEPTH]
-        for n in range(ORDER - 1, -1, -1):
-            depth = depth * t + parts.contact[i, n, DEPTH]
+    for a in range(parts.listed[CONTACTS]):
+        c = parts.contact[parts.touching[a]]
+        before, depth = c[0, DEPTH], value_at(c, DEPTH, parts.listed[LAST], t)
         step.pocket_friction += 0.5 * p.stiffness * (depth - before) * (depth + before)
+        if p.stiffness * (abs(before) + c[0, WAY]) > look.force_max:
+            scaled(c, parts.listed[LAST], PUSH, h, parts.c)
+            look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
+        c[0, DEPTH] = depth
     close(works, step)
-    for a in range(parts.listed[0]):
-        scaled(parts.contact[parts.touching[a]], PUSH, h, parts.c)
-        look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
     for k in range(parts.mode.size):
         if parts.mode[k] == PRESSED:
-            scaled(parts.strip[k], PUSH_L, h, parts.c)
-            look.land_max = max(look.land_max, peak(parts.c, 1.0, end))
+            way = scaled(parts.strip[k], parts.listed[LAST], PUSH_L, h, parts.c)
+            if parts.c[0] + way > look.land_max:
+                look.land_max = max(look.land_max, peak(parts.c, 1.0, end))
+
+
+@inlined_kernel
+def value_at(c: Array, column: int, last: int, t: float) -> float:
+    """Value of one series at a time."""
+    total = c[last, column]
+    for n in range(last - 1, -1, -1):
+        total = total * t + c[n, column]
+    return float(total)
+
+
+@inlined_kernel
+def contact_at(
+    c: Array, last: int, t: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Values at a time of what the work of a contact needs: its first eight columns."""
+    z = y = out = across = spin = lean = push = slide = 0.0
+    for n in range(last, -1, -1):
+        z, y, out, across = (
+            z * t + c[n, FZ],
+            y * t + c[n, FT],
+            out * t + c[n, RUB_R],
+            across * t + c[n, RUB_Q],
+        )
+        spin, lean = spin * t + c[n, SPIN], lean * t + c[n, LEAN]
+        push, slide = push * t + c[n, PUSH], slide * t + c[n, SLIDE]
+    return z, y, out, across, spin, lean, push, slide
 
 
 @inlined_kernel
@@ -207,41 +250,72 @@ def frame_work(p: Numbers, cage: Array, now: Pace, at: float, weight: float, ste
 
 @inlined_kernel
 def pocket_work(
-    p: Numbers, parts: Parts, j: int, now: Pace, at: float, weight: float, step: Works, heat: Array
+    p: Numbers,
+    parts: Parts,
+    j: int,
+    now: Pace,
+    last: int,
+    at: float,
+    weight: float,
+    step: Works,
+    heat: Array,
 ) -> None:
-    """Add one of Gauss's points to the work of a ball and its pocket."""
-    cage, ball, contact = parts.here[0], parts.here[1], parts.here[2]
-    at_time(parts.ball[j], at, ELEMENTS, ball)
-    share, speed, free = now.share + now.rise * at, ball[SPEED], 0.0
-    axial = p.groove_yielding * share * ball[GIVE]
-    if p.ball_mass == 0.0:
-        step.races -= weight * p.yielding * share * ball[ALONG] ** 2
-    else:
-        step.races -= weight * ball[HOLD] * speed
-    step.grooves -= weight * ball[GIVE] * axial
+    """Add one of Gauss's points to the work of a ball and its pocket, and to the pocket's rubbing."""
+    ball, cage = parts.ball[j], parts.here[0]
+    share, free = now.share + now.rise * at, 0.0
+    cos, sin = parts.cosine[j], parts.sine[j]
     for k in range(2 * p.harmonics):
         free += share * parts.drive[k, j] * cage[FRAME + k]
-    step.ball_drive += weight * ball[ALONG] * free
-    cos, sin = parts.cosine[j], parts.sine[j]
-    tilt_r, tilt_t = cage[VA] * cos + cage[VB] * sin, cage[VB] * cos - cage[VA] * sin
+    # The pocket's velocity: rates of the geometric centre and axis
+    vx, vy, va, vb = cage[VX], cage[VY], cage[VA], cage[VB]
+    if p.needs_rotation:
+        spin = cage[VS] / p.radius
+        vx, vy = vx + p.eccentricity * spin * cage[SIN], vy - p.eccentricity * spin * cage[COS]
+        va, vb = va + p.leaning * spin * cage[COS], vb + p.leaning * spin * cage[SIN]
+    outward, along, axial = (
+        vx * cos + vy * sin,
+        vy * cos - vx * sin + cage[VS],
+        cage[VZ] - (vb * cos - va * sin),
+    )
+    tilt_r, tilt_t = va * cos + vb * sin, vb * cos - va * sin
+    force_t = force_z = 0.0
     for i in range(2 * j, 2 * j + 2):
         if parts.kind[i] == NONE:
             continue
-        at_time(parts.contact[i], at, WORKING, contact)
-        power = contact[FT] * (ball[CT] - speed - free) + contact[FZ] * (ball[CZ] - axial)
-        couple = contact[SPIN] * cage[VS] + contact[LEAN] * tilt_t - contact[RUB_Q] * tilt_r
-        step.pocket_friction += weight * (power + contact[RUB_R] * ball[CR] + p.lever * couple)
-        heat[j] += weight * contact[PUSH] * contact[SLIDE]
+        fz, ft, out, across, turn, lean, push, slide = contact_at(parts.contact[i], last, at)
+        couple = turn * cage[VS] + lean * tilt_t - across * tilt_r
+        step.pocket_friction += weight * (ft * along + fz * axial + out * outward + p.lever * couple)
+        heat[j] += weight * push * slide
+        force_t, force_z = force_t + ft, force_z + fz
+    give = -force_z - p.groove_stiffness * value_at(ball, AXIAL, last, at)
+    settles = p.groove_yielding * share * give
+    if p.ball_mass == 0.0:
+        speed = -p.yielding * share * force_t
+        step.races += weight * force_t * speed
+    else:
+        speed = value_at(ball, SPEED, last, at)
+        step.races -= weight * value_at(ball, HOLD, last, at) * speed
+    step.grooves -= weight * give * settles
+    step.ball_drive += weight * force_t * free
+    step.pocket_friction -= weight * (force_t * (speed + free) + force_z * settles)
 
 
 @inlined_kernel
 def strip_work(
-    p: Numbers, parts: Parts, i: int, now: Pace, at: float, weight: float, step: Works, look: SpaceLook
+    p: Numbers,
+    parts: Parts,
+    i: int,
+    now: Pace,
+    last: int,
+    at: float,
+    weight: float,
+    step: Works,
+    look: SpaceLook,
 ) -> None:
     """Add one of Gauss's points to the work of a strip of a land, and to its rubbing."""
     strip, rate = parts.here[3], 0.0
-    at_time(parts.strip[i], at, STRIP_COLUMNS, strip)
-    for n in range(ORDER, 0, -1):
+    at_time(parts.strip[i], last, at, STRIP_COLUMNS, strip)
+    for n in range(last, 0, -1):
         rate = rate * at + n * parts.strip[i, n, DEPTH_L]
     spring = parts.strip_stiffness[i] * strip[DEPTH_L]
     if parts.mode[i] != PRESSED:

@@ -1,0 +1,99 @@
+"""What a cage in space refuses, as the body itself, as the cage that has it, and as the key of a study."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from cages import ON_A_LAND, TURNING
+from space_cages import IN_PLANE, ROUND, in_space
+
+from separatrix.cage_design import CageDesign, MotionModel, PocketContact
+from separatrix.errors import InputError
+from separatrix.pocket_shape import PocketShape
+from separatrix.study import Guidance
+
+BODY = [
+    ({"transverse_inertia": 0.0}, "transverse_inertia must be > 0"),
+    ({"ball_diameter": math.nan}, "ball_diameter must be"),
+    ({"groove_stiffness": -1.0}, "groove_stiffness must lie between 0 and"),
+    ({"pivot_speed": -1.0}, "pivot_speed must lie between 0 and"),
+    ({"land_width": -1e-3}, "land_width must lie between 0 and"),
+    ({"added_mass": -1e-3}, "added_mass must lie between 0 and"),
+    ({"axial_kick": -1.0}, "axial_kick must lie between 0 and"),
+    ({"tilt_kick": math.inf}, "tilt_kick must be"),
+    ({"axial_gravity": math.nan}, "axial_gravity must be"),
+    ({"dynamic_unbalance": 0.2}, "dynamic_unbalance must lie between 0 and 5.73 deg"),
+    *[({"groove_damping": value}, "groove_damping must be > 0") for value in (0.0, math.nan)],
+    *[({"axial_play": value}, "axial_play must be >= 0") for value in (-1e-4, math.nan)],
+    ({"friction_lever": -1e-3}, "friction_lever must lie between 0 and"),
+    ({"land_radius": 0.0}, "land_radius must be > 0"),
+    ({"ball_spin": (1.0, math.nan, 2.0)}, "ball_spin must each be a finite number [rad/s]; got nan"),
+    ({"land_heights": (math.inf,)}, "land_heights must each be a finite number [m]; got inf"),
+    ({"ball_spin": (1.0, 2.0)}, "ball_spin must be three numbers [rad/s]; got 2"),
+    ({"land_heights": (0.0, 1e-3, 2e-3)}, "land_heights must be one or two [m]; got 3"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), BODY)
+def test_a_body_that_cannot_be_is_refused(changes, words):
+    """One line, with the field's name."""
+    with pytest.raises(InputError) as caught:
+        replace(ROUND.space, **changes)
+    assert f"SpaceBody.{words}" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+CAGES = [
+    ({"moment_of_inertia": 1e-3}, "SpaceBody.transverse_inertia must be at least half that about the axis"),
+    ({"hertz_coefficient": 1e9}, "PlanarCage.hertz_coefficient has no meaning for a cage in space"),
+    ({"land_out_of_round": 1e-5}, "PlanarCage.land_out_of_round has no meaning for a cage in space"),
+    (
+        {"pocket_clearance": 0.0, "pocket_shape": PocketShape.CYLINDRICAL},
+        "PlanarCage.pocket_clearance must be > 0 for round pockets in space",
+    ),
+    ({"land_count": 2}, "SpaceBody.land_heights must be 2, as land_count says; got 1"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), CAGES)
+def test_a_cage_in_space_that_cannot_be_is_refused(changes, words):
+    """One line, with the record and the field; the same cage without a body in space is taken."""
+    cage = in_space(ON_A_LAND)
+    with pytest.raises(InputError) as caught:
+        replace(cage, **changes)
+    assert words in str(caught.value)
+    replace(cage, **changes, space=None)
+
+
+FLAT = CageDesign(pocket_clearance=6e-4, mass=0.025, guidance=Guidance.OUTER, land_clearance=1e-3)
+SPACE = replace(FLAT, motion=MotionModel.SPACE)
+DESIGNS = [
+    (FLAT, {"land_spacing": 1e-2}, "land_spacing has no meaning for a cage in the plane"),
+    (FLAT, {"transverse_inertia": 1e-5}, "transverse_inertia has no meaning for a cage in the plane"),
+    (FLAT, {"axial_gravity": 9.81}, "axial_gravity has no meaning for a cage in the plane"),
+    (FLAT, {"added_mass": 1e-3}, "added_mass has no meaning for a cage in the plane"),
+    (SPACE, {"pocket_contact": PocketContact.HERTZ}, "pocket_contact must be linear for a cage in space"),
+    (SPACE, {"land_out_of_round": 1e-5}, "land_out_of_round has no meaning for a cage in space"),
+    (SPACE, {"land_count": 2}, "land_spacing is missing: two lands have a distance"),
+    (SPACE, {"land_spacing": 1e-2}, "land_spacing has no meaning for one land"),
+    (
+        SPACE,
+        {"land_width": 2e-2, "inner_diameter": 5.8e-2, "outer_diameter": 7.2e-2, "width": 1.4e-2},
+        "land_width and the lands' distance, 20 mm together, must stay on the cage; got width 14 mm",
+    ),
+    (SPACE, {"inner_diameter": 5.8e-2}, "outer_diameter is missing"),
+]
+
+
+@pytest.mark.parametrize(("cage", "changes", "words"), DESIGNS)
+def test_a_study_of_a_cage_in_space_that_cannot_be_is_refused(cage, changes, words):
+    """One line, with the key."""
+    with pytest.raises(InputError) as caught:
+        replace(cage, **changes)
+    assert f"CageDesign.{words}" in str(caught.value)
+
+
+def test_the_lever_of_friction_is_the_radius_of_the_ball_unless_it_is_given():
+    """Half the ball's diameter, or the given one."""
+    assert ROUND.space.lever == pytest.approx(11.1125e-3 / 2.0, rel=1e-15)
+    assert in_space(TURNING, **IN_PLANE).space.lever == 0.0
