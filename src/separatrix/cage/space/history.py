@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
@@ -159,6 +159,7 @@ def simulate_in_space(
     """Follow one run of the ensemble in space.
 
     Sampling ends steps, so that a chaotic motion may part from that of the ensemble after some cage turns.
+    Of a run that grows without limit all samples are before that.
 
     Parameters
     ----------
@@ -184,41 +185,52 @@ def simulate_in_space(
     hits, heat = np.zeros((1, cage.ball_count), np.int64), np.zeros((1, cage.ball_count))
     run_rows(cage, settings, kick, starts, evidence, hits, heat)
     length = until or max(duration, float(evidence["followed"][0]))
-    unit, limits = time_unit(cage), run_limits(cage, kick, duration)
-    times = np.linspace(0.0, length, samples)
-    rows = np.zeros((samples, MOTIONS + len(SOURCES) + 2 * cage.ball_count + land_strips(cage)[0].size))
-    hits[:], heat[:] = 0, 0.0
-    books = books_for(1)
+    found = _followed(cage, kick, starts[0], np.linspace(0.0, length, samples), duration)
+    if (
+        until is None and 2 <= found.time.size < samples // 2
+    ):  # it grew without limit: all rows for its course
+        times = np.linspace(0.0, float(found.time[-1]), samples)
+        found = _followed(cage, kick, starts[0], times, duration)
+    return _history(cage, starts[0], found, evidence[0])
+
+
+class Followed(NamedTuple):
+    """What the kernel filled and counted, in its units."""
+
+    time: Array
+    rows: Array
+    look: np.void
+    hits: NDArray[np.int64]
+    heat: Array
+
+
+def _followed(
+    cage: PlanarCage, kick: MetrePerSecond, start: Array, times: Array, duration: Second
+) -> Followed:
+    """Follow a run from its start to times [s], or until it grows without limit."""
+    count = MOTIONS + len(SOURCES) + 2 * cage.ball_count + land_strips(cage)[0].size
+    rows, books = np.zeros((times.size, count)), books_for(1)
+    hits, heat = np.zeros(cage.ball_count, np.int64), np.zeros(cage.ball_count)
     filled = follow_run(
         numbers(cage, kick),
         parts_of(cage),
-        starts[0],
+        start,
         kick_speeds(cage, kick),
         cage.pocket_axial_offset,
         books,
-        times / unit,
-        limits.grown,
+        times / time_unit(cage),
+        run_limits(cage, kick, duration).grown,
         rows,
-        hits[0],
-        heat[0],
+        hits,
+        heat,
     )
-    look = np.asarray(books.looks)[0]
-    return _history(cage, starts[0], times[:filled], rows[:filled], evidence[0], look, hits[0], heat[0])
+    return Followed(times[:filled], rows[:filled], np.asarray(books.looks)[0], hits, heat)
 
 
-def _history(
-    cage: PlanarCage,
-    start: Array,
-    times: Array,
-    rows: Array,
-    evidence: np.void,
-    look: np.void,
-    hits: NDArray[np.int64],
-    heat: Array,
-) -> SpaceHistory:
+def _history(cage: PlanarCage, start: Array, found: Followed, evidence: np.void) -> SpaceHistory:
     """Record of the rows that the kernel filled and of what it counted, back in SI units."""
     T, R, Z, M = time_unit(cage), cage.pitch_radius, cage.ball_count, cage.mass + body_of(cage).added_mass
-    energy, at = M / T**2, MOTIONS + len(SOURCES)
+    energy, at, (times, rows, look, hits, heat) = M / T**2, MOTIONS + len(SOURCES), found
     counted = {name: float(evidence[name]) for name in FROM_ENSEMBLE}
     counted["land_impulse"] = float(look["pressed"]) * M / T
     forces = {
