@@ -1,0 +1,87 @@
+"""The cage in the plane against motions that have closed forms: on its land, and in pockets that grip."""
+
+import math
+
+import numpy as np
+import pytest
+
+from separatrix.cage import PlanarCage, follow
+from separatrix.study import Guidance
+
+M, R, C_G, G = 0.025, 0.036, 0.5e-3, 9.81
+
+
+def on_a_land(**changes) -> PlanarCage:
+    """A cage whose pockets are so wide that it never meets a ball, on a stiff land."""
+    given = {
+        "mass": M,
+        "moment_of_inertia": M * R * R,
+        "ball_count": 13,
+        "pitch_radius": R,
+        "cage_speed": 0.0,
+        "inner_speed": 0.0,
+        "outer_speed": 0.0,
+        "pocket_clearance": 10e-3,
+        "ball_cage_stiffness": 3e6,
+        "race_damping": 300.0,
+        "ball_cage_friction": 0.0,
+        "guidance": Guidance.INNER,
+        "land_clearance": 2.0 * C_G,
+        "land_stiffness": 1e9,
+        "land_restitution": 0.0,
+        "land_friction": 0.0,
+    }
+    return PlanarCage(**given | changes)
+
+
+def history(cage: PlanarCage, **given):
+    """One run with the balls in the middle of their pockets."""
+    return follow(cage, ball_lead=np.zeros(cage.ball_count), **given)
+
+
+@pytest.mark.parametrize(("friction", "frequency"), [(0.0, 22.28925), (0.8, 15.76088)])
+def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
+    """Sliding sqrt(g/c)/2 pi, rolling with a thin ring's inertia 1/sqrt 2 of it (dynamics3d E5).
+
+    It falls on its land first; a swing of 7 mrad changes the frequency by 3e-6 of it.
+    """
+    cage = on_a_land(gravity=G, land_friction=friction)
+    found = history(cage, kick=5e-4, direction=math.pi / 2, duration=0.6, samples=12_001)
+    late = found.time > 0.2
+    t, y = found.time[late], found.position[late, 1]
+    i = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
+    crossings = t[i] - y[i] * (t[i + 1] - t[i]) / (y[i + 1] - y[i])
+    assert np.diff(crossings).mean() == pytest.approx(1.0 / frequency, rel=2e-4)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_dry_land_speeds_up_or_slows_down_a_whirl(sense):
+    """Nu = nu_0/(1 -+ f nu_0 t): 1/nu changes by f each second (dynamics3d E6), with the spin held."""
+    f = 0.1
+    cage = on_a_land(moment_of_inertia=1e3, guidance=Guidance.OUTER, outer_speed=1e4 * sense, land_friction=f)
+    found = history(cage, kick=0.3, direction=0.0, duration=0.04, samples=4001)
+    assert found.land_force.max() > 0.0
+    late = found.time > 0.02
+    x, y = found.position[late].T
+    vx, vy = found.velocity[late].T
+    nu = (x * vy - y * vx) / (x * x + y * y)
+    slope = np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0]
+    assert slope == pytest.approx(-f, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("friction", "offset", "angle"), [(0.0, 1.586139e-7, 85.4536), (0.1, 1.578267e-7, 91.1642)]
+)
+def test_gripped_pockets_hold_a_cage_against_gravity(friction, offset, angle):
+    """Sag and its angle from gravity where the pockets of a turning ball set grip (dynamics3d E8)."""
+    cage = on_a_land(
+        guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0, pitch_radius=0.0325,
+        moment_of_inertia=M * 0.0325**2, cage_speed=668.9886, inner_speed=1570.8, race_damping=356.5792,
+        ball_cage_friction=friction, gravity=G,
+    )  # fmt: skip
+    found = history(cage, kick=0.01, direction=0.0, duration=0.3, samples=3001)
+    late = found.time > 0.25
+    turned = found.position[late, 0] + 1j * found.position[late, 1]
+    fixed = turned * np.exp(1j * cage.cage_speed * found.time[late])
+    assert np.abs(fixed.mean()) == pytest.approx(offset, rel=2e-3)
+    assert math.degrees(abs(np.angle(fixed.mean()))) == pytest.approx(angle, abs=0.1)
