@@ -7,7 +7,7 @@ import pytest
 from separatrix.answers import OfCage
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage_choice import require_friction
-from separatrix.chain import solution
+from separatrix.chain.cage_of_design import as_designed
 from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, ValidityWarning
@@ -216,9 +216,9 @@ def test_every_field_of_the_cage_design_comes_to_the_cage_in_the_plane():
 
     @dataclass(frozen=True)
     class Renamed:
-        mass: float = 0.025
+        unbalance: float = 0.025
         pocket_clearances: float = 1e-4
 
-    assert solution._as_designed(Renamed()) == {"mass": 0.025, "pocket_clearances": 1e-4}
+    assert as_designed(Renamed()) == {"unbalance": 0.025, "pocket_clearances": 1e-4}
     with pytest.raises(TypeError, match="pocket_clearances"):
-        PlanarCage(**solution._as_designed(Renamed()))
+        PlanarCage(**as_designed(Renamed()))

@@ -35,7 +35,7 @@ from separatrix.limits.map_rule import (
     wrong_side_probability,
 )
 from separatrix.runner import Interrupted, Runner
-from separatrix.study import Guidance, PocketShape, Wear
+from separatrix.study import Guidance, MotionModel, PocketShape, Wear
 from separatrix.study_file import read_study
 
 KICKS = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))
@@ -266,11 +266,24 @@ def test_bands_and_margins_of_a_column():
     assert changes((1, -1, -1, 1, 0)) == [(0, 1), (2, 3)]
 
 
+RING = {"inner_diameter": 0.058, "outer_diameter": 0.072, "width": 0.014}
+IN_SPACE = {
+    *("transverse_inertia", "land_spacing", "land_width", "land_diameter", "dynamic_unbalance"),
+    *("axial_gravity", "added_mass"),
+}
+
+
 @pytest.mark.parametrize("name", sorted(parameters()))
 def test_every_parameter_reaches_the_study(name, study):
     """Each parameter changes the study, but those that belong to the cage in the plane alone."""
-    slot = {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 2e-4}
-    study = replace(study, cage=replace(study.cage, **slot))
+    cage = {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 2e-4}
+    if name.removeprefix("cage.") in RING:
+        cage |= RING
+    if name.removeprefix("cage.") in IN_SPACE:
+        cage |= {"motion": MotionModel.SPACE}
+    if name == "cage.land_spacing":
+        cage |= {"land_count": 2, "land_spacing": 0.01}
+    study = replace(study, cage=replace(study.cage, **cage))
     if name.startswith("film.wear."):
         form = {"share": 0.1} if name.endswith("share") else {"width": 2e-4}
         worn = replace(study.film, wear=Wear(friction=0.3, thickness=1e-8, **form))

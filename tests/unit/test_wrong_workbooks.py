@@ -113,7 +113,7 @@ STUDIES = [
     ("extends itself", {**STUDY, "study": [HEAD, ["extends", "case.xlsx"]]}, "cell B2: extends leads back to a file"),
     ("extends nothing", {**STUDY, "study": [HEAD, ["extends", "base.xlsx"]]}, "extends does not name a file beside this one"),
     ("missing section", {k: v for k, v in STUDY.items() if k != "film"}, "case.xlsx lacks the section [film]"),
-    ("missing key", study("cage", 2, "gravity", 1.0, None, "g0"), "sheet cage: [cage] lacks: mass"),
+    ("missing key", study("cage", 2, "gravity", 1.0, None, "g0"), "sheet cage: [cage] mass is missing"),
     ("no headings", {**STUDY, "cage": [["mass", 25.0, None, "g"]]}, "sheet cage has no headings key and value"),
     ("column twice", {**STUDY, "cage": [["key", "value", "value"], ["mass", "25 g"]]}, 'is a second column of that heading; got "value"'),
     ("sheet misspelt", {**STUDY, "cagge": STUDY["cage"]}, "sheet cagge is not a section of a study. Did you mean cage?"),

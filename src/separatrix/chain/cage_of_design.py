@@ -21,13 +21,18 @@ if TYPE_CHECKING:
     from separatrix.study import BallBearing, CageDesign, StabilitySettings
 
 
-_OF_THE_CHAIN = {"mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"}
+_NOT_COPIED = {
+    *("mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
+    *("inner_diameter", "outer_diameter", "width", "transverse_inertia"),  # these are in the inertia
+    *("ball", "motion"),  # the models, in `traction` and `space`
+    *("land_spacing", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity", "added_mass"),
+}
 
 
 def as_designed(design: CageDesign) -> dict[str, Any]:
-    """What the moving cage takes from the design as it is: the fields of one name that the chain leaves."""
-    shared = {f.name for f in fields(PlanarCage)} & {f.name for f in fields(design)}
-    return {name: getattr(design, name) for name in sorted(shared - _OF_THE_CHAIN)}
+    """What the moving cage takes from the design as it is: all other fields, under the same names."""
+    return {f.name: getattr(design, f.name) for f in fields(design) if f.name not in _NOT_COPIED}
 
 
 def space_body(
