@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from separatrix.cage.closed_forms import drifts, drive_energy, room, time_unit
-from separatrix.cage.planar import RunOutcome
+from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.compiled import part
 
 if TYPE_CHECKING:
@@ -78,6 +78,18 @@ window; from the second on a cage that frame or loads move is at its land."""
 UNKNOWN = -1
 SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 UNRESOLVED = int(RunOutcome.UNRESOLVED)
+BY_NOTHING, NO_CONTACT, FALLING = int(Cause.NONE), int(Cause.NO_CONTACT), int(Cause.FALLING)
+BY_LAND = int(Cause.LAND_FRICTION)
+
+
+class Works(Protocol):
+    """The sources in a ledger of work, in the plane or in space, by which the end of a motion is judged."""
+
+    pocket_friction: float
+    land_friction: float
+    ball_drive: float
+    gravity: float
+    moving_frame: float
 
 
 class Look:
@@ -190,6 +202,56 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
     """
     way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
     return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
+
+
+@part
+def book(looks: Sequence[Look], i: int, works: Works, sense: float, limits: Limits) -> None:
+    """Take the work done so far out of look i at its start (`sense` -1), and into it at its end (1)."""
+    look = looks[i]
+    look.pocket_work += sense * works.pocket_friction
+    look.land_work += sense * works.land_friction
+    look.ball_work += sense * works.ball_drive
+    look.gravity_work += sense * works.gravity
+    if limits.drifts and limits.drive == 0.0:
+        look.frame_work += sense * works.moving_frame
+
+
+@part
+def after_look(
+    looks: Sequence[Look],
+    i: int,
+    energy: float,
+    met: bool,
+    touched: bool,
+    at_speed: bool,
+    limits: Limits,
+    memory: Memory,
+) -> int:
+    """Outcome of a run that is plain after look i, by its energy with that of the springs, else `UNKNOWN`."""
+    length, outcome = limits.beats * limits.beat, UNKNOWN
+    if energy > limits.grown:
+        outcome = high_end(looks, i + 1)
+    elif touched and energy < limits.still:
+        outcome = SETTLES
+    elif touched and at_speed:
+        outcome = plain_end(looks, i, length, met, limits, memory)
+    if outcome == UNKNOWN and i + 1 == limits.most:
+        outcome = end_by_trend(looks, i + 1, length, limits)
+    return outcome
+
+
+@part
+def with_cause(
+    looks: Sequence[Look], outcome: int, judged: int, touched: bool, limits: Limits
+) -> tuple[int, int, int]:
+    """Outcome of a run, the looks up to which it was judged, and its cause."""
+    length, first = limits.beats * limits.beat, max(0, judged - FED)
+    if not touched:
+        return UNRESOLVED, judged, NO_CONTACT
+    if outcome == UNRESOLVED:
+        return outcome, judged, FALLING
+    lively = outcome == SETTLES and mean_energy(looks, first, judged, length) > limits.drive
+    return outcome, judged, BY_LAND if lively and fed(looks, first, judged)[2] > HALF else BY_NOTHING
 
 
 @part

@@ -149,16 +149,8 @@ def run_in_plane(
 
     Parameters
     ----------
-    cage : PlanarCage
-        The cage.
-    settings : StabilitySettings
-        Kicks, runs, duration, scatter and seed.
-    kicks, runs
-        Instead of those of the settings.
-    first_run : int
-        Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
-    jobs : int
-        Threads. The result is the same to the last bit for any number.
+    cage, settings, kicks, runs, first_run, jobs
+        As in `cage.run_ensemble`.
 
     Raises
     ------

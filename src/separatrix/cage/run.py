@@ -5,26 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.random import Generator, Philox
 
 from separatrix.cage.ending import (
-    FED,
+    BY_NOTHING,
     FEWEST_LOOKS,
-    HALF,
     SETTLES,
     UNKNOWN,
     UNRESOLVED,
     Limits,
     Look,
     Memory,
-    end_by_trend,
-    fed,
-    high_end,
+    after_look,
+    book,
     mean_energy,
-    plain_end,
+    with_cause,
 )
 from separatrix.cage.evidence import pocket_energy, total_work
 from separatrix.cage.motion import advance, kinetic, land_energy
@@ -49,9 +47,21 @@ from separatrix.compiled import kernel, part
 from separatrix.units import Array
 
 DRIFTS = int(RunOutcome.DRIFTS)
-NONE, IMPACTS, NO_CONTACT, FALLING, NOT_FINITE, BY_LAND = (int(cause) for cause in Cause)
+IMPACTS, NOT_FINITE = int(Cause.IMPACTS), int(Cause.NOT_FINITE)
 NOTHING_LEFT = 2.0**-104
 """Share of the kick's energy below which speeds are rounding: growth rates count no further."""
+
+
+class Scales(Protocol):
+    """What the kernels' numbers are in SI units, of a cage in the plane or in space."""
+
+    @property
+    def unit(self) -> float:
+        """Unit of time [s]."""
+
+    @property
+    def turning(self) -> float:
+        """Angle by which the frame turns in it."""
 
 
 class Books(NamedTuple):
@@ -107,50 +117,33 @@ def watch(
     tuple
         Outcome, the looks up to which it was judged, and the cause.
     """
-    length = limits.beats * limits.beat
     outcome, judged, touches, touched = UNKNOWN, 0, 0, state.touching > 0
     for i in range(limits.most):
         looks[i] = looks[limits.most]  # type: ignore[index]
         look = looks[i]
-        pocket, land, ball = ledger.pocket_friction, ledger.land_friction, ledger.ball_drive
-        gravity, frame = ledger.gravity, ledger.moving_frame
+        book(looks, i, ledger, -1.0, limits)
         going, beat = True, 0
         while going and beat < limits.beats and kinetic(p, state) < limits.grown:
             going = advance(p, balls, state, w, ledger, look, hits, limits.beat, limits.grown, samples, room)
             beat += 1
-        look.pocket_work = ledger.pocket_friction - pocket
-        look.land_work = ledger.land_friction - land
-        look.ball_work, look.gravity_work = ledger.ball_drive - ball, ledger.gravity - gravity
-        if limits.drifts and limits.drive == 0.0:
-            look.frame_work = ledger.moving_frame - frame
+        book(looks, i, ledger, 1.0, limits)
         energy = kinetic(p, state)
         held = held_energy(p, balls, state)
         if not (going and np.isfinite(energy + look.kinetic)):
             cause = NOT_FINITE if going else IMPACTS
-            return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, NONE)
+            return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, BY_NOTHING)
         hit = int(np.sum(hits))
         met = bool(state.touching > 0 or hit > touches)
         touches = hit
         touched = touched or met or look.land_hits > 0.0
         if outcome == UNKNOWN:
             judged = i + 1
-            if energy + held > limits.grown:
-                outcome = high_end(looks, judged)
-            elif touched and energy + held < limits.still:
-                outcome = SETTLES
-            elif touched and state.clock >= p.ramp_time:
-                outcome = plain_end(looks, i, length, met, limits, memory)
-            if outcome == UNKNOWN and judged == limits.most:
-                outcome = end_by_trend(looks, judged, length, limits)
+            outcome = after_look(
+                looks, i, energy + held, met, touched, state.clock >= p.ramp_time, limits, memory
+            )
         if outcome != UNKNOWN and (i + 1 >= limits.least or energy + held > limits.grown):
             break
-    if not touched:
-        return UNRESOLVED, judged, NO_CONTACT
-    if outcome == UNRESOLVED:
-        return outcome, judged, FALLING
-    first = max(0, judged - FED)
-    lively = outcome == SETTLES and mean_energy(looks, first, judged, length) > limits.drive
-    return outcome, judged, BY_LAND if lively and fed(looks, first, judged)[2] > HALF else NONE
+    return with_cause(looks, outcome, judged, touched, limits)
 
 
 @part
@@ -223,7 +216,6 @@ def run_one(
     `kick` is in units of the engine; the state and the ledger of this run in the `books` are zero.
     """
     state, ledger, looks, w = books.state[run], books.ledger[run], books.looks, books.series
-    length = limits.beats * limits.beat
     balls.side[:], balls.touching[:], balls.own_speed[:] = 0, 0, 0.0
     if p.gripped:
         balls.side[:] = 2
@@ -235,16 +227,25 @@ def run_one(
     outcome, end, cause = watch(
         p, balls, state, ledger, books.memory[run], looks, w, hits, limits, samples, books.room
     )
-    farthest, force, land_force, land_hits = 0.0, 0.0, 0.0, 0.0
-    for i in range(end):
-        farthest, force = max(farthest, looks[i].offset_max), max(force, looks[i].force_max)
-        land_force = max(land_force, looks[i].land_max)
-        land_hits += looks[i].land_hits
     out.outcome, out.cause = DRIFTS if limits.drifts and outcome == SETTLES else outcome, cause
     out.energy_imbalance = imbalance(p, balls, state, w, ledger, start, books.room)
     out.rows = state.rows
     if cause == NOT_FINITE:
         return
+    enter_looks(p, looks, end, start, limits, out)
+
+
+@part
+def enter_looks(
+    p: Scales, looks: Sequence[Look], end: int, start: float, limits: Limits, out: Evidence
+) -> None:
+    """Write what the looks up to `end` tell of a run that began with this energy."""
+    length = limits.beats * limits.beat
+    farthest, force, land_force, land_hits = 0.0, 0.0, 0.0, 0.0
+    for i in range(end):
+        farthest, force = max(farthest, looks[i].offset_max), max(force, looks[i].force_max)
+        land_force = max(land_force, looks[i].land_max)
+        land_hits += looks[i].land_hits
     out.largest_offset, out.land_impacts = np.sqrt(farthest), int(land_hits)
     out.followed = end * length * p.unit
     out.growth_rate = growth(looks, end, length, start) / p.unit
@@ -255,11 +256,17 @@ def run_one(
 
 
 @part
+def last_part(end: int, limits: Limits) -> int:
+    """Number of looks by whose motion a run is described: the last fifth, or the last window."""
+    return max(1, end // FEWEST_LOOKS, min(end, limits.window))
+
+
+@part
 def enter_end(
-    p: Coefficients, looks: Sequence[Look], end: int, length: float, limits: Limits, out: Evidence
+    p: Scales, looks: Sequence[Look], end: int, length: float, limits: Limits, out: Evidence
 ) -> None:
-    """Write what the motion is in the looks by which it was judged: the last fifth, or the last window."""
-    n = max(1, end // FEWEST_LOOKS, min(end, limits.window))
+    """Write what the motion is in the last part of the looks."""
+    n = last_part(end, limits)
     first, time = end - n, n * length
     kinetic_, turning, squared, offset, offset_squared, swept = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     pocket, land, pressed, rubbed = 0.0, 0.0, 0.0, 0.0

@@ -66,7 +66,7 @@ def begin_moving(balls: Balls, state: State) -> None:
 
 @inlined_kernel
 def blocks(used: int) -> int:
-    """Blocks of `LANES` slots that so many balls take."""
+    """Number of blocks of `LANES` slots for this number of balls."""
     return (used + LANES - 1) // LANES
 
 

@@ -94,7 +94,7 @@ def run_in_space(
     cage : PlanarCage
         The cage.
     settings, kicks, runs, first_run, jobs
-        As in `cage.run_ensemble`, with the same starts in the cage.
+        As in `cage.run_ensemble`; in the plane the starts are the same.
 
     Raises
     ------

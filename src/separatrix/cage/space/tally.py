@@ -89,7 +89,7 @@ def kinetic(p: Numbers, state: Motion) -> float:
 
 
 @inner_kernel
-def held(p: Numbers, parts: Parts) -> float:
+def held_energy(p: Numbers, parts: Parts) -> float:
     """Energy in springs of pockets, grooves and lands, and in balls that move, over the mass."""
     total = 0.0
     for j in range(parts.moving.size):
