@@ -18,7 +18,7 @@ import pytest
 
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
-from separatrix.cli.files import staged, writable_folder
+from separatrix.staged import staged, writable_folder
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.notes import noted_warnings
 
@@ -199,7 +199,7 @@ def write_half(folder: Path) -> None:
 
 KILLED = """
 import os, pathlib, signal, sys
-from separatrix.cli.files import staged
+from separatrix.staged import staged
 with staged(pathlib.Path(sys.argv[1])) as stage:
     (stage / "half").write_text("written")
     print(stage.name, flush=True)

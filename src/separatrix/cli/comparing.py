@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from separatrix.cli.console import answer, harmless
-from separatrix.cli.files import staged, writable_folder
+from separatrix.cli.console import answer
 from separatrix.errors import InputError
+from separatrix.plain_text import harmless
+from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
     import xarray as xr

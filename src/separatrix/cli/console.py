@@ -6,16 +6,15 @@ import _thread
 import contextlib
 import math
 import os
-import re
 import sys
 import threading
 import time
-import unicodedata
 from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
 from separatrix.errors import InputError
+from separatrix.plain_text import harmless, one_line
 
 if TYPE_CHECKING:
     from separatrix.units import Second
@@ -34,29 +33,6 @@ FIRST_PART = 0.05
 
 RETRY = 0.02
 """Time after which a swallowed interrupt is sent again [s]."""
-
-
-_SUSPECT = re.compile(r"[^\n\x20-\x7e]")
-
-
-def harmless(text: str) -> str:
-    """Return the text with control characters spelled out, except ends of lines.
-
-    A terminal obeys them, and a title, a name or a log's header may come from somebody else. Characters that
-    cannot be seen, such as those that turn the direction of writing, are spelled out too.
-    """
-    return _SUSPECT.sub(_spelled, text)
-
-
-def _spelled(found: re.Match[str]) -> str:
-    c = found.group()
-    is_seen = c.isprintable() or unicodedata.category(c) == "Zs"
-    return c if is_seen else c.encode("unicode_escape").decode()
-
-
-def one_line(text: str) -> str:
-    """Return the text on one line, with what no terminal should be sent spelled out."""
-    return harmless(" ".join(text.split()))
 
 
 def complain(message: str) -> None:

@@ -7,8 +7,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.cli.console import answer, harmless, progress_bar
-from separatrix.cli.files import staged, writable_folder
+from separatrix.cli.console import answer, progress_bar
+from separatrix.plain_text import harmless
+from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
     from separatrix.contact_file.question import ContactAnswer

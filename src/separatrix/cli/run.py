@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from separatrix.cli.console import answer, complain, harmless, interrupted, progress_bar
-from separatrix.cli.files import refuse_existing, staged, writable_folder, write_new
+from separatrix.cli.console import answer, complain, interrupted, progress_bar
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
+from separatrix.staged import refuse_existing, writable_folder, write_new
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from separatrix.study import Study
 
 ANSWERED = 0
@@ -108,67 +104,20 @@ def _deliver(
     from separatrix.present import document, report, whereabouts
 
     found = document(verb.name, record, study, notes)
-    text = json.dumps(found, indent=1, allow_nan=False) + "\n"
     asked = (verb.name, record, study, list(found["warnings"]))
-    answer(text if options.json else report(*asked, full=options.full, quiet=options.quiet))
+    if options.json:
+        answer(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    else:
+        answer(report(*asked, full=options.full, quiet=options.quiet))
     if folder is None:
         return
-    with staged(folder) as stage:
-        for suffix, content in ((".json", text), (".txt", report(*asked, full=True))):
-            (stage / f"{verb.name}{suffix}").write_text(harmless(content), encoding="utf-8")
-        if verb.name == "rank":
-            from separatrix.workbook import results_workbook
+    from separatrix.saving import save_answer
 
-            results_workbook(found, stage / "rank.xlsx")
-        if verb.writes_files:
-            _write_data(asked, stage, options)
+    with progress_bar("animation", quiet=options.quiet or options.animate is None) as progress:
+        save_answer(folder, record, study, found, animation=options.animate, progress=progress)
     if not options.json and not options.quiet:
         overview = verb.name == "rank" and bool(found["complete"])
         answer("\n" + whereabouts(verb.name, str(folder), overview=overview))
-
-
-def _write_data(asked: tuple[str, object, Study, list[str]], folder: Path, options: Options) -> None:
-    """Write the dataset and what is made from it; matplotlib keeps its remarks on fonts to itself."""
-    import logging
-
-    from separatrix import figures
-    from separatrix.figures.space import is_in_space
-    from separatrix.figures.space_page import write_page
-    from separatrix.present import dataset, save
-
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    verb, data = asked[0], dataset(*asked)
-    save(data, folder / f"{verb}.nc")
-    figures.save_all(figures.draw(verb, data), folder)
-    if verb == "sweep":
-        _write_tables(data, folder)
-    if verb == "simulate" and is_in_space(data):
-        write_page(data, folder / "simulation.html")
-    if options.animate is not None:
-        from separatrix.figures.animation import animate
-
-        with progress_bar("animation", quiet=options.quiet) as progress:
-            path = folder / f"simulation.{options.animate}"
-            animate(data, path, kind=options.animate, progress=progress)
-
-
-def _write_tables(data: xr.Dataset, folder: Path) -> None:
-    """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
-    from separatrix.workbook_looks import add_table, new_workbook, text_for_cell, workbook_bytes
-
-    names = [str(name) for name in data.variables if data[name].dims == ("case",)]
-    heads = [f"{name} [{unit}]" if (unit := data[name].attrs.get("units")) else name for name in names]
-    rows = [
-        [None if v == "" or (isinstance(v, float) and math.isnan(v)) else v for v in row]
-        for row in zip(*(data[name].values.tolist() for name in names), strict=True)
-    ]
-    with (folder / "sweep.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(heads)
-        writer.writerows([text_for_cell(v) if isinstance(v, str) else v for v in row] for row in rows)
-    book = new_workbook()
-    add_table(book, "Sweep", heads, rows, keep_columns=1)
-    (folder / "sweep.xlsx").write_bytes(workbook_bytes(book))
 
 
 def check_animation(kind: str, *, writes: bool) -> None:

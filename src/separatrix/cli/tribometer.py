@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from separatrix.cli.console import answer, progress_bar
-from separatrix.cli.files import staged, writable_folder
 from separatrix.errors import InputError
+from separatrix.staged import staged, writable_folder
 from separatrix.units import printable, shown
 
 if TYPE_CHECKING:

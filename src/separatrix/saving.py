@@ -1,0 +1,100 @@
+"""The files of an answer: its document, text, dataset, figures and tables."""
+
+from __future__ import annotations
+
+import csv
+import json
+import logging
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from separatrix import figures
+from separatrix.figures.animation import animate
+from separatrix.figures.space import is_in_space
+from separatrix.figures.space_page import write_page
+from separatrix.plain_text import harmless
+from separatrix.present import dataset, report, save
+from separatrix.staged import staged
+from separatrix.workbook import results_workbook
+from separatrix.workbook_looks import add_table, new_workbook, text_for_cell, workbook_bytes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from separatrix.present.json import Document
+    from separatrix.runner import Progress
+    from separatrix.study import Study
+
+WITHOUT_DATA = ("check",)
+"""Verbs whose answer is its document and text alone."""
+
+
+def save_answer(
+    folder: Path,
+    record: object,
+    study: Study,
+    found: Document,
+    *,
+    animation: str | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Write the files of an answer into a folder, all or none.
+
+    Parameters
+    ----------
+    folder : Path
+        It exists.
+    record, study : object, Study
+        The answer and what was asked.
+    found : dict
+        The answer as `present.document` makes it.
+    animation : str, optional
+        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` hears how far it is.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    verb = str(found["verb"])
+    asked = (verb, record, study, list(found["warnings"]))
+    with staged(folder) as stage:
+        for suffix, content in ((".json", written(found)), (".txt", report(*asked, full=True))):
+            (stage / f"{verb}{suffix}").write_text(harmless(content), encoding="utf-8")
+        if verb == "rank":
+            results_workbook(found, stage / "rank.xlsx")
+        if verb in WITHOUT_DATA:
+            return
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
+        data = dataset(*asked)
+        save(data, stage / f"{verb}.nc")
+        figures.save_all(figures.draw(verb, data), stage)
+        if verb == "sweep":
+            _write_tables(data, stage)
+        if verb == "simulate" and is_in_space(data):
+            write_page(data, stage / "simulation.html")
+        if animation is not None:
+            animate(data, stage / f"simulation.{animation}", kind=animation, progress=progress)
+
+
+def written(found: Document) -> str:
+    """Return a document as the text of its JSON file."""
+    return json.dumps(found, indent=1, allow_nan=False) + "\n"
+
+
+def _write_tables(data: xr.Dataset, folder: Path) -> None:
+    """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
+    names = [str(name) for name in data.variables if data[name].dims == ("case",)]
+    heads = [f"{name} [{unit}]" if (unit := data[name].attrs.get("units")) else name for name in names]
+    rows = [
+        [None if v == "" or (isinstance(v, float) and math.isnan(v)) else v for v in row]
+        for row in zip(*(data[name].values.tolist() for name in names), strict=True)
+    ]
+    with (folder / "sweep.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(heads)
+        writer.writerows([text_for_cell(v) if isinstance(v, str) else v for v in row] for row in rows)
+    book = new_workbook()
+    add_table(book, "Sweep", heads, rows, keep_columns=1)
+    (folder / "sweep.xlsx").write_bytes(workbook_bytes(book))
