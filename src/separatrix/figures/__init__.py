@@ -46,6 +46,7 @@ def draw(
     other: xr.Dataset | None = None,
     *,
     names: tuple[str, str] = ("", ""),
+    head: bool = True,
 ) -> Iterator[tuple[str, Figure]]:
     """Yield name and figure of every picture of an answer.
 
@@ -57,6 +58,8 @@ def draw(
         From `present.dataset` or `present.load`; only `compare` takes a second one.
     names : tuple of str
         What `compare` writes above the two columns; by default the titles of the studies.
+    head : bool
+        Whether title and operating point are written above each picture.
     """
     if (verb == "compare") != (other is not None):
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
@@ -71,7 +74,7 @@ def draw(
         elif verb in FIGURES:
             data = literal_texts(data)
             for name, figure in FIGURES[verb](data):
-                yield name, settled(headed(figure, data))
+                yield name, settled(headed(figure, data) if head else figure)
 
 
 def save_all(pictures: Iterable[tuple[str, Figure]], folder: Path) -> None:

@@ -1,0 +1,47 @@
+"""A report as one HTML file that needs nothing else: no network, no other file."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+
+from separatrix.plain_text import harmless
+from separatrix.reporting.record import Picture, Report
+
+ANSWERS = "separatrix-answers"
+"""Identifier of the element that has the documents of the answers: {verb: document}."""
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=PackageLoader("separatrix.reporting"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["embedded"] = embedded
+    environment.filters["kind"] = lambda block: type(block).__name__
+    return environment.get_template("report.html")
+
+
+def html(report: Report) -> str:
+    """Return a report as HTML; every text in it is escaped, and its pictures can run nothing."""
+    return harmless(_template().render(report=report, answers=script_data(report.documents), answers_id=ANSWERS))
+
+
+def embedded(picture: Picture) -> str:
+    """Return a picture as the address of an image that holds it."""
+    return "data:image/svg+xml;base64," + base64.b64encode(picture.svg.encode()).decode()
+
+
+def script_data(documents: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return documents as JSON that cannot end the script element around it."""
+    text = json.dumps(documents, allow_nan=False, separators=(",", ":"))
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
