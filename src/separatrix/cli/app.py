@@ -11,6 +11,7 @@ import typer
 
 from separatrix.cli import contact as one_contact
 from separatrix.cli import materials
+from separatrix.cli import report as reporting
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
@@ -89,6 +90,18 @@ def _compare(
     return compare(first, second, folder(out), as_json=json)
 
 
+def _report(
+    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=reporting.ASKED_HELP)],
+    pdf: Annotated[bool, typer.Option("--pdf", help=reporting.PDF_HELP)] = False,
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=reporting.OUT_HELP)] = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    options = reporting.ReportOptions(out=folder(out), pdf=pdf, json=json, quiet=quiet, jobs=threads(jobs))
+    return _interruptible(lambda: reporting.report(asked, options), "no report was written.")
+
+
 def _contact(
     path: Annotated[Path, typer.Argument(metavar="FILE", help=one_contact.FILE_HELP)],
     json: Json = False,
@@ -159,6 +172,7 @@ def _application() -> typer.Typer:
     )(_tribometer)
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
+    app.command("report", help=reporting.HELP, epilog=reporting.EPILOG)(_report)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
@@ -174,7 +188,7 @@ def _start(
         raise typer.Exit
     if context.invoked_subcommand is None:
         verbs = ", ".join(
-            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "materials"]
+            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "report", "materials"]
         )
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 

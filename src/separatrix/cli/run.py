@@ -67,7 +67,7 @@ def run(verb: Verb, name: str, options: Options) -> int:
             folder = Path(study.name)
         if folder is not None:
             stack.enter_context(writable_folder(folder))
-        record, complete = _computed(verb, study, options, folder)
+        record, complete = computed(verb, study, options, folder)
         _deliver(verb, record, study, grouped(notes), folder, options)
     if complete:
         return ANSWERED
@@ -75,7 +75,7 @@ def run(verb: Verb, name: str, options: Options) -> int:
     return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
-def _computed(verb: Verb, study: Study, options: Options, folder: Path | None) -> tuple[Any, bool]:
+def computed(verb: Verb, study: Study, options: Options, folder: Path | None) -> tuple[Any, bool]:
     """Compute the answer, or the part that was finished before an interrupt; return whether it is all."""
     from separatrix import verbs
     from separatrix.runner import Interrupted

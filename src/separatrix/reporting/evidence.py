@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from separatrix.present.text.tables import ABSENT, grouped, interval, number, quantity, rate
+from separatrix.present.text.tables import ABSENT, grouped, interval, number, rate
 from separatrix.reporting.kept import Kept, differing
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, facts, margin, own_rows, places, probability, threshold, verdict
+from separatrix.reporting.words import (
+    Row,
+    facts,
+    margin,
+    own_rows,
+    places,
+    probability,
+    quantity,
+    threshold,
+    verdict,
+)
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
 
@@ -44,6 +54,8 @@ def _evidence(rank: Row) -> Iterator[Block]:
         "centre about the axis over that of the ball set; rubbing: friction power on the land.",
         left=2,
     )
+    if any(row.get("other_ball_verdict") for row in rows):
+        yield _other_ball(rank, rows)
     yield facts(
         *((", ".join(who), reason) for reason, who in grouped((r["reason"], r["name"]) for r in rows).items())
     )
@@ -54,6 +66,25 @@ def _evidence(rank: Row) -> Iterator[Block]:
     for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
         if others:
             yield _short(name, each)
+
+
+def _other_ball(rank: Row, rows: list[Row]) -> Table:
+    """Return the verdicts by the model of the ball that the study does not ask for."""
+    inertial = rank["ball_model"] == "DAMPER"
+    model = "with its inertia and traction" if inertial else "without mass, held by a damper"
+    return Table(
+        ("candidate", "verdict", "P(stable) (95 %)", "pocket force", "runs"),
+        tuple(
+            (
+                *(str(row["name"]), str(row["other_ball_verdict"]), _share(row, "other_ball")),
+                *(quantity(row["other_ball_largest_contact_force"], "N", 3), str(row["other_ball_runs"])),
+            )
+            for row in rows
+            if row.get("other_ball_verdict")
+        ),
+        f"The same with a ball {model}, from fewer runs: a check of the model above.",
+        left=2,
+    )
 
 
 def _short(name: str, rows: list[Row]) -> Table:
@@ -88,6 +119,19 @@ def _motion(row: Row) -> tuple[str, ...]:
     )
 
 
+def _share(row: Row, kind: str) -> str:
+    """Return P(stable) with its interval, over the inputs or by the other model of the ball."""
+    low, high = row[f"{kind}_probability_low"], row[f"{kind}_probability_high"]
+    return interval(row[f"{kind}_probability_stable"], low, high)
+
+
+def _factor(row: Row) -> str:
+    """Return the median restitution factor of the drawn bearings, and the range of nine in ten."""
+    if row.get("restitution_factor") is None:
+        return ABSENT
+    return interval(row["restitution_factor"], row["restitution_factor_low"], row["restitution_factor_high"])
+
+
 def uncertainty(kept: Mapping[str, Kept]) -> Section:
     """Return the verdicts over the uncertain inputs, and the next test; or how to get them."""
     if "sensitivity" in kept:
@@ -108,14 +152,12 @@ def _without_sensitivity(kept: Mapping[str, Kept]) -> Iterator[Block]:
     if "rank" in kept:
         rows = [row for row in own_rows(kept["rank"].document) if row.get("uncertain_verdict")]
         for row in rows:
-            share = interval(*(row[f"uncertain_probability_{end}"] for end in ("stable", "low", "high")))
-            yield Paragraph(
-                f"{row['name']} with the uncertain inputs drawn: {row['uncertain_verdict']}, {share}."
-            )
+            found = f"{row['uncertain_verdict']}, {_share(row, 'uncertain')}"
+            yield Paragraph(f"{row['name']} with the uncertain inputs drawn: P(stable) {found}.")
     if document["study"].get("ranking"):
         yield Paragraph(
-            f"To see which input decides and what to measure next, run `separatrix sensitivity {document['name']}` "
-            "into this folder, then the report again."
+            "To see which input decides and what to measure next, run "
+            f"`separatrix sensitivity {document['name']}` into this folder, then the report again."
         )
 
 
@@ -129,7 +171,7 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
                 str(row["name"]),
                 verdict(row),
                 probability(row),
-                interval(*(row.get(f"restitution_factor{end}") for end in ("", "_low", "_high"))),
+                _factor(row),
                 ABSENT if row.get("runs") is None else str(row["runs"]),
             )
             for row in rows
@@ -144,10 +186,9 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
         "P(stable) of every candidate with the uncertain inputs drawn.",
         "Probability of a stable cage for each candidate and environment; the table has the numbers.",
     )
-    drivers = [
-        one for one in found["drivers"] if one["shares"] and one["environment"] == found["environment"]
-    ]
-    for one in drivers:
+    for one in found["drivers"]:
+        if not one["shares"] or one["environment"] != found["environment"]:
+            continue
         largest = sorted(one["shares"], key=lambda share: -share["share"])[:MOST_DRIVERS]
         words = ", ".join(f"{share['name']} {100.0 * share['share']:.0f} %" for share in largest)
         yield Paragraph(f"{one['name']}: the variance of its verdict comes from {words}.")
@@ -157,13 +198,10 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
         return
     yield Paragraph(f"Undecided: {'; '.join(undecided)}.")
     for test in found["next_tests"][:MOST_TESTS]:
-        cases = "; ".join(
-            f"{case} ({100.0 * chance:.0f} %)"
-            for case, chance in zip(test["cases"], test["chances"], strict=True)
-        )
-        yield Paragraph(
-            f"Measuring {test['name']} would settle {test['settled']:.1f} of them on average: {cases}."
-        )
+        each = zip(test["cases"], test["chances"], strict=True)
+        cases = "; ".join(f"{case} ({100.0 * chance:.0f} %)" for case, chance in each)
+        settled = f"{test['settled']:.1f} of them on average"
+        yield Paragraph(f"Measuring {test['name']} would settle {settled}: {cases}.")
     if not found["next_tests"]:
         yield Paragraph("No single measurement would settle any of them.")
 
@@ -177,7 +215,7 @@ def outside(kept: Mapping[str, Kept]) -> Section:
         pairs += [(f"{one['model']}: {one['reason']}", "traction") for one in models if one["reason"]]
     each = grouped(pairs)
     blocks: list[Block] = [
-        Paragraph(f"{text} ({', '.join(dict.fromkeys(v))})", "caveat") for text, v in each.items()
+        Paragraph(f"{text} ({', '.join(dict.fromkeys(verbs))})", "caveat") for text, verbs in each.items()
     ]
     return Section("Outside its range", tuple(blocks or [Paragraph("No model left its range.")]))
 

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from separatrix.present.text.tables import ABSENT, grouped, interval, number, quantity, significant
+from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
 from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import own_candidates, picture
 from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, margin, own_rows, places, probability, verdict
+from separatrix.reporting.words import (
+    Row,
+    margin,
+    own_rows,
+    places,
+    probability,
+    quantity,
+    threshold,
+    verdict,
+)
 
 MOST_CAVEATS = 4
 HEAD = (
@@ -16,9 +25,10 @@ HEAD = (
     *("pocket force", "land force", "runs x length"),
 )
 EXPLAINED = (
-    "Margin: largest stable restitution factor less the bearing's own. P(stable): share of the runs that settle "
-    "from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: largest of all "
-    "runs. Drift: median growth rate of the mean offset. Runs: from each disturbance, up to this length."
+    "Margin: largest stable restitution factor less the bearing's own. P(stable): share of the runs that "
+    "settle from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: "
+    "largest of all runs. Drift: median growth rate of the mean offset. Runs: from each disturbance, up to "
+    "this length."
 )
 
 
@@ -82,6 +92,8 @@ def verdict_sentences(rank: Row) -> list[str]:
         _span([row[key] for row in first]) for key in ("restitution_threshold", "restitution_factor")
     )
     cage = "The cage remains stable" if len(first) == 1 else "Their cages remain stable"
+    if len(first) == 1:
+        limits = threshold(first[0])
     by_it = (
         f"{cage} up to a restitution factor of {limits}; this bearing and film have {etas}, a margin of "
         f"{_span([row['margin'] for row in first], '{:+.2f}')}."
@@ -137,10 +149,10 @@ def _without_cage(kept: Mapping[str, Kept]) -> Iterator[Block]:
     if "bearing" in kept:
         at = kept["bearing"].document["contacts"]
         loads = " and ".join(
-            f"{quantity(at[race]['load'], 'N', 4)} ({quantity(at[race]['max_pressure'], 'Pa', 3)}) on the {race}"
-            for race in ("inner", "outer")
+            f"{quantity(of['load'], 'N', 4)} ({quantity(of['max_pressure'], 'Pa', 3)}) on the {race} race"
+            for race, of in at.items()
         )
-        yield Paragraph(f"The most loaded ball carries {loads} race.", "lead")
+        yield Paragraph(f"The most loaded ball carries {loads}.", "lead")
     if "traction" in kept:
         at = kept["traction"].document
         slopes = " and ".join(

@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
 
 from separatrix.plain_text import harmless
 from separatrix.reporting.record import Picture, Report
@@ -27,13 +28,24 @@ def _template() -> Template:
         lstrip_blocks=True,
     )
     environment.filters["embedded"] = embedded
+    environment.filters["written"] = written
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template("report.html")
 
 
 def html(report: Report) -> str:
     """Return a report as HTML; every text in it is escaped, and its pictures can run nothing."""
-    return harmless(_template().render(report=report, answers=script_data(report.documents), answers_id=ANSWERS))
+    return harmless(
+        _template().render(report=report, answers=script_data(report.documents), answers_id=ANSWERS)
+    )
+
+
+def written(text: str) -> Markup:
+    """Return a text with what is between backticks as code; all of it is escaped."""
+    parts = text.split("`")
+    return Markup("").join(
+        Markup("<code>{}</code>").format(one) if place % 2 else one for place, one in enumerate(parts)
+    )
 
 
 def embedded(picture: Picture) -> str:

@@ -40,7 +40,7 @@ def _rows(section: str, items: Row) -> Iterator[tuple[str, ...]]:
         value = str(item["name"]) if "name" in item else entry(item)
         if "distribution" in item:
             value += f" ({item['distribution']['words']})"
-        yield f"{section}.{key}".replace("_", " "), value, str(item["origin"])
+        yield f"{section}: {key.replace('_', ' ')}", value, str(item["origin"])
 
 
 def _materials(study: Row) -> Iterator[tuple[str, ...]]:
@@ -117,6 +117,10 @@ def provenance(kept: Mapping[str, Kept]) -> Section:
         head = ("file", "SHA-256")
         blocks.append(Table(head, tuple(files.items()), "Files that the study was read from.", left=2))
     return Section("Provenance", tuple(blocks))
+
+
+def _each(kept: Mapping[str, Kept], key: str) -> str:
+    return ", ".join(sorted({str(one.document[key]) for one in kept.values()}))
 
 
 def _command(verb: str, document: Row) -> str:

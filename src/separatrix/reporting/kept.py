@@ -40,8 +40,15 @@ class Kept:
     data: xr.Dataset | None = None
 
 
-def read_folder(folder: Path) -> dict[str, Kept]:
+def read_folder(folder: Path, *, needed: bool = True) -> dict[str, Kept]:
     """Return the answers of a folder that a report can show, by verb.
+
+    Parameters
+    ----------
+    folder : Path
+        It exists.
+    needed : bool
+        Whether a folder without any is refused.
 
     Raises
     ------
@@ -54,7 +61,7 @@ def read_folder(folder: Path) -> dict[str, Kept]:
         if path.exists():
             data = folder / f"{verb}.nc"
             found[verb] = Kept(read_document(path, verb), load(data) if data.exists() else None)
-    if not found:
+    if needed and not found:
         names = ", ".join(f"{verb}.json" for verb in NEEDED)
         cure = "Name the folder of an answer, or a study: separatrix report cryogenic-turbopump."
         raise InputError(str(folder), f"holds no answer of separatrix ({names})", cure=cure)

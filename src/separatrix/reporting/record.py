@@ -34,7 +34,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A place in a picture that a reader can point at: centre and radius in points of its SVG, and its text."""
+    """A place in a picture that a reader can point at: centre and radius [points], and its text."""
 
     x: float
     y: float
@@ -86,6 +86,12 @@ class Report:
     subtitle: str
     sections: tuple[Section, ...]
     documents: Mapping[str, Mapping[str, Any]] = field(repr=False)
+
+    @property
+    def lead(self) -> tuple[str, ...]:
+        """The answer in a few sentences."""
+        blocks = self.sections[0].blocks
+        return tuple(one.text for one in blocks if isinstance(one, Paragraph) and one.kind == "lead")
 
 
 def as_data(report: Report) -> dict[str, Any]:

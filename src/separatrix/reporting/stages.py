@@ -1,15 +1,15 @@
-"""The chain stage by stage: bearing and operating point, contacts, traction, restitution, pocket, stability."""
+"""Bearing and operating point, and the chain stage by stage, each with its equation, numbers and figure."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import degrees
 
-from separatrix.present.text.tables import ABSENT, interval, kick_list, number, quantity, significant
+from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
 from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import drawing, equation, picture
 from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, both, entry, facts
+from separatrix.reporting.words import Row, both, entry, facts, quantity
 
 CONTACT = {
     "load": ("Load Q", "N"),
@@ -171,8 +171,8 @@ def _creep(kept: Kept) -> Iterator[Block]:
     at = kept.document["contacts"]
     yield equation(
         r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
-        "Creep across the groove [14, 16]: free-rolling offset, spin, curvature (Heathcote), and the increment "
-        "that an impact of the cage adds.",
+        "Creep across the groove [14, 16]: free-rolling offset, spin, curvature (Heathcote), and the "
+        "increment that an impact of the cage adds.",
     )
     yield Table(
         RACES, both(at["inner"], at["outer"], CREEP), "Creep in the contacts of the most loaded ball."
@@ -201,8 +201,9 @@ def _traction(kept: Kept) -> Iterator[Block]:
         "traction",
         kept.data,
         "traction-curves",
-        "Traction curves of the most loaded ball (the paper's Fig. 7), and at other pivoting to rolling ratios.",
-        "Traction coefficient against creep increment for both races; the table has the slopes at the origin.",
+        "Traction curves of the most loaded ball (the paper's Fig. 7), and at other pivoting to rolling "
+        "ratios.",
+        "Traction coefficient against creep increment for both races; the table has their slopes.",
     )
 
 
@@ -273,8 +274,8 @@ def _stability(kept: Kept) -> Iterator[Block]:
     curve = found["stability"] if found["verb"] == "rank" else found
     yield equation(
         r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}, \qquad m = \eta_{max}(f_{BC}) - \eta",
-        "Linear limit of the friction (Z balls, no clearance), and the margin m of a candidate: its threshold, "
-        "read from the curve at its friction, less the bearing's factor.",
+        "Linear limit of the friction (Z balls, no clearance), and the margin m of a candidate: its "
+        "threshold, read from the curve at its friction, less the bearing's factor.",
     )
     rows = tuple(
         (

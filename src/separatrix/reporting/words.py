@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from separatrix.present.text.tables import ABSENT, interval, quantity
+from separatrix.present.text import tables
+from separatrix.present.text.tables import ABSENT, interval
 from separatrix.reporting.record import Facts
 
 Row = Mapping[str, Any]
+
+MICRO = ("um", "uJ", "uW", "us", "uN")
+"""Units that the program writes in ASCII."""
+
+
+def quantity(value: float | None, unit: str, digits: int | None = None) -> str:
+    """Return a value in a unit a reader likes, with the micro sign; a dash if it is absent."""
+    number, space, symbol = tables.quantity(value, unit, digits).partition(" ")
+    return number + space + (symbol.replace("u", "\N{MICRO SIGN}", 1) if symbol in MICRO else symbol)
 
 
 def probability(row: Row) -> str:
