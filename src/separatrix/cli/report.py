@@ -110,7 +110,7 @@ def _of_study(
     from separatrix.reporting.kept import NEEDED, read_folder
 
     known = read_folder(folder, needed=False) if folder is not None else {}
-    found, missing = {verb: one for verb, one in known.items() if _answers(one, study)}, list[str]()
+    found, missing = {verb: one for verb, one in known.items() if answers(one, study)}, list[str]()
     for verb in verbs_of(study):
         if verb in found:
             continue
@@ -126,7 +126,7 @@ def _of_study(
     return {verb: found[verb] for verb in NEEDED if verb in found}, missing, True
 
 
-def _answers(kept: Kept, study: Study) -> bool:
+def answers(kept: Kept, study: Study) -> bool:
     """Whether an answer is complete, from this version, and to this study."""
     from separatrix import __version__
     from separatrix.present import plain

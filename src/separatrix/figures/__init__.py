@@ -46,7 +46,7 @@ def draw(
     other: xr.Dataset | None = None,
     *,
     names: tuple[str, str] = ("", ""),
-    head: bool = True,
+    only: str | None = None,
 ) -> Iterator[tuple[str, Figure]]:
     """Yield name and figure of every picture of an answer.
 
@@ -58,8 +58,9 @@ def draw(
         From `present.dataset` or `present.load`; only `compare` takes a second one.
     names : tuple of str
         What `compare` writes above the two columns; by default the titles of the studies.
-    head : bool
-        Whether title and operating point are written above each picture.
+    only : str, optional
+        Only the picture of this name, without title and operating point above it: for a document that has
+        them already.
     """
     if (verb == "compare") != (other is not None):
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
@@ -74,7 +75,8 @@ def draw(
         elif verb in FIGURES:
             data = literal_texts(data)
             for name, figure in FIGURES[verb](data):
-                yield name, settled(headed(figure, data) if head else figure)
+                if only in (None, name):
+                    yield name, settled(figure if only else headed(figure, data))
 
 
 def save_all(pictures: Iterable[tuple[str, Figure]], folder: Path) -> None:

@@ -176,7 +176,7 @@ def _section(axes: Axes, of: Shape, inner: Radian, outer: Radian, nominal: Radia
     words = rf"$\alpha$ = {degrees(inner):.1f}$\degree$ inner, {degrees(outer):.1f}$\degree$ outer"
     if (inner, outer) == (nominal, nominal):
         words = rf"$\alpha$ = {degrees(nominal):.1f}$\degree$, without load"
-    _caption(axes, "a  Section", [words, f"D = {_mm(of.ball)}, groove radii {_grooves(of)}"])
+    _caption(axes, "a  Section", [words, f"D = {_mm(of.ball)}, grooves {_grooves(of)}"])
     axes.set(xlim=(-half - 0.3 * r, half + 0.3 * r), ylim=(of.bore - 1.1 * r, of.outside + 0.4 * r))
     _scale(axes, of.ball, -half, of.bore - 0.5 * r)
 
@@ -184,7 +184,7 @@ def _section(axes: Axes, of: Shape, inner: Radian, outer: Radian, nominal: Radia
 def _grooves(of: Shape) -> str:
     if of.inner_groove == of.outer_groove:
         return f"{of.inner_groove / of.ball:.3g} D"
-    return f"{of.inner_groove / of.ball:.3g} D and {of.outer_groove / of.ball:.3g} D"
+    return f"{of.inner_groove / of.ball:.3g} D, {of.outer_groove / of.ball:.3g} D"
 
 
 def _angles(of: Shape) -> list[Radian]:

@@ -19,7 +19,7 @@ from separatrix.reporting.words import (
     verdict,
 )
 
-MOST_CAVEATS = 4
+MOST_CAVEATS = 5
 HEAD = (
     *("", "candidate", "verdict", "margin", "P(stable) (95 %)", "offset", "drift [1/s]"),
     *("pocket force", "land force", "runs x length"),
@@ -91,12 +91,14 @@ def verdict_sentences(rank: Row) -> list[str]:
     limits, etas = (
         _span([row[key] for row in first]) for key in ("restitution_threshold", "restitution_factor")
     )
-    cage = "The cage remains stable" if len(first) == 1 else "Their cages remain stable"
     if len(first) == 1:
         limits = threshold(first[0])
+    up_to = f"remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
+    if not any(row["restitution_threshold"] for row in first):
+        up_to = f"{'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
     by_it = (
-        f"{cage} up to a restitution factor of {limits}; this bearing and film have {etas}, a margin of "
-        f"{_span([row['margin'] for row in first], '{:+.2f}')}."
+        f"{'The cage' if len(first) == 1 else 'Their cages'} {up_to}; this bearing and film have {etas}, "
+        f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
     )
     others = grouped((verdict(row), row["name"]) for row in rows if row not in first)
     rest = "; ".join(f"{word} {', '.join(who)}" for word, who in others.items())
@@ -161,11 +163,22 @@ def _without_cage(kept: Mapping[str, Kept]) -> Iterator[Block]:
         yield Paragraph(f"The slopes of its traction curves are {slopes} race.", "lead")
 
 
+def _by_the_other_ball(rank: Row) -> Iterator[str]:
+    """Yield which verdicts the other model of the ball changes."""
+    rows = [row for row in own_rows(rank) if row.get("other_ball_verdict") not in (None, row["verdict"])]
+    if rows:
+        each = grouped((row["other_ball_verdict"], row["name"]) for row in rows)
+        words = "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
+        yield f"By the other model of the ball ({rows[0]['other_ball_runs']} runs) verdicts differ: {words}."
+
+
 def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:
     """Yield what a reader of the first page must know; the rest has a section of its own."""
     found = [*about]
     if main.get("complete") is False:
         found.append("The computation was interrupted: this answer holds only what was finished.")
+    if main["verb"] == "rank":
+        found += _by_the_other_ball(main)
     found += main["warnings"]
     if main["verb"] == "rank":
         rows = [row for row in own_rows(main) if row.get("friction") is not None]

@@ -12,7 +12,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from separatrix.plain_text import harmless
-from separatrix.reporting.record import Picture, Report
+from separatrix.reporting.record import Picture, Report, Table
+
+SHORT = 24
+"""Letters of a name that stays on one line."""
 
 ANSWERS = "separatrix-answers"
 """Identifier of the element that has the documents of the answers: {verb: document}."""
@@ -29,6 +32,7 @@ def _template() -> Template:
     )
     environment.filters["embedded"] = embedded
     environment.filters["written"] = written
+    environment.filters["short"] = short
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template("report.html")
 
@@ -46,6 +50,11 @@ def written(text: str) -> Markup:
     return Markup("").join(
         Markup("<code>{}</code>").format(one) if place % 2 else one for place, one in enumerate(parts)
     )
+
+
+def short(table: Table) -> bool:
+    """Whether the texts at the left of a table need no second line."""
+    return all(len(text) <= SHORT for row in table.rows for text in row[: table.left])
 
 
 def embedded(picture: Picture) -> str:

@@ -30,10 +30,9 @@ def picture(verb: str, data: xr.Dataset | None, name: str, caption: str, alt: st
     """Yield the picture of this name of an answer, with its places to point at; nothing without one."""
     if data is None:
         return
-    for found, figure in draw(verb, data, head=False):
-        if found == name:
-            yield _picture(figure, name, caption, alt, tuple(_targets(name, figure, data)))
-            return
+    for _, figure in draw(verb, data, only=name):
+        yield _picture(figure, name, caption, alt, tuple(_targets(name, figure, data)))
+        return
 
 
 def _picture(figure: Figure, name: str, caption: str, alt: str, hover: tuple[Target, ...] = ()) -> Picture:
