@@ -236,6 +236,7 @@ def test_the_answers_are_in_the_page(folder, page):
     kept = {verb: json.loads((folder / f"{verb}.json").read_text()) for verb in json.loads(found[1])}
     assert [*kept] == ["bearing", "traction", "restitution", "rank"]
     assert json.loads(found[1]) == kept
+    assert not set(found[1]) & set("<>&")
 
 
 @pytest.mark.parametrize(("old", "new", "taken"), [("x", "x", True), ("50 N", "60 N", False)])
