@@ -83,7 +83,7 @@ VERBS: tuple[Verb, ...] = (
         needs=("cage",),
         moves_a_cage=True,
         epilog="An unresolved run says why. --animate mp4 needs the extra animation.",
-        question=("kick", "run", "animate"),
+        question=("kick", "run", "restitution_factor", "animate"),
     ),
     Verb(
         name="rank",

@@ -44,6 +44,7 @@ CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N pro
 MOTION_HELP = "Where the cage moves [default: as the study says, or in the plane]."
 BALL_HELP = "What a ball does that is pushed [default: as the study says, or a damper]."
 KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
+ETA_HELP = "Damp the races so that eta is this, as at a point of a map [default: that of the study]."
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
 
 OPTIONS: dict[str, tuple[Any, Any]] = {
@@ -57,6 +58,7 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
     "ball": (Annotated[str | None, typer.Option(metavar="damper|traction", help=BALL_HELP)], None),
     "run": (Annotated[int, typer.Option("--run", **WHOLE, help="Which run of the ensemble.")], 0),
+    "restitution_factor": (Annotated[str | None, typer.Option(metavar="ETA", help=ETA_HELP)], None),
     "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),
     "samples": (Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")], 512),
     "vary": (Annotated[list[str] | None, typer.Option("--vary", metavar="AXIS", help=VARY_HELP)], None),
