@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import warnings
+from math import nan
 from typing import Any
 
 from separatrix.answers import SimulationAnswer, SpaceSimulationAnswer
@@ -14,7 +16,7 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.limits.growth import cage_at
 from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
-from separatrix.units import Metre, MetrePerSecond, Newton, Ratio, parse
+from separatrix.units import NUMBER, Metre, MetrePerSecond, Newton, Ratio, parse, printable
 
 SAMPLES_A_WHIRL = 15
 """Samples of a simulated run in a period of the linear whirl."""
@@ -50,9 +52,9 @@ def warn_of_extrapolation(solution: Solution) -> None:
 
 def _factor(given: str | Ratio) -> Ratio:
     """Return a restitution factor, from text or a number; one outside 0 to 1 is refused."""
-    eta = parse(given, "-", "--restitution-factor") if isinstance(given, str) else float(given)
+    eta = float(given) if not isinstance(given, str) or re.fullmatch(NUMBER, given.strip()) else nan
     if not 0.0 <= eta <= 1.0:
-        raise InputError("--restitution-factor", "must be >= 0 and <= 1", f"{eta:g}")
+        raise InputError("--restitution-factor", "must be a number from 0 to 1", printable(str(given)))
     return eta
 
 
