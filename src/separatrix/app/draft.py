@@ -167,6 +167,11 @@ def _put(table: Any, key: str, value: Any) -> None:
     table[key] = new
 
 
+def with_unit(value: str, unit: str) -> str:
+    """Return a value with the unit chosen beside it; one that is not a bare number has its own."""
+    return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
+
+
 def typed(value: str) -> Any:
     """Return a value of a form as TOML has it: a bare number, a list or table, else text."""
     value = value.strip()
