@@ -11,13 +11,15 @@ import typer
 
 from separatrix.cli import contact as one_contact
 from separatrix.cli import materials
+from separatrix.cli import page as the_page
 from separatrix.cli import report as reporting
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
 from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import OPTIONS, VERBS, Jobs, Json, Quiet, Verb, folder, named, threads
+from separatrix.cli.verbs import OPTIONS, Jobs, Json, Quiet, folder, named, threads
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.questions import VERBS, Verb
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
@@ -173,6 +175,7 @@ def _application() -> typer.Typer:
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
     app.command("report", help=reporting.HELP, epilog=reporting.EPILOG)(_report)
+    app.command("app", help=the_page.HELP, epilog=the_page.EPILOG)(the_page.page)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
@@ -187,9 +190,8 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(
-            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "report", "materials"]
-        )
+        others = ("tribometer", "contact", "compare", "report", "app", "materials")
+        verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.console import answer, interrupted
-from separatrix.cli.run import ANSWERED, Options, computed
-from separatrix.cli.verbs import VERBS
+from separatrix.cli.run import ANSWERED, Options, computed_with_progress
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
 from separatrix.plain_text import harmless
+from separatrix.questions import VERBS
 from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def _computed(verb: str, study: Study, notes: list[str], folder: Path | None, op
     entry = next(one for one in VERBS if one.name == verb)
     asked = Options(json=options.json, out=folder, quiet=options.quiet, jobs=options.jobs)
     with noted_warnings() as own:
-        record, _ = computed(entry, study, asked, folder)
+        record = computed_with_progress(entry, study, asked, folder).record
     found = document(verb, record, study, [*notes, *grouped(own)])
     if folder is not None:
         save_answer(folder, record, study, found)
