@@ -270,6 +270,32 @@ def test_a_folder_that_lacks_answers_says_how_to_get_them(folder, tmp_path, caps
     assert "neither `rank` nor `stability` was computed" in text
 
 
+def test_an_edited_answer_is_refused(folder, capsys):
+    """A document that lacks what a section shows is refused in one line."""
+    Path("d").mkdir()
+    rank = json.loads((folder / "rank.json").read_text())
+    del rank["pocket"]["slip_speed"]
+    Path("d", "rank.json").write_text(json.dumps(rank))
+    assert "holds an answer that is not complete; got KeyError('slip_speed')" in refused(
+        capsys, "report", "d"
+    )
+
+
+def test_the_chain_is_computed_for_a_folder_of_a_shipped_study(monkeypatch, capsys):
+    """Its study can be read again: what it lacks of the chain is computed, here refused."""
+
+    def refuse(study):
+        raise InputError("[film]", f"of {study.name} is too thin")
+
+    Path("d").mkdir()
+    bearing = api.bearing("le7")
+    Path("d", "bearing.json").write_text(saving.written(bearing.document()))
+    monkeypatch.setattr(verbs, "traction", refuse)
+    assert "`traction` was not computed: [film] of le7 is too thin" in json.dumps(
+        document(capsys, "report", "d")
+    )
+
+
 def test_answers_of_other_inputs_are_named(folder, tmp_path, capsys):
     """An answer that was computed from another study is marked on the first page."""
     for verb in ("bearing", "rank"):

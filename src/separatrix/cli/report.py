@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +31,12 @@ EPILOG = (
 ASKED_HELP = "A study, or a folder of answers."
 OUT_HELP = "Folder of the report [default: the folder of the answers; none with --json]."
 PDF_HELP = "Also write report.pdf; needs the extra pdf."
+CHAIN = ("bearing", "traction", "restitution")
+"""Verbs that take seconds: computed for the report of a folder that lacks them."""
+
+DAMAGE = (KeyError, IndexError, TypeError, AttributeError, ValueError)
+"""What a document lacks that was edited, or is of another version."""
+
 KEYS = ("name", "verdict", "rank", "margin", "probability_stable", "probability_low", "probability_high")
 
 
@@ -67,17 +73,32 @@ def report(asked: str, options: ReportOptions) -> int:
             folder = (options.out or Path(asked)) if writes else None
             if folder is not None:
                 stack.enter_context(writable_folder(folder))
-            kept, missing, complete = *_of_folder(Path(asked)), True
+            made = _report_of_folder(Path(asked), options)
         else:
             study, notes = _read(asked)
             folder = (options.out or Path(study.name)) if writes else None
             if folder is not None:
                 stack.enter_context(writable_folder(folder))
             kept, missing, complete = _of_study(study, notes, folder, options)
-        if not complete:
-            return interrupted("no report was written. Run the same command to resume.")
-        _deliver(report_of(kept, missing), folder, options)
+            if not complete:
+                return interrupted("no report was written. Run the same command to resume.")
+            made = report_of(kept, missing)
+        _deliver(made, folder, options)
     return ANSWERED
+
+
+def _report_of_folder(folder: Path, options: ReportOptions) -> Report:
+    """Return the report of a folder; one whose documents were edited is refused."""
+    from separatrix.reporting.content import report_of
+
+    kept, missing = _of_folder(folder, options)
+    try:
+        return report_of(kept, missing)
+    except DAMAGE as error:
+        if isinstance(error, InputError):
+            raise
+        cure = "Compute the answers again, with this version."
+        raise InputError(str(folder), "holds an answer that is not complete", repr(error), cure) from error
 
 
 def _read(asked: str) -> tuple[Study, list[str]]:
@@ -88,11 +109,27 @@ def _read(asked: str) -> tuple[Study, list[str]]:
         return read_study(asked), notes
 
 
-def _of_folder(folder: Path) -> tuple[dict[str, Kept], list[str]]:
-    """Return the answers of a folder."""
-    from separatrix.reporting.kept import read_folder
+def _of_folder(folder: Path, options: ReportOptions) -> tuple[dict[str, Kept], list[str]]:
+    """Return the answers of a folder, and of the chain those that it lacks, if its study can be read back."""
+    from separatrix.reporting.kept import NEEDED, read_folder
 
-    return read_folder(folder), []
+    found, missing = read_folder(folder), list[str]()
+    study = _read_back(next(iter(found.values())).document)
+    if study is not None:
+        wanted = [verb for verb in verbs_of(study) if verb in CHAIN]
+        missing = _add(found, wanted, study, [], None, options)
+    return {verb: found[verb] for verb in NEEDED if verb in found}, missing
+
+
+def _read_back(document: Mapping[str, Any]) -> Study | None:
+    """Return the study of an answer: a shipped one that is unchanged; None for others."""
+    from separatrix.present import plain
+    from separatrix.study_file import resolved, shipped_studies
+
+    if document["name"] not in shipped_studies():
+        return None
+    study, _ = _read(str(document["name"]))
+    return study if plain(resolved(study), "study") == document["study"] else None
 
 
 def verbs_of(study: Study) -> Iterator[str]:
@@ -110,20 +147,35 @@ def _of_study(
     from separatrix.reporting.kept import NEEDED, read_folder
 
     known = read_folder(folder, needed=False) if folder is not None else {}
-    found, missing = {verb: one for verb, one in known.items() if answers(one, study)}, list[str]()
-    for verb in verbs_of(study):
+    found = {verb: one for verb, one in known.items() if answers(one, study)}
+    missing = _add(found, verbs_of(study), study, notes, folder, options)
+    complete = all(one.document.get("complete", True) for one in found.values())
+    return {verb: found[verb] for verb in NEEDED if verb in found}, missing, complete
+
+
+def _add(
+    found: dict[str, Kept],
+    wanted: Iterable[str],
+    study: Study,
+    notes: list[str],
+    folder: Path | None,
+    options: ReportOptions,
+) -> list[str]:
+    """Compute the wanted answers that are not there; return what was refused, a sentence each."""
+    missing = []
+    for verb in wanted:
         if verb in found:
             continue
         try:
             found[verb] = _computed(verb, study, notes, folder, options)
         except InputError as error:
-            if verb == "bearing":
+            if not found:
                 raise
             missing.append(f"`{verb}` was not computed: {error}")
             continue
         if found[verb].document.get("complete") is False:
-            return found, missing, False
-    return {verb: found[verb] for verb in NEEDED if verb in found}, missing, True
+            break
+    return missing
 
 
 def answers(kept: Kept, study: Study) -> bool:
@@ -179,12 +231,11 @@ def _document(found: Report, files: list[Path]) -> dict[str, Any]:
     """Return a report as one JSON document, with the verdicts under the names that `rank` has."""
     from separatrix import __version__
     from separatrix.reporting.record import as_data
+    from separatrix.reporting.words import own_rows
 
     rank: Mapping[str, Any] | None = found.documents.get("rank")
     first = next(iter(found.documents.values()))
-    rows: list[Mapping[str, Any]] = []
-    if rank is not None:
-        rows = next(one["materials"] for one in rank["environments"] if one["name"] == rank["environment"])
+    rows = [] if rank is None else own_rows(rank)
     return {
         "separatrix_version": __version__,
         "verb": "report",

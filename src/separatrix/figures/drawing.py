@@ -25,6 +25,8 @@ SHOULDER, WALL, WIDTH = 0.3, 0.22, 1.5
 """Height of a land above the groove, thickness of a cage and width of a ring over the ball's diameter, where
 the study states none."""
 
+MOST_BALLS = 1000
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shape:
@@ -68,6 +70,9 @@ def shape_of(study: Mapping[str, Any]) -> Shape:
         guessed |= {"cage"} if None in sizes else set()
         if sizes[0] is not None and sizes[1] is not None and gap is not None and guidance in lands:
             lands[guidance] = cage[1] + gap / 2 if guidance == "outer" else cage[0] - gap / 2
+    count = int(study["bearing"]["ball_count"]["value"])
+    if not 1 <= count <= MOST_BALLS:
+        raise ValueError(f"{count} balls cannot be drawn")
     bore = known("bearing", "bore")
     guessed |= {"bore"} if bore is None else set()
     inside = bore / 2 if bore else dm / 2 - D
@@ -75,7 +80,7 @@ def shape_of(study: Mapping[str, Any]) -> Shape:
     return Shape(
         ball=D,
         pitch=dm,
-        count=int(study["bearing"]["ball_count"]["value"]),
+        count=count,
         inner_groove=grooves[0],
         outer_groove=grooves[1],
         bore=inside,

@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Iterator
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
@@ -37,7 +38,7 @@ def svg_of(figure: Figure) -> tuple[str, float, float]:
 def formula(latex: str) -> tuple[str, float, float]:
     """Return a formula as SVG with its width and height [points]."""
     buffer = io.BytesIO()
-    with journal():
+    with journal(), rc_context({"savefig.transparent": True}):
         math_to_image(f"${latex}$", buffer, prop=FontProperties(size=11), format="svg")
     return _small(buffer.getvalue().decode())
 

@@ -95,7 +95,7 @@ def _short(name: str, rows: list[Row]) -> Table:
         (place, str(row["name"]), verdict(row), _friction(row), threshold(row), margin(row), probability(row))
         for place, row in zip(places(rows), rows, strict=True)
     )
-    head = ("", "candidate", "verdict", "friction", "threshold (95 %)", "margin", "P(stable) (95 %)")
+    head = ("rank", "candidate", "verdict", "friction", "threshold (95 %)", "margin", "P(stable) (95 %)")
     return Table(head, tuple(cells), caption, left=3)
 
 

@@ -21,7 +21,7 @@ from separatrix.reporting.words import (
 
 MOST_CAVEATS = 5
 HEAD = (
-    *("", "candidate", "verdict", "margin", "P(stable) (95 %)", "offset", "drift [1/s]"),
+    *("rank", "candidate", "verdict", "margin", "P(stable) (95 %)", "offset", "drift [1/s]"),
     *("pocket force", "land force", "runs x length"),
 )
 EXPLAINED = (
@@ -125,14 +125,15 @@ def _stability(kept: Kept) -> Iterator[Block]:
         words = f"half of the runs whirl at a pocket friction of {interval(middle, *ends)}."
         yield Paragraph(curve + words, "lead")
     if friction is not None and middle is not None:
-        side = "within the band in which the disturbance decides: it is undecided"
+        side, then = "within", "it is undecided"
         if low is not None and friction < low:
-            side = "below the band in which the disturbance decides: the cage is stable"
+            side, then = "below", "the cage is stable"
         elif high is not None and friction > high:
-            side = "above the band in which the disturbance decides: the cage is unstable"
-        band = f"{number(low, 2)} to {number(high, 2)}"
-        yield Paragraph(f"The cage's friction of {number(friction)} is {side} ({band}).", "lead")
-    yield Paragraph("The study has no [ranking]: no cage materials were compared.", "lead")
+            side, then = "above", "the cage is unstable"
+        band = f"the band in which the disturbance decides ({number(low, 2)} to {number(high, 2)})"
+        yield Paragraph(f"The cage's friction of {number(friction)} is {side} {band}: {then}.", "lead")
+    why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
+    yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(
         "stability",
         kept.data,
@@ -169,7 +170,9 @@ def _by_the_other_ball(rank: Row) -> Iterator[str]:
     if rows:
         each = grouped((row["other_ball_verdict"], row["name"]) for row in rows)
         words = "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
-        yield f"By the other model of the ball ({rows[0]['other_ball_runs']} runs) verdicts differ: {words}."
+        inertial = rank["ball_model"] == "DAMPER"
+        model = "a ball with inertia and traction" if inertial else "a ball without mass, held by a damper"
+        yield f"With {model} ({rows[0]['other_ball_runs']} runs), verdicts differ: {words}."
 
 
 def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:

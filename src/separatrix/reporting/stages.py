@@ -24,14 +24,14 @@ CREEP = {
     "creep_spin": ("Creep by spin s", "1/m"),
     "creep_curvature": ("Creep by curvature q", "1/m2"),
 }
-RACES = ("", "inner race", "outer race")
+RACES = ("quantity", "inner race", "outer race")
 MISSING = "Not in this folder: run `separatrix {verb} {name}` into it, then the report again."
 
 
 def bearing_and_cage(kept: Mapping[str, Kept]) -> Section:
     """Return bearing, cage and operating point, with the drawing to scale."""
     document = next(iter(kept.values())).document
-    study, bearing = document["study"], kept.get("bearing")
+    study = document["study"]
     at, on, film, cage = (study.get(name) or {} for name in ("bearing", "operation", "film", "cage"))
     balls = f"{entry(at['ball_count'])} of {entry(at['ball_diameter'])}, {_name(at['ball_material'])}"
     conformity = f"{entry(at['inner_conformity'])} inner, {entry(at['outer_conformity'])} outer"
@@ -62,7 +62,8 @@ def bearing_and_cage(kept: Mapping[str, Kept]) -> Section:
             ("Pockets", f"{entry(cage['pocket_shape'])}, clearance {entry(cage['pocket_clearance'])}"),
             ("Guidance", _guidance(cage)),
         ]
-    shown = drawing(study, bearing.document if bearing else None)
+    contacts = _with_contacts(kept)
+    shown = drawing(study, None if contacts is None else contacts.document)
     return Section("Bearing, cage and operating point", (facts(*pairs), shown))
 
 
@@ -78,32 +79,39 @@ def _name(material: Row | None) -> str:
 
 
 def stages(kept: Mapping[str, Kept]) -> Iterator[Section]:
-    """Yield the chain: a title, then a section for each stage that the folder has."""
+    """Yield the chain: a title, then a section for each stage, from any answer that has its numbers."""
     words = "Each stage takes what the one before it gives. Equation numbers in brackets are the paper's."
     yield Section("The chain, stage by stage", (Paragraph(words),))
-    name = next(iter(kept.values())).document["name"]
+    first = next(iter(kept.values())).document
     parts = (
-        ("bearing", "Ball equilibrium", _equilibrium),
-        ("bearing", "Contacts", _contacts),
-        ("bearing", "Creep", _creep),
-        ("traction", "Traction", _traction),
-        ("restitution", "Restitution", _restitution),
-        ("rank", "Ball on pocket", _pocket),
+        ("bearing", "Ball equilibrium", _equilibrium, kept.get("bearing")),
+        ("bearing", "Contacts", _contacts, _with_contacts(kept)),
+        ("bearing", "Creep", _creep, _with_contacts(kept)),
+        ("traction", "Traction", _traction, kept.get("traction")),
+        ("restitution", "Restitution", _restitution, kept.get("restitution") or _chain(kept)),
+        ("rank", "Ball on pocket", _pocket, kept.get("rank")),
     )
-    has = {
-        section: bool(next(iter(kept.values())).document["study"].get(section))
-        for section in ("cage", "ranking")
-    }
-    for verb, title, part in parts:
-        if (verb == "restitution" and not has["cage"]) or (verb == "rank" and not has["ranking"]):
+    needs = {"restitution": "cage", "rank": "ranking"}
+    for verb, title, part, found in parts:
+        if verb in needs and not first["study"].get(needs[verb]):
             continue
-        blocks = (
-            tuple(part(kept[verb])) if verb in kept else (Paragraph(MISSING.format(verb=verb, name=name)),)
-        )
-        yield Section(title, blocks, 3)
+        missing = Paragraph(MISSING.format(verb=verb, name=first["name"]))
+        yield Section(title, (missing,) if found is None else tuple(part(found)), 3)
     curve = next((kept[verb] for verb in ("rank", "stability") if verb in kept), None)
     if curve is not None:
         yield Section("Stability", tuple(_stability(curve)), 3)
+
+
+def _chain(kept: Mapping[str, Kept]) -> Kept | None:
+    """Return the numbers of the chain that the answer on a cage has; None without one."""
+    verb = next((verb for verb in ("rank", "stability", "sensitivity") if verb in kept), None)
+    return None if verb is None else Kept(kept[verb].document["chain"])
+
+
+def _with_contacts(kept: Mapping[str, Kept]) -> Kept | None:
+    """Return an answer that has the contacts of the most loaded ball; None if there is none."""
+    chain = _chain(kept)
+    return kept.get("bearing") or (None if chain is None else Kept({"contacts": chain.document}))
 
 
 def _equilibrium(kept: Kept) -> Iterator[Block]:
@@ -114,7 +122,7 @@ def _equilibrium(kept: Kept) -> Iterator[Block]:
     )
     yield equation(
         r"Q_o\,\cos\,\alpha_o - T_o\,\sin\,\alpha_o = Q_i\,\cos\,\alpha_i - T_i\,\sin\,\alpha_i + F_c, "
-        r"\qquad T_i + T_o = \frac{2 M_g}{D}",
+        r"\qquad T_i + T_o = \dfrac{2 M_g}{D}",
         "Balance of a ball: centrifugal force F_c and gyroscopic moment M_g.",
     )
     yield facts(
@@ -153,7 +161,7 @@ def _equilibrium(kept: Kept) -> Iterator[Block]:
 def _contacts(kept: Kept) -> Iterator[Block]:
     at = kept.document["contacts"]
     yield equation(
-        r"p_0 = \frac{3\,Q}{2\,\pi\,a\,b}",
+        r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
         "Hertz: maximum pressure p\u2080 of the ellipse with semi-axes a and b.",
     )
     rows = both(at["inner"], at["outer"], CONTACT)
@@ -182,7 +190,7 @@ def _creep(kept: Kept) -> Iterator[Block]:
 def _traction(kept: Kept) -> Iterator[Block]:
     found = kept.document
     yield equation(
-        r"\alpha = \left.\frac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
+        r"\alpha = \left.\dfrac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
         "Slope of the traction coefficient against the creep increment.",
     )
     rows = tuple(
@@ -210,12 +218,12 @@ def _traction(kept: Kept) -> Iterator[Block]:
 def _restitution(kept: Kept) -> Iterator[Block]:
     found = kept.document
     yield equation(
-        r"C_\mu = \frac{\alpha_i\,Q_i}{V_i} + \frac{\alpha_o\,Q_o}{V_o}",
+        r"C_\mu = \dfrac{\alpha_i\,Q_i}{V_i} + \dfrac{\alpha_o\,Q_o}{V_o}",
         "Race damping [18]: slopes, loads and rolling speeds of both contacts.",
     )
     yield equation(
-        r"\zeta = \frac{\sqrt{k_{BC}\,M_C}}{2\,C_\mu}, \qquad "
-        r"\eta = \exp\left(-\frac{\pi\,\zeta}{\sqrt{1-\zeta^2}}\right)",
+        r"\zeta = \dfrac{\sqrt{k_{BC}\,M_C}}{2\,C_\mu}, \qquad "
+        r"\eta = \exp\left(-\dfrac{\pi\,\zeta}{\sqrt{1-\zeta^2}}\right)",
         "Restitution factor of an impact [17, derived anew]: pocket stiffness k_BC, cage mass M_C.",
     )
     rows = tuple(
@@ -226,7 +234,9 @@ def _restitution(kept: Kept) -> Iterator[Block]:
             ("restitution_factor", "Restitution factor \u03b7", number),
         )
     )
-    yield Table(("", "dampings summed [18]", "ball free to spin"), rows, "Restitution factor of this film.")
+    yield Table(
+        ("quantity", "dampings summed [18]", "ball free to spin"), rows, "Restitution factor of this film."
+    )
     yield facts(
         ("Cage mass", quantity(found["cage_mass"], "kg", 4)),
         (
@@ -254,7 +264,7 @@ def _restitution(kept: Kept) -> Iterator[Block]:
 def _pocket(kept: Kept) -> Iterator[Block]:
     at = kept.document["pocket"]
     yield equation(
-        r"\bar p = \frac{F}{\pi\,r^2}",
+        r"\bar p = \dfrac{F}{\pi\,r^2}",
         "Mean pressure of ball on pocket in an impact of force F, contact radius r.",
     )
     slip = quantity(at["slip_speed"], "m/s", 4)
