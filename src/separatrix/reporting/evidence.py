@@ -61,7 +61,8 @@ def _evidence(rank: Row) -> Iterator[Block]:
     )
     beyond = grouped((one, row["name"]) for row in rows for one in row.get("extrapolation") or ())
     for sentence, who in beyond.items():
-        yield Paragraph(f"Extrapolated: {sentence} ({', '.join(who)}).")
+        whose = "every candidate" if len(who) == len(rows) else ", ".join(who)
+        yield Paragraph(f"Extrapolated: {sentence} ({whose}).")
     others = [one for one in rank["environments"] if one["name"] != rank["environment"]]
     for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
         if others:
