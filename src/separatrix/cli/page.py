@@ -20,6 +20,7 @@ EPILOG = (
     "keep their finished runs: a page that is ended in the middle of one goes on when it is asked again. "
     'Needs the extra app: pip install "separatrix[app]".'
 )
+FOLDER_HELP = "Where the studies are [default: here]."
 NEEDED = ("fastapi", "uvicorn", "plotly", "tomlkit")
 MOST_PORT = 65535
 
