@@ -32,6 +32,7 @@ def _template() -> Template:
     )
     environment.filters["embedded"] = embedded
     environment.filters["written"] = written
+    environment.filters["css_text"] = css_text
     environment.filters["short"] = short
     environment.filters["kind"] = lambda block: type(block).__name__
     return environment.get_template("report.html")
@@ -50,6 +51,11 @@ def written(text: str) -> Markup:
     return Markup("").join(
         Markup("<code>{}</code>").format(one) if place % 2 else one for place, one in enumerate(parts)
     )
+
+
+def css_text(text: str) -> str:
+    """Return a text as it may stand between quotes in a style sheet: letters, digits and escapes."""
+    return "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text)
 
 
 def short(table: Table) -> bool:
