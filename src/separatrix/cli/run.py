@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cli.console import answer, complain, interrupted, progress_bar
 from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError
+from separatrix.kept_files import noting
 from separatrix.notes import grouped, noted_warnings
 from separatrix.staged import refuse_existing, writable_folder, write_new
 
@@ -55,7 +56,7 @@ def run(verb: Verb, name: str, options: Options) -> int:
         Wrong input, found before anything is computed where it can be.
     """
     from separatrix.study import with_models
-    from separatrix.study_file import read_study, require
+    from separatrix.study_file import asked_by, read_study, require
 
     with noted_warnings() as notes, contextlib.ExitStack() as stack:
         study = read_study(name)
@@ -67,7 +68,9 @@ def run(verb: Verb, name: str, options: Options) -> int:
             folder = Path(study.name)
         if folder is not None:
             stack.enter_context(writable_folder(folder))
-        record, complete = _computed(verb, study, options, folder)
+        with noting() as reading:
+            record, complete = _computed(verb, study, options, folder)
+        study = asked_by(study, verb.name, options.question, reading)
         _deliver(verb, record, study, grouped(notes), folder, options)
     if complete:
         return ANSWERED
