@@ -76,6 +76,8 @@ def place(folder: Path, name: str) -> Path:
             reading.absolute.add(name)
         return folder / name
     found = folder / name
+    if not folder.is_relative_to(restored.root):  # of a shipped study
+        return found
     if is_absolute:
         found = restored.root / restored.links.get(checksum_of_name(name), "..")
     if not Path(os.path.abspath(found)).is_relative_to(restored.root):

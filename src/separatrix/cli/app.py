@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from separatrix.cli import contact as one_contact
-from separatrix.cli import materials
+from separatrix.cli import materials, reproducing
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
@@ -89,6 +89,18 @@ def _compare(
     return compare(first, second, folder(out), as_json=json)
 
 
+def _reproduce(
+    path: Annotated[Path, typer.Argument(metavar="RESULT", help=reproducing.PATH_HELP)],
+    json: Json = False,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    def work() -> int:
+        return reproducing.reproduce(path, as_json=json, quiet=quiet, jobs=threads(jobs))
+
+    return _interruptible(work, "no answer is compared.")
+
+
 def _contact(
     path: Annotated[Path, typer.Argument(metavar="FILE", help=one_contact.FILE_HELP)],
     json: Json = False,
@@ -159,6 +171,7 @@ def _application() -> typer.Typer:
     )(_tribometer)
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
+    app.command("reproduce", help=reproducing.HELP, epilog=reproducing.EPILOG)(_reproduce)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
@@ -173,9 +186,8 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(
-            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "materials"]
-        )
+        others = ("tribometer", "contact", "compare", "reproduce", "materials")
+        verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 

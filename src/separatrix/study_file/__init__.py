@@ -10,7 +10,7 @@ from separatrix.kept_files import noting
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
 from separatrix.study_file.document import TEMPLATE, find, load, shipped_studies
-from separatrix.study_file.kept import asked_by, kept, provenance_of
+from separatrix.study_file.kept import asked_by, keep, provenance_of
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import LEFT_OUT, build_study
 from separatrix.units import printable
@@ -38,7 +38,7 @@ def read_study(study: str | Path) -> Study:
         built = build_study(load(path), name)
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
-    return kept(built, path, reading)
+    return keep(built, path, reading)
 
 
 def template() -> str:

@@ -49,7 +49,7 @@ class Kept:
     as_read: Study | None = None
 
 
-def kept(study: Study, path: Path, reading: Reading) -> Study:
+def keep(study: Study, path: Path, reading: Reading) -> Study:
     """Return a study just read with the files that it was read from."""
     found = _kept(path, reading, study)
     return replace(study, records={**study.records, KEPT: found})
