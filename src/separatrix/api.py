@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from separatrix.comparing.records import Comparison
     from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
 
 Record = TypeVar("Record")
@@ -330,3 +331,30 @@ def sweep(
     question: dict[str, Any] = {"vary": ranges, "cases": cases, "verdicts": verdicts}
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
         return _answer("sweep", study, lambda one: verbs.sweep(one, runner, **question), **question)
+
+
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Comparison:
+    """Two answers of one verb: what differs, and whether by more than counting noise.
+
+    Parameters
+    ----------
+    first, second : Answer, str or Path
+        An answer, or the folder or file of a saved one.
+
+    Raises
+    ------
+    InputError
+        One of them is not an answer, or they are of different verbs.
+    """
+    from separatrix.comparing.pair import compared, pair_of
+    from separatrix.comparing.saved import Saved, read_answers
+    from separatrix.saving import WITHOUT_DATA
+
+    def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
+        if not isinstance(one, Answer):
+            return read_answers(Path(one))
+        has_arrays = one.verb not in WITHOUT_DATA
+        data = one.to_xarray() if has_arrays else None
+        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document(), data=data)}
+
+    return compared(*pair_of(saved(first), saved(second)))

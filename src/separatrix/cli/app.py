@@ -9,13 +9,12 @@ from typing import Annotated, Any
 
 import typer
 
+from separatrix.cli import comparing, materials, reproducing
 from separatrix.cli import contact as one_contact
-from separatrix.cli import materials, reproducing
-from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
 from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import OPTIONS, VERBS, Jobs, Json, Quiet, Verb, folder, named, threads
+from separatrix.cli.verbs import FULL_HELP, OPTIONS, VERBS, Jobs, Json, Quiet, Verb, folder, named, threads
 from separatrix.errors import InputError, SeparatrixError
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
@@ -80,13 +79,14 @@ def _interruptible(work: Callable[[], int], ended: str) -> int:
 
 
 def _compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of simulate or of rank.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or file of an answer.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same verb.")],
+    full: Annotated[bool, typer.Option("--full", help=FULL_HELP)] = False,
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
 ) -> int:
-    return compare(first, second, folder(out), as_json=json)
+    return comparing.compare(first, second, folder(out), as_json=json, full=full)
 
 
 def _reproduce(
@@ -170,7 +170,7 @@ def _application() -> typer.Typer:
         "exists is never overwritten.",
     )(_tribometer)
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
-    app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
+    app.command("compare", help=comparing.HELP, epilog=comparing.EPILOG)(_compare)
     app.command("reproduce", help=reproducing.HELP, epilog=reproducing.EPILOG)(_reproduce)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
