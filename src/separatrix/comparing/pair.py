@@ -56,6 +56,7 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
     verdicts = tuple(row for row in rows if row.is_verdict)
     others = [row for row in rows if not row.is_verdict]
     named = (_named(first), _named(second))
+    own = nodes[0].get((), {}).get("environment")
     inputs = [_inputs(one, study) for one, study in zip((first, second), studies, strict=True)]
     return Comparison(
         of=verb,
@@ -67,6 +68,7 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
         unchanged=len(found) - len(rows),
         left_out=max(0, len(others) - MOST_ROWS) + max(0, len(verdicts) - MOST_ROWS),
         also=also,
+        environment=own if isinstance(own, str) and nodes[1].get((), {}).get("environment") == own else None,
     )
 
 

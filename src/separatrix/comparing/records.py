@@ -92,6 +92,7 @@ class Comparison:
     `differences` are the inputs that differ, `verdicts` the verdicts that changed, `rows` the other results
     that differ: more than noise first, the largest change first. `same_seed`: both draw the same runs.
     `unchanged` results are equal, `left_out` rows were too many. `also` are verbs that both have, too.
+    `environment` is the bearing's own, where both rank in the same.
     """
 
     of: str
@@ -103,3 +104,4 @@ class Comparison:
     unchanged: int
     left_out: int
     also: tuple[str, ...] = ()
+    environment: str | None = None

@@ -196,7 +196,7 @@ def _row(place: str, name: str, unit: str | None, a: Value, b: Value, *, exact: 
     if None not in (a.low, a.high, b.low, b.high):
         ends = (one, a.low, a.high), (other, b.low, b.high)
         low, high = difference_interval(*ends)  # type: ignore[arg-type]
-        noise = Noise.WITHIN if low <= 0.0 <= high else Noise.BEYOND
+        noise = Noise.WITHIN if low <= 0.0 <= high else Noise.EXACT if exact else Noise.BEYOND
     relative = change / abs(one) if one else None
     return dataclasses.replace(
         row, change=change, change_low=low, change_high=high, relative=relative, noise=noise

@@ -53,7 +53,7 @@ def read_answers(path: Path) -> dict[str, Saved]:
     where = path_text(path)
     if path.is_dir():
         files = [
-            file for verb in VERBS for end in ("json", "nc") if (file := path / f"{verb}.{end}").is_file()
+            file for verb in VERBS for end in ("json", "nc") if (file := path / f"{verb}.{end}").exists()
         ]
         if not files:
             raise InputError(where, "does not contain an answer", cure=_MAKE)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from separatrix.comparing.agreement import is_number
 from separatrix.comparing.records import Comparison, Noise, Plain, Row, Value
 from separatrix.comparing.results import UNCOUNTED_VERBS
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
     heading,
+    interval,
     paragraph,
     quantity,
     section,
@@ -18,14 +20,11 @@ from separatrix.present.text.tables import (
 )
 from separatrix.units import printable
 
-ON_A_SCREEN = {"inputs": 8, "verdicts": 8, "rows": 12}
+ON_A_SCREEN = {"inputs": 8, "verdicts": 8, "rows": 15}
 """Most rows of each table, unless all are asked for."""
 
-HEADLINES = {
-    "rank": ("margin", "probability_stable", "restitution_threshold", "friction", "restitution_factor"),
-    "sensitivity": ("probability_stable", "probability_lowest_friction", "friction", "restitution_factor"),
-}
-"""Results that are shown on a screen; of other verbs all are."""
+HEADLINES = {"rank": ("margin", "probability_stable"), "sensitivity": ("probability_stable",)}
+"""Results that are shown on a screen, of the bearing's own environment; of other verbs all are."""
 
 SHORT = {
     Noise.BEYOND: "MORE",
@@ -34,7 +33,13 @@ SHORT = {
     Noise.UNJUDGED: "?",
     Noise.CHANGED: "changed",
 }
+NAMES = {"probability_stable": "P(stable)", "probability_whirl": "P(whirl)"}
+CHAIN = ("restitution_factor", "race_damping")
+"""Results of the chain that are shown on a screen beside those of runs."""
+
 LONGEST_PLACE = 40
+COARSE = 0.02
+"""Width of an interval of a pure number from which two decimals are enough."""
 
 LEGEND = (
     "noise: MORE, or within: whether the 95 % interval of the change excludes 0 (shares of runs: Newcombe's "
@@ -59,10 +64,10 @@ def in_words(found: Comparison, *, full: bool = False) -> str:
         )
     else:
         blocks.append(section("Verdicts that changed", paragraph("None.")))
-    changed = list(_shown(found, full=full))
-    rows = [_result(row) for row in changed]
+    changed, own = list(_shown(found, full=full)), "" if full else found.environment or ""
+    rows = [_result(row, own) for row in changed]
     heads = ("", "", "first\n(95 %)", "second\n(95 %)", "change", "noise")
-    title = "Results that differ, the largest changes first"
+    title = f"Results that differ{own and ' in '}{own}, the largest changes first"
     blocks.append(_part(title, heads, rows, "rows", full, left=2))
     differ = [[at.key, _input(at.first, at.unit), _input(at.second, at.unit)] for at in found.differences]
     blocks.append(_part("Inputs that differ", ("", "first", "second"), differ, "inputs", full))
@@ -87,9 +92,14 @@ def _part(
 
 def _shown(found: Comparison, *, full: bool) -> Iterable[Row]:
     """Return the rows that a reader looks at first; all of them if that is none."""
-    wanted = HEADLINES.get(found.of, ())
-    chosen = [row for row in found.rows if row.name in wanted]
-    return found.rows if full or not chosen else chosen
+    wanted, own = HEADLINES.get(found.of, ()), found.environment
+    heads = [row for row in found.rows if row.name == "restitution_factor" and not row.place]
+    chosen = [row for row in found.rows if row.name in wanted and row.place.startswith(f"{own or ''}")]
+    chosen = [row for row in chosen if row.place.count(" / ") < 2]  # not kick by kick
+    if full or found.of in UNCOUNTED_VERBS:
+        return found.rows
+    rest = [row for row in found.rows if not row.place.startswith("chain") or row.name in CHAIN]
+    return [*heads, *chosen] if chosen else rest
 
 
 def _notes(found: Comparison, shown: int) -> Iterable[str]:
@@ -108,10 +118,11 @@ def _notes(found: Comparison, shown: int) -> Iterable[str]:
         yield f"Both also have answers of {', '.join(found.also)}: name those files to compare them."
 
 
-def _result(row: Row) -> list[str]:
-    place = row.place if len(row.place) <= LONGEST_PLACE else f"...{row.place[3 - LONGEST_PLACE :]}"
+def _result(row: Row, own: str) -> list[str]:
+    place = row.place.removeprefix(f"{own} / ")
+    place = place if len(place) <= LONGEST_PLACE else f"...{place[3 - LONGEST_PLACE :]}"
     change = ABSENT if row.change is None else _number(row.change, row.unit, sign=True)
-    return [place, row.name, *_pair(row), change, SHORT[row.noise]]
+    return [place, NAMES.get(row.name, row.name), *_pair(row), change, SHORT[row.noise]]
 
 
 def _pair(row: Row) -> list[str]:
@@ -122,6 +133,8 @@ def _value(one: Value, unit: str | None) -> str:
     text = _plain(one.value, unit)
     if one.low is None or one.high is None:
         return text
+    if unit == "-" and one.high - one.low > COARSE and is_number(one.value):
+        return interval(float(one.value), one.low, one.high)  # type: ignore[arg-type]
     return f"{text} ({_number(one.low, unit)} to {_number(one.high, unit)})"
 
 
