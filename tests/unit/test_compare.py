@@ -25,6 +25,8 @@ runs = 2
 duration = "5 ms"
 kicks = ["0.5 m/s"]
 restitution_factors = [0.2, 0.4]
+[ranking]
+materials = ["Armalon", "PEEK WG 101"]
 """
 THIN = FEW + "[film]\nthickness = '0.3 um'\n"
 VERBS = {
@@ -42,6 +44,24 @@ VERBS = {
 }
 
 
+def _steeper(answer):
+    answer["inner"]["slope"] *= 2.0
+
+
+def _worse(answer):
+    row = answer["environments"][0]["materials"][0]
+    row |= {
+        "verdict": "UNSTABLE",
+        "probability_stable": 0.0,
+        "probability_low": 0.0,
+        "probability_high": 0.06,
+    }
+
+
+DEAR = {"traction": _steeper, "sensitivity": _worse}
+"""Verbs that take long: their second answer is the first one changed."""
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Documents of every verb for two studies."""
@@ -50,10 +70,17 @@ def folder(tmp_path_factory):
         (made / f"{name}.toml").write_text(text)
         (made / name).mkdir()
         for verb, options in VERBS.items():
+            if name == "second" and verb in DEAR:
+                continue
             out = io.StringIO()
             with contextlib.redirect_stdout(out):
                 assert main([verb, str(made / f"{name}.toml"), *options, "--json", "--quiet"]) == 0
             (made / name / f"{verb}.json").write_text(out.getvalue())
+    for verb in DEAR:
+        answer = json.loads((made / "first" / f"{verb}.json").read_text())
+        answer["study"]["film"]["thickness"]["value"] = 3e-7
+        DEAR[verb](answer)
+        (made / "second" / f"{verb}.json").write_text(json.dumps(answer))
     return made
 
 
@@ -72,6 +99,9 @@ def test_two_answers_of_any_verb_are_compared(folder, capsys, verb):
     if verb in ("traction", "restitution", "mobility"):
         assert "EXACT" in kinds
         assert kinds <= {"EXACT", "WITHIN", "CHANGED"}
+    if verb == "sensitivity":
+        assert [row["name"] for row in found["verdicts"]] == ["verdict"]
+        assert [(row["name"], row["noise"]) for row in found["rows"]] == [("probability_stable", "BEYOND")]
     same = document(capsys, "compare", *pair(folder, verb)[:1] * 2)
     assert (same["rows"], same["verdicts"], same["differences"]) == ([], [], [])
     assert same["unchanged"] > 10
@@ -164,7 +194,7 @@ def test_python_compares_answers_and_files(folder):
 
 
 def test_two_curves_are_drawn_together(folder, tmp_path):
-    """Of rankings with their margins; the picture has both titles and no more materials than there are."""
+    """Of rankings with their margins: a row for each material; without the arrays it is refused."""
     for name in ("first", "second"):
         (tmp_path / name).mkdir()
         answer = separatrix.rank(folder / f"{name}.toml", jobs=2)
