@@ -30,7 +30,7 @@ from separatrix.notes import grouped, noted_warnings
 from separatrix.runner import Progress, made_into
 from separatrix.study import Study
 from separatrix.study_file import asked_by, read_study, require
-from separatrix.units import MetrePerSecond
+from separatrix.units import MetrePerSecond, Ratio
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -221,11 +221,15 @@ def mobility(study: Asked) -> Answer[MobilityAnswer]:
 
 
 def simulate(
-    study: Asked, *, kick: str | MetrePerSecond | None = None, run: int = 0
+    study: Asked,
+    *,
+    kick: str | MetrePerSecond | None = None,
+    run: int = 0,
+    restitution_factor: str | Ratio | None = None,
 ) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
-    question: dict[str, Any] = {"kick": kick, "run": run}
-    return _answer("simulate", study, lambda one: verbs.simulate(one, **question), "cage", **question)
+    asked: dict[str, Any] = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
+    return _answer("simulate", study, lambda one: verbs.simulate(one, **asked), "cage", **asked)
 
 
 def stability(

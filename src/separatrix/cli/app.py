@@ -11,11 +11,13 @@ import typer
 
 from separatrix.cli import comparing, materials, reproducing
 from separatrix.cli import contact as one_contact
+from separatrix.cli import page as the_page
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
 from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import FULL_HELP, OPTIONS, VERBS, Jobs, Json, Quiet, Verb, folder, named, threads
+from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, named, threads
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.questions import VERBS, Verb
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
@@ -172,6 +174,7 @@ def _application() -> typer.Typer:
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help=comparing.HELP, epilog=comparing.EPILOG)(_compare)
     app.command("reproduce", help=reproducing.HELP, epilog=reproducing.EPILOG)(_reproduce)
+    app.command("app", help=the_page.HELP, epilog=the_page.EPILOG)(the_page.page)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
@@ -186,7 +189,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        others = ("tribometer", "contact", "compare", "reproduce", "materials")
+        others = ("tribometer", "contact", "compare", "reproduce", "app", "materials")
         verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 

@@ -9,16 +9,16 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from separatrix.cli.console import answer, interrupted, progress_bar
-from separatrix.cli.verbs import OPTIONS, VERBS, Verb
+from separatrix.cli.verbs import OPTIONS
 from separatrix.comparing.agreement import Agreement, agreement
 from separatrix.comparing.saved import Saved, read_answers
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
+from separatrix.questions import VERBS, Verb, computed
 from separatrix.units import printable, shown
 
 HELP = "Compute a saved answer again, and report whether it is the same."
@@ -81,10 +81,10 @@ def reproduce(path: Path, *, as_json: bool, quiet: bool, jobs: int) -> int:
 
 def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     """Compute one answer from what it keeps."""
-    from separatrix import verbs
     from separatrix.present import document
+    from separatrix.runner import Interrupted
     from separatrix.study import with_models
-    from separatrix.study_file import asked_by, read_study, require
+    from separatrix.study_file import read_study, require
 
     if saved.document is None:
         cure = "Name the .json that was written beside it."
@@ -99,14 +99,11 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
         require(study, verb.name, *verb.needs)
         models = _models(verb, kept["command"].get("models"))
         study = with_models(study, models) if models else study
-        compute = partial(getattr(verbs, verb.name), study)
         with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
-            if verb.keeps_runs:
-                with verbs.long_job(jobs, None, None, progress) as runner:
-                    record = compute(runner, **question)
-            else:
-                record = compute(**question)
-        made = document(verb.name, record, asked_by(study, verb.name, {}), grouped(notes))
+            found = computed(verb, study, question, jobs=jobs, progress=progress)
+        if not found.is_complete:
+            raise Interrupted
+        made = document(verb.name, found.record, found.study, grouped(notes))
     result = agreement(stored, json.loads(json.dumps(made)))
     return Reproduced(
         verb=verb.name,
@@ -213,7 +210,7 @@ def _question(verb: Verb, given: object, root: Path) -> dict[str, Any]:
 
 def _is_right(name: str, value: object) -> bool:
     default = OPTIONS[name][1]
-    if name == "kick":
+    if name in ("kick", "restitution_factor"):
         return value is None or (isinstance(value, str | int | float) and not isinstance(value, bool))
     if name == "vary":
         return isinstance(value, list) and len(value) < MOST_TEXTS and all(isinstance(v, str) for v in value)
