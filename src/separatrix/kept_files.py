@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from separatrix.errors import InputError
+from separatrix.regular_file import reading_only_in
 from separatrix.units import printable, shown
 
 MOST_BYTES = 64 * 1024**2
@@ -122,7 +123,8 @@ def restored(files: Mapping[str, bytes], links: Mapping[str, str]) -> Iterator[P
                 raise InputError(shown(name), f"cannot be restored ({error.strerror})") from None
         token = _restored.set(_Restored(root, dict(links)))
         try:
-            yield root
+            with reading_only_in(root):
+                yield root
         finally:
             _restored.reset(token)
 
