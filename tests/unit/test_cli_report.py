@@ -262,7 +262,9 @@ def test_json_is_one_document_with_the_verdicts_of_rank(folder, found):
 def test_a_folder_that_lacks_answers_says_how_to_get_them(folder, tmp_path, capsys):
     """What is missing is named with its command; without a dataset there is no picture of it."""
     (tmp_path / "d").mkdir()
-    shutil.copy(folder / "bearing.json", tmp_path / "d")
+    kept = json.loads((folder / "bearing.json").read_text())
+    del kept["provenance"]
+    (tmp_path / "d" / "bearing.json").write_text(json.dumps(kept))
     found = document(capsys, "report", str(tmp_path / "d"))
     text = json.dumps(found)
     assert (found["materials"], found["files"], [*Path().iterdir()]) == ([], [], [])
@@ -281,19 +283,19 @@ def test_an_edited_answer_is_refused(folder, capsys):
     )
 
 
-def test_the_chain_is_computed_for_a_folder_of_a_shipped_study(monkeypatch, capsys):
-    """Its study can be read again: what it lacks of the chain is computed, here refused."""
+def test_the_chain_that_a_folder_lacks_is_computed(folder, monkeypatch, capsys):
+    """The study is read again from the files of an answer; one verb is refused here, one computed."""
 
     def refuse(study):
         raise InputError("[film]", f"of {study.name} is too thin")
 
     Path("d").mkdir()
-    bearing = api.bearing("le7")
-    Path("d", "bearing.json").write_text(saving.written(bearing.document()))
+    shutil.copy(folder / "bearing.json", "d")
     monkeypatch.setattr(verbs, "traction", refuse)
-    assert "`traction` was not computed: [film] of le7 is too thin" in json.dumps(
-        document(capsys, "report", "d")
-    )
+    found = document(capsys, "report", "d")
+    assert found["answers"] == ["bearing", "restitution"]
+    assert "`traction` was not computed: [film] of hostile is too thin" in json.dumps(found)
+    assert [one.name for one in Path("d").iterdir()] == ["bearing.json"]
 
 
 def test_answers_of_other_inputs_are_named(folder, tmp_path, capsys):

@@ -114,21 +114,31 @@ def _of_folder(folder: Path, options: ReportOptions) -> tuple[dict[str, Kept], l
     from separatrix.reporting.kept import NEEDED, read_folder
 
     found, missing = read_folder(folder), list[str]()
-    study = _read_back(next(iter(found.values())).document)
+    study = _read_back(next(iter(found.values())).document, str(folder))
     if study is not None:
         wanted = [verb for verb in verbs_of(study) if verb in CHAIN]
         missing = _add(found, wanted, study, [], None, options)
     return {verb: found[verb] for verb in NEEDED if verb in found}, missing
 
 
-def _read_back(document: Mapping[str, Any]) -> Study | None:
-    """Return the study of an answer: a shipped one that is unchanged; None for others."""
+def _read_back(document: Mapping[str, Any], where: str) -> Study | None:
+    """Return the study of an answer, from the files that it keeps; None where that gives another one."""
+    from separatrix.cli.reproducing import kept_of, models_of, restored_study
+    from separatrix.comparing.saved import Saved
     from separatrix.present import plain
-    from separatrix.study_file import resolved, shipped_studies
+    from separatrix.study import with_models
+    from separatrix.study_file import read_study, resolved
 
-    if document["name"] not in shipped_studies():
+    saved = Saved(path=where, verb=str(document["verb"]), document=document)
+    verb = next(one for one in VERBS if one.name == saved.verb)
+    try:
+        kept = kept_of(saved)
+        with noted_warnings(), restored_study(kept, where) as (entry, _, _):
+            study = read_study(entry)
+        models = models_of(verb, kept["command"].get("models"))
+        study = with_models(study, models) if models else study
+    except InputError:  # it keeps no files, or those of another version
         return None
-    study, _ = _read(str(document["name"]))
     return study if plain(resolved(study), "study") == document["study"] else None
 
 
@@ -199,11 +209,11 @@ def _computed(verb: str, study: Study, notes: list[str], folder: Path | None, op
     entry = next(one for one in VERBS if one.name == verb)
     asked = Options(json=options.json, out=folder, quiet=options.quiet, jobs=options.jobs)
     with noted_warnings() as own:
-        record = computed_with_progress(entry, study, asked, folder).record
-    found = document(verb, record, study, [*notes, *grouped(own)])
+        made = computed_with_progress(entry, study, asked, folder)
+    found = document(verb, made.record, made.study, [*notes, *grouped(own)])
     if folder is not None:
-        save_answer(folder, record, study, found)
-    return Kept(found, dataset(verb, record, study, list(found["warnings"])))
+        save_answer(folder, made.record, made.study, found)
+    return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
 
 
 def _deliver(found: Report, folder: Path | None, options: ReportOptions) -> None:
