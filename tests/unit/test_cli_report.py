@@ -276,7 +276,7 @@ def test_an_edited_answer_is_refused(folder, capsys):
     """A document that lacks what a section shows is refused in one line."""
     Path("d").mkdir()
     rank = json.loads((folder / "rank.json").read_text())
-    del rank["pocket"]["slip_speed"]
+    del rank["pocket"]["slip_speed"], rank["provenance"]
     Path("d", "rank.json").write_text(json.dumps(rank))
     assert "holds an answer that is not complete; got KeyError('slip_speed')" in refused(
         capsys, "report", "d"
