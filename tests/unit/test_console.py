@@ -26,13 +26,14 @@ COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
     *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare"),
-    *("reproduce", "materials"),
+    *("reproduce", "app", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),
     "contact": ("--json", "--out", "--quiet"),
     "compare": ("--json", "--out", "--quiet", "--full"),
     "reproduce": ("--json", "--quiet", "--jobs"),
+    "app": ("--port", "--open"),
     "tribometer": ("--json", "--out"),
     "materials": ("list", "show", "check", "add"),
 }
