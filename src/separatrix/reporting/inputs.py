@@ -111,8 +111,7 @@ def provenance(kept: Mapping[str, Kept]) -> Section:
     if known.get("versions"):
         blocks.append(facts(*((str(key), str(value)) for key, value in known["versions"].items())))
     files = {str(name): str(one.get("sha256") or "") for name, one in (known.get("files") or {}).items()}
-    for name, checksum in _libraries(first["study"]):
-        files.setdefault(name, checksum)
+    files = files or dict(_libraries(first["study"]))
     if files:
         head = ("file", "SHA-256")
         blocks.append(Table(head, tuple(files.items()), "Files that the study was read from.", left=2))
@@ -124,12 +123,14 @@ def _each(kept: Mapping[str, Kept], key: str) -> str:
 
 
 def _command(verb: str, document: Row) -> str:
-    asked = (document.get("provenance") or {}).get("command") or {}
+    kept = document.get("provenance") or {}
+    asked, entry = kept.get("command") or {}, str(kept.get("entry") or "")
+    study = document["name"] if entry.startswith("shipped:") or not entry else entry
     given = {**(asked.get("question") or {}), **(asked.get("models") or {})}
     options = [
         f"--{key.replace('_', '-')} {value}" for key, value in given.items() if value not in (None, False, [])
     ]
-    return " ".join(["separatrix", verb, str(document["name"]), *options])
+    return " ".join(["separatrix", verb, str(study), *options])
 
 
 def _libraries(entry_of: object) -> Iterator[tuple[str, str]]:
