@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -127,10 +128,13 @@ def _command(verb: str, document: Row) -> str:
     asked, entry = kept.get("command") or {}, str(kept.get("entry") or "")
     study = document["name"] if entry.startswith("shipped:") or not entry else entry
     given = {**(asked.get("question") or {}), **(asked.get("models") or {})}
-    options = [
-        f"--{key.replace('_', '-')} {value}" for key, value in given.items() if value not in (None, False, [])
-    ]
-    return " ".join(["separatrix", verb, str(study), *options])
+    options: list[str] = []
+    for key, value in given.items():
+        flag = f"--{key.replace('_', '-')}"
+        for one in value if isinstance(value, list) else [value]:
+            if one not in (None, False):
+                options += [flag] if one is True else [flag, shlex.quote(str(one))]
+    return " ".join(["separatrix", verb, shlex.quote(str(study)), *options])
 
 
 def _libraries(entry_of: object) -> Iterator[tuple[str, str]]:
