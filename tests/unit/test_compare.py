@@ -134,8 +134,8 @@ def test_a_folder_is_compared_by_its_ranking_and_names_the_rest(folder, capsys, 
         ((0, 10), (10, 10), 0.6075, 1.0),
     ],
 )
-def test_the_interval_of_a_difference_of_shares_is_the_published_one(first, second, low, high):
-    """Newcombe 1998, Table II, method 10, to the four decimals printed there."""
+def test_the_interval_of_a_difference_of_shares_is_that_of_another_program(first, second, low, high):
+    """Newcombe's method 10 as statsmodels 0.15.0 has it (confint_proportions_2indep, newcomb), 4 decimals."""
     shares = [(n / runs, *wilson_interval(n, runs)) for n, runs in (first, second)]
     assert difference_interval(*shares) == pytest.approx((low, high), abs=6e-5)
 
