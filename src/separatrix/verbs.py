@@ -96,9 +96,17 @@ def check(study: Study) -> CheckAnswer:
     _try_predicted_friction(study)
     at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
     try:
-        return CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
+        found = CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
     except SeparatrixError as error:
-        return CheckAnswer(static=None, static_reason=str(error))
+        found = CheckAnswer(static=None, static_reason=str(error))
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings(
+                "ignore", "(?!Clearances)", ValidityWarning
+            )  # the chain was not asked for
+            return replace(found, clearances=solve(study).clearances)
+    except SeparatrixError as error:
+        return replace(found, clearances_reason=str(error))
 
 
 def _try_predicted_friction(study: Study) -> None:
@@ -115,7 +123,8 @@ def _try_predicted_friction(study: Study) -> None:
 
 def bearing(study: Study) -> BearingState:
     """Ball equilibrium and the contacts of the most loaded ball."""
-    return solve(study).bearing
+    solution = solve(study)
+    return replace(solution.bearing, clearances=solution.clearances)
 
 
 def traction(study: Study) -> TractionAnswer:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
+from separatrix.bearing_design import ROOM, Expansion
 from separatrix.errors import DataError, InputError
 from separatrix.library.reading import Content, read_library
 from separatrix.library.records import KINDS, PROPERTIES, FrictionTable, LibraryFile, Record, choose
@@ -101,13 +102,19 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     # numbers on which any answer depends
     acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
     taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
+    values = {key: choice.datum.value for key, choice in chosen.items() if key != "thermal_expansion"}
+    expansions = (
+        Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence)
+        for d in record.data.get("thermal_expansion", ())
+    )
     return Material(
         name=record.name,
+        expansions=tuple(sorted(expansions)),
         source=". ".join([*composition, *remark, *sources]),
         confidence=", ".join(confidences),
         record={**record.plain(), "taken": taken, "taken_at": temperature},
         cautions=tuple(one.caution for key, one in chosen.items() if one.caution and key in acting),
-        **{key: choice.datum.value for key, choice in chosen.items()},
+        **values,
     )
 
 
