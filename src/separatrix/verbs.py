@@ -162,6 +162,7 @@ def restitution(study: Study) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
+    _ = solution.clearances  # refused, and warned of
     with warnings.catch_warnings():  # of films that are not the study's
         warnings.simplefilter("ignore", ValidityWarning)
         films, wear = exact_films(solution), wear_curve(solution)

@@ -94,7 +94,11 @@ class Library:
 
 def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
-    chosen = {key: choose(data, temperature, PROPERTIES[key].words) for key, data in record.data.items()}
+    chosen = {
+        key: choose(data, temperature, PROPERTIES[key].words)
+        for key, data in record.data.items()
+        if key != "thermal_expansion"  # of which all data serve, at any temperature
+    }
     sources = [f"{PROPERTIES[key].words}: {choice.datum.source}" for key, choice in chosen.items()]
     confidences = [f"{PROPERTIES[key].words}: {choice.datum.confidence}" for key, choice in chosen.items()]
     composition = [f"Composition: {record.composition}"] if record.composition else []
@@ -102,7 +106,6 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     # numbers on which any answer depends
     acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
     taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
-    values = {key: choice.datum.value for key, choice in chosen.items() if key != "thermal_expansion"}
     expansions = (
         Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence)
         for d in record.data.get("thermal_expansion", ())
@@ -114,7 +117,7 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
         confidence=", ".join(confidences),
         record={**record.plain(), "taken": taken, "taken_at": temperature},
         cautions=tuple(one.caution for key, one in chosen.items() if one.caution and key in acting),
-        **values,
+        **{key: choice.datum.value for key, choice in chosen.items()},
     )
 
 
