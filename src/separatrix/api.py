@@ -29,7 +29,7 @@ from separatrix.notes import grouped, noted_warnings
 from separatrix.runner import Progress, made_into
 from separatrix.study import Study
 from separatrix.study_file import read_study, require
-from separatrix.units import MetrePerSecond
+from separatrix.units import MetrePerSecond, Ratio
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -215,10 +215,15 @@ def mobility(study: Asked) -> Answer[MobilityAnswer]:
 
 
 def simulate(
-    study: Asked, *, kick: str | MetrePerSecond | None = None, run: int = 0
+    study: Asked,
+    *,
+    kick: str | MetrePerSecond | None = None,
+    run: int = 0,
+    restitution_factor: str | Ratio | None = None,
 ) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
-    return _answer("simulate", study, lambda one: verbs.simulate(one, kick=kick, run=run), "cage")
+    asked: dict[str, Any] = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
+    return _answer("simulate", study, lambda one: verbs.simulate(one, **asked), "cage")
 
 
 def stability(

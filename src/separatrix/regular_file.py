@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import stat
+from collections.abc import Iterator
+from contextvars import ContextVar
 from pathlib import Path
 
 from separatrix.errors import InputError
+
+_only_in: ContextVar[Path | None] = ContextVar("only_in", default=None)
+_OWN = Path(__file__).resolve().parent
+"""What the package ships may be read from everywhere."""
+
+
+@contextlib.contextmanager
+def reading_only_in(folder: Path) -> Iterator[None]:
+    """Refuse, within it, every file that is outside a folder, be it by a link, and that we do not ship."""
+    token = _only_in.set(folder.resolve())
+    try:
+        yield
+    finally:
+        _only_in.reset(token)
 
 
 def size_of(path: Path, where: str) -> int:
@@ -22,7 +39,7 @@ def size_of(path: Path, where: str) -> int:
     Raises
     ------
     InputError
-        There is none, or it is a folder, a pipe or a device.
+        There is none, it is a folder, a pipe or a device, or it is outside of `reading_only_in`.
     """
     try:
         found = path.stat()
@@ -32,6 +49,9 @@ def size_of(path: Path, where: str) -> int:
         raise InputError(where, "is a folder, not a file", cure="Name a file in it.")
     if not stat.S_ISREG(found.st_mode):
         raise InputError(where, "is not a regular file", cure="Save what it gives to a file, and name that.")
+    folder, real = _only_in.get(), path.resolve()
+    if folder is not None and not (real.is_relative_to(folder) or real.is_relative_to(_OWN)):
+        raise InputError(where, "is outside the folder that may be read", cure="Copy it into the folder.")
     return found.st_size
 
 

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from separatrix.answers import (
     CheckAnswer,
@@ -17,16 +16,11 @@ from separatrix.answers import (
     RankingAnswer,
     RestitutionAnswer,
     SensitivityAnswer,
-    SimulationAnswer,
-    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import PlanarCage, analyse, linear_whirl_frequency, simulate_in_space
-from separatrix.cage import simulate as follow
+from separatrix.cage import PlanarCage
 from separatrix.cage_choice import (
-    cage_candidate,
-    environment_of,
     ranking_question,
     reference_candidate,
     required_environment,
@@ -55,19 +49,13 @@ from separatrix.limits.map_parameters import KICK
 from separatrix.limits.map_records import MapQuestion
 from separatrix.ranking import rank as rank_materials
 from separatrix.ranking.drawn import frictions_to_draw
-from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
 from separatrix.runner import Progress, Runner, made_into
-from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
-from separatrix.units import Metre, MetrePerSecond, Newton, format_quantity, parse
+from separatrix.simulating import kick_speed, warn_of_extrapolation
+from separatrix.simulating import simulate as simulate
+from separatrix.study import Study, TractionModel
+from separatrix.units import MetrePerSecond, format_quantity
 
-SAMPLES_A_WHIRL = 15
-"""Samples of a simulated run in a period of the linear whirl."""
-
-MOST_SHOWN = 20_000
-FEWEST_SHOWN = (1000, 4000)
-"""Samples of a simulated run; the fewest in the plane, and in space, where axial impacts are shorter."""
-
-LAST_RUN = MOST_RUNS = 1_000_000
+MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
 
@@ -207,26 +195,13 @@ def mobility(study: Study) -> MobilityAnswer:
 def stability(study: Study, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     solution = solve(study)
-    _warn_of_extrapolation(solution)
+    warn_of_extrapolation(solution)
     cage, settings = _cage_of(solution), solution.stability
     runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
     return made_into(
         lambda curve: StabilityAnswer(solution=solution, cage=cage, curve=curve),
         lambda: stability_curve(cage, settings, runner=runner),
     )
-
-
-def _warn_of_extrapolation(solution: Solution) -> None:
-    """Warn where the friction of the cage comes from tests at other conditions."""
-    friction, own = solution.friction, cage_candidate(solution.study)
-    if friction is not None and own is not None and friction.law is not None and friction.extrapolation:
-        place = environment_of(solution.study.ranking) if solution.study.ranking else ""
-        warnings.warn(
-            f"Pocket friction {friction.mean:.3g} of {own.name} in {place}, extrapolated beyond the "
-            f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction overrides it.",
-            ValidityWarning,
-            stacklevel=3,
-        )
 
 
 def map(
@@ -269,69 +244,13 @@ def map(
     speed = solution.stability.middle_kick if kick is None else kick_speed(kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
-    _warn_of_extrapolation(solution)
+    warn_of_extrapolation(solution)
     cage = _cage_of(solution)
     runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
         lambda found: MapAnswer(solution=solution, cage=cage, map=found),
         lambda: stability_map(asked, runner=runner),
     )
-
-
-def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
-    """Speed of a kick that a study may have, from text with a unit or a number [m/s]."""
-    speed = parse(kick, "m/s", "--kick") if isinstance(kick, str) else float(kick)
-    if not LEAST_KICK < speed < MOST_KICK:
-        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
-        raise InputError("--kick", rule, f"{speed:g}", NO_KICK)
-    return speed
-
-
-def simulate(
-    study: Study, *, kick: str | MetrePerSecond | None = None, run: int = 0
-) -> SimulationAnswer | SpaceSimulationAnswer:
-    """Follow one run of the ensemble in plane or space, by default the first from the reference kick.
-
-    Parameters
-    ----------
-    kick : str or float, optional
-        Initial disturbance, text with a unit or [m/s].
-    run : int
-        Which run of the ensemble.
-    """
-    if not 0 <= run <= LAST_RUN:
-        raise InputError("--run", f"must lie between 0 and {LAST_RUN}", got=str(run))
-    given = None if kick is None else kick_speed(kick)
-    solution = solve(study)
-    cage, settings = solution.cage, solution.stability
-    _warn_of_extrapolation(solution)
-    speed = settings.middle_kick if given is None else given
-    samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
-    asked: dict[str, Any] = {
-        "kick": speed,
-        "run": run,
-        "seed": settings.seed,
-        "duration": settings.duration,
-        "ball_scatter": settings.ball_scatter,
-        "samples": int(min(max(samples, FEWEST_SHOWN[cage.space is not None]), MOST_SHOWN)),
-    }
-    if cage.space is not None:
-        course = simulate_in_space(cage, **asked)
-        found = analyse(cage, course, capacity=transmitted_force(solution))
-        _warn_of_motion(solution, course.largest_contact_force, found.largest_offset)
-        seen: dict[str, Any] = {"history": course, "analysis": found, "kick": speed, "run": run}
-        return SpaceSimulationAnswer(solution=solution, cage=cage, **seen)
-    history = follow(cage, **asked)
-    force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
-    _warn_of_motion(solution, float(force), float(offset))
-    return SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
-
-
-def _warn_of_motion(solution: Solution, force: Newton, offset: Metre) -> None:
-    made_of = cage_candidate(solution.study)
-    moved = Moved(made_of.name if made_of else "The cage", force, offset)
-    for note in beyond_motion(solution, [moved]):
-        warnings.warn(note, ValidityWarning, stacklevel=3)
 
 
 def rank(study: Study, runner: Runner) -> RankingAnswer:

@@ -12,8 +12,8 @@ from matplotlib import image
 
 from separatrix import figures, present
 from separatrix.cli import main
-from separatrix.cli.verbs import VERBS
 from separatrix.ledger import NAME
+from separatrix.questions import VERBS
 
 SMALL = """
 extends = "cryogenic-turbopump"

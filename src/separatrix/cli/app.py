@@ -15,8 +15,9 @@ from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
 from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import OPTIONS, VERBS, Jobs, Json, Quiet, Verb, folder, named, threads
+from separatrix.cli.verbs import OPTIONS, Jobs, Json, Quiet, folder, named, threads
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.questions import VERBS, Verb
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 

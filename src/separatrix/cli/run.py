@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from separatrix.cli.console import answer, complain, interrupted, progress_bar
-from separatrix.cli.verbs import Verb
 from separatrix.errors import InputError
+from separatrix.ledger import NAME as LEDGER
 from separatrix.notes import grouped, noted_warnings
+from separatrix.questions import Computed, Verb, computed
 from separatrix.staged import refuse_existing, writable_folder, write_new
 
 if TYPE_CHECKING:
@@ -67,34 +68,30 @@ def run(verb: Verb, name: str, options: Options) -> int:
             folder = Path(study.name)
         if folder is not None:
             stack.enter_context(writable_folder(folder))
-        record, complete = _computed(verb, study, options, folder)
-        _deliver(verb, record, study, grouped(notes), folder, options)
-    if complete:
+        found = _computed(verb, study, options, folder)
+        _deliver(verb, found.record, study, grouped(notes), folder, options)
+    if found.is_complete:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""
     return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
-def _computed(verb: Verb, study: Study, options: Options, folder: Path | None) -> tuple[Any, bool]:
-    """Compute the answer, or the part that was finished before an interrupt; return whether it is all."""
-    from separatrix import verbs
-    from separatrix.runner import Interrupted
-
-    function = getattr(verbs, verb.name)
+def _computed(verb: Verb, study: Study, options: Options, folder: Path | None) -> Computed:
+    """Compute the answer with a bar of progress; say how many runs an earlier call had kept."""
     with progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress:
-        if not verb.keeps_runs:
-            return function(study, **options.question), True
-        with verbs.long_job(options.jobs, folder, options.cluster, progress) as runner:
-            try:
-                record, complete = function(study, runner, **options.question), True
-            except Interrupted as stop:
-                if stop.finished is None:
-                    raise
-                record, complete = stop.finished, False
-    kept = runner.ledger
-    if kept is not None and kept.taken and not options.quiet:
-        complain(f"{kept.taken} runs were taken from {kept.path}, where an earlier call had kept them.")
-    return record, complete
+        found = computed(
+            verb,
+            study,
+            options.question,
+            jobs=options.jobs,
+            folder=folder,
+            cluster=options.cluster,
+            progress=progress,
+        )
+    if found.runs_taken and not options.quiet:
+        kept = f"{folder}/{LEDGER}"
+        complain(f"{found.runs_taken} runs were taken from {kept}, where an earlier call had kept them.")
+    return found
 
 
 def _deliver(

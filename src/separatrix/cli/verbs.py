@@ -1,9 +1,8 @@
-"""The table of verbs, in the order of the chain, and the options they take. To add a verb, add an entry."""
+"""The options of the commands, and the reading of those that name threads, folders and files."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -45,6 +44,7 @@ CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N pro
 MOTION_HELP = "Where the cage moves [default: as the study says, or in the plane]."
 BALL_HELP = "What a ball does that is pushed [default: as the study says, or a damper]."
 KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
+ETA_HELP = "Damp the races so that eta is this, as at a point of a map [default: that of the study]."
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
 
 OPTIONS: dict[str, tuple[Any, Any]] = {
@@ -58,6 +58,7 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
     "ball": (Annotated[str | None, typer.Option(metavar="damper|traction", help=BALL_HELP)], None),
     "run": (Annotated[int, typer.Option("--run", **WHOLE, help="Which run of the ensemble.")], 0),
+    "restitution_factor": (Annotated[str | None, typer.Option(metavar="ETA", help=ETA_HELP)], None),
     "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),
     "samples": (Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")], 512),
     "vary": (Annotated[list[str] | None, typer.Option("--vary", metavar="AXIS", help=VARY_HELP)], None),
@@ -71,110 +72,6 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "cluster": (Annotated[str | None, typer.Option(metavar="ADDRESS", help=CLUSTER_HELP)], None),
 }
 """Parameter of a command -> its type with its help, and its default."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verb:
-    """A question: its name and its line of help.
-
-    The function of that name in `separatrix.verbs` computes its record from the options in `question`.
-    `needs` are the sections of a study that may be left out but not for this question. `keeps_runs` is for
-    an answer whose runs are kept in its folder as they are finished, and may be made on a cluster.
-    `moves_a_cage` is for one whose models of motion and ball may be chosen.
-    """
-
-    name: str
-    help: str
-    needs: tuple[str, ...] = ()
-    epilog: str | None = None
-    question: tuple[str, ...] = ()
-    moves_a_cage: bool = False
-    has_full: bool = False
-    writes_files: bool = True
-    keeps_runs: bool = False
-
-    @property
-    def options(self) -> tuple[str, ...]:
-        """Names of what its command takes, in order."""
-        full, cluster = ("full",) * self.has_full, ("cluster",) * self.keeps_runs
-        models = ("motion", "ball") * self.moves_a_cage
-        return ("study", *self.question, *models, *full, "json", "out", "quiet", "jobs", *cluster)
-
-
-VERBS: tuple[Verb, ...] = (
-    Verb(
-        name="check",
-        help="Read a study; show what was understood and from where.",
-        has_full=True,
-        writes_files=False,
-    ),
-    Verb(name="bearing", help="Ball loads, contact angles, speeds and contacts."),
-    Verb(name="traction", help="Traction curves of ball on race, and their slopes."),
-    Verb(name="restitution", help="Restitution factor of a ball/cage impact.", needs=("cage",)),
-    Verb(
-        name="mobility",
-        help="How the races hold a ball that is pushed along its orbit.",
-        epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
-        "the capacity of the races, and with a cage the restitution of impacts against their speed.",
-    ),
-    Verb(
-        name="stability",
-        help="Critical friction against restitution factor.",
-        needs=("cage",),
-        moves_a_cage=True,
-        epilog="Beside the curve: its sub-critical band, each kick's own curve, the linear and the "
-        "hard-impact limit, and the critical friction at the bearing's own restitution factor.",
-        keeps_runs=True,
-    ),
-    Verb(
-        name="map",
-        help="Where the cage is stable in the plane of two parameters.",
-        needs=("cage",),
-        moves_a_cage=True,
-        epilog="An axis is a numeric key of the study file with its section, or restitution_factor, "
-        "ball_cage_friction, kick: --x cage.pocket_clearance=0.1..1mm --y film.race_friction="
-        "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
-        "command to resume. With --json and no --out nothing is kept.",
-        question=("x", "y", "points", "runs", "kick", "adaptive"),
-        keeps_runs=True,
-    ),
-    Verb(
-        name="simulate",
-        help="Follow one run of the cage, in the plane or in space.",
-        needs=("cage",),
-        moves_a_cage=True,
-        epilog="An unresolved run says why. --animate mp4 needs the extra animation.",
-        question=("kick", "run", "animate"),
-    ),
-    Verb(
-        name="rank",
-        help="Rank the cage materials: verdict, margin, reason.",
-        needs=("cage", "ranking"),
-        moves_a_cage=True,
-        has_full=True,
-        keeps_runs=True,
-    ),
-    Verb(
-        name="sensitivity",
-        help="Verdicts over uncertain inputs, and what to test next.",
-        needs=("cage", "ranking"),
-        moves_a_cage=True,
-        epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
-        "their scatter: 9 % of the mean where none was measured, a guess.",
-        question=("samples",),
-        keeps_runs=True,
-    ),
-    Verb(
-        name="sweep",
-        help="Chain and verdict of many cases: one table.",
-        moves_a_cage=True,
-        epilog="Every value of one --vary goes with every value of the others. A case that is refused is a "
-        "row with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
-        '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
-        question=("vary", "cases", "verdicts"),
-        keeps_runs=True,
-    ),
-)
 
 
 def threads(jobs: int | None) -> int:

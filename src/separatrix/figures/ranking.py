@@ -148,7 +148,7 @@ def overview(data: xr.Dataset) -> Figure:
     axes.spines["bottom"].set_bounds(0, 1)
     count = data.sizes["environment"]
     for i, marker, colour in zip(range(count), cycle(MARKERS), cycle(CYCLE), strict=False):
-        of, row = data.isel(environment=i), places + 0.26 - 0.52 * (i + 0.5) / count
+        of, row = data.isel(environment=i), places + shift(i, count)
         look: Look = {"ls": "", "color": colour, "ms": 3.6}
         name = str(of["environment"].values)
         axes.plot(of["material_restitution_threshold"].values, row, marker=marker, label=name, **look)
@@ -170,6 +170,11 @@ def overview(data: xr.Dataset) -> Figure:
     axes.set_title(f"Restitution thresholds; after each name its rank {where}, = for a tie", pad=16)
     legend_below(figure)
     return figure
+
+
+def shift(place: int, count: int) -> float:
+    """Return how far above the row of its candidate an environment, one of `count`, is drawn."""
+    return 0.26 - 0.52 * (place + 0.5) / count
 
 
 def _names(axes: Axes, data: xr.Dataset, own: int | None) -> None:

@@ -169,6 +169,29 @@ def _quantity(value: Any) -> tuple[float | None, str]:
     return float(match[1]), match[2] or ""
 
 
+def quantity_of(value: Any) -> tuple[str | None, str]:
+    """Return number and unit of a value of a study file as texts; None for one that is something else."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return str(value), ""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None or not match[2] or not units_like(match[2]):
+        return None, ""
+    return match[1], match[2]
+
+
+def units_like(unit: str) -> tuple[str, ...]:
+    """Return the spellings of the units of the same kind; empty for one that is not known."""
+    return next((tuple(known) for known in UNITS.values() if unit and unit in known), ())
+
+
+def choices_of(section: str, key: str) -> tuple[tuple[str, ...], bool]:
+    """Return what a key may hold, and whether another name is allowed too; empty for what has no list."""
+    name = f"{section}.{key}"
+    if name in _CHOICES:
+        return tuple(str(one.value) for one in _CHOICES[name]), False
+    return (library.names(_NAMES[name]), True) if name in _NAMES else ((), True)
+
+
 def template_workbook() -> bytes:
     """Return the workbook that ``separatrix new --excel`` writes; valid as it is."""
     document, book, choices = load(TEMPLATE), new_workbook(), _Choices()
@@ -228,12 +251,10 @@ class _Choices:
 
     def add(self, sheet: Worksheet, row: int, key: str, unit: str) -> None:
         """Give a row the lists for its value and its unit."""
-        if key in _CHOICES:
-            self._cells.append((sheet, f"B{row}", tuple(str(one.value) for one in _CHOICES[key]), True))
-        elif key in _NAMES:
-            self._cells.append((sheet, f"B{row}", library.names(_NAMES[key]), False))
-        spellings = next((tuple(known) for known in UNITS.values() if unit and unit in known), ())
-        if spellings:
+        items, is_open = choices_of(*key.split(".", 1))
+        if items:
+            self._cells.append((sheet, f"B{row}", items, not is_open))
+        if spellings := units_like(unit):
             self._cells.append((sheet, f"D{row}", spellings, False))
 
     def write(self, book: Workbook) -> None:

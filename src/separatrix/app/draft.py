@@ -1,0 +1,180 @@
+"""A study while it is edited: its text, one key changed in it, and what is wrong with it, key by key."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import threading
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Item
+
+from separatrix.errors import InputError
+from separatrix.notes import grouped, noted_warnings
+from separatrix.regular_file import reading_only_in
+from separatrix.study import Study
+from separatrix.study_file import read_study
+from separatrix.toml_text import MOST_BYTES, read_text
+from separatrix.units import NUMBER, shown
+
+DRAFT = ".{}.draft"
+"""Name of the draft of a study, beside it: a server that is killed loses no edit."""
+
+ONE_AT_A_TIME = threading.Lock()
+"""What studies note on the way is collected by one thread."""
+
+_KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
+_NUMBER = re.compile(rf"\s*{NUMBER}\s*")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message."""
+
+    section: str
+    key: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checked:
+    """A text, the study that it makes (None if it is refused), its faults, and the notes of a sound one."""
+
+    text: str
+    study: Study | None
+    faults: tuple[Fault, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def version(self) -> str:
+        """Which text it is: a tab that has another one edits an older state."""
+        return version_of(self.text)
+
+    def faults_of(self, section: str, key: str) -> list[str]:
+        """Return the messages about one key."""
+        return [one.message for one in self.faults if (one.section, one.key) == (section, key)]
+
+
+def version_of(text: str) -> str:
+    """Return a checksum of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def draft_path(study: Path) -> Path:
+    """Return where the draft of a study is kept."""
+    return study.with_name(DRAFT.format(study.name))
+
+
+def current_text(study: Path) -> str:
+    """Return the draft of a study, or the study if it has none."""
+    draft = draft_path(study)
+    return read_text(draft if draft.is_file() else study)
+
+
+def keep(study: Path, text: str) -> None:
+    """Keep a text as the draft of a study; one like the study itself is none."""
+    if len(text.encode()) > MOST_BYTES:
+        raise InputError(study.name, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
+    if study.is_file() and text == read_text(study):
+        draft_path(study).unlink(missing_ok=True)
+    else:
+        draft_path(study).write_text(text, encoding="utf-8", newline="\n")
+
+
+def save(study: Path) -> None:
+    """Put the draft in the place of the study."""
+    draft = draft_path(study)
+    if draft.is_file():
+        draft.replace(study)
+
+
+def check(study: Path, root: Path) -> Checked:
+    """Read the draft of a study as every verb would, without files outside `root`."""
+    draft = draft_path(study)
+    path = draft if draft.is_file() else study
+    try:
+        text = read_text(path)
+    except InputError as error:
+        return Checked(text="", study=None, faults=tuple(_faults(error, path, study)))
+    try:
+        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
+            found = read_study(path)
+    except InputError as error:
+        return Checked(text=text, study=None, faults=tuple(_faults(error, path, study)))
+    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(notes)))
+
+
+def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
+    """Return each fault with the key that it is about."""
+    faults = []
+    for one in error.problems or (error,):
+        message = str(one).replace(path.name, study.name)
+        at = _KEY.search(one.path)
+        section, key = (at["section"], at["key"] or "") if at else ("", "")
+        faults.append(Fault(section=section, key=key, message=message))
+    return faults
+
+
+def edited(text: str, section: str, key: str, value: str) -> str:
+    """Return the text with one key set as a form gives it, comments kept; an empty value removes the key.
+
+    Parameters
+    ----------
+    text : str
+        Of a study file.
+    section, key : str
+        Of the study; an empty section is above the first one.
+    value : str
+        As typed: a number, a quantity, a word, or a list or table as TOML writes it.
+
+    Raises
+    ------
+    InputError
+        The text is not valid TOML, so that it has to be mended as text first.
+    """
+    try:
+        document = tomlkit.parse(text)
+    except (TOMLKitError, RecursionError) as error:
+        cure = "Mend it in the text first."
+        raise InputError("The text", f"is not valid TOML: {error}", cure=cure) from None
+    table: Any = document
+    if section:
+        if section not in document:
+            document.add(section, tomlkit.table())
+        table = document[section]
+        if not isinstance(table, Mapping):
+            raise InputError(f"[{section}]", "is not a section", cure="Mend it in the text first.")
+    if not value.strip():
+        if key in table:
+            del table[key]
+    else:
+        _put(table, key, typed(value))
+    return tomlkit.dumps(document)
+
+
+def _put(table: Any, key: str, value: Any) -> None:
+    """Set a key; the comment behind its old value stays."""
+    old = table.get(key)
+    new = tomlkit.item(value)
+    if isinstance(old, Item) and old.trivia.comment and not isinstance(value, dict):
+        new.trivia.comment_ws, new.trivia.comment = old.trivia.comment_ws, old.trivia.comment
+    table[key] = new
+
+
+def typed(value: str) -> Any:
+    """Return a value of a form as TOML has it: a bare number, a list or table, else text."""
+    value = value.strip()
+    if _NUMBER.fullmatch(value):
+        return float(value) if re.search(r"[.eE]", value) else int(value)
+    if value[0] in "[{":
+        try:
+            return tomllib.loads(f"value = {value}")["value"]
+        except (ValueError, RecursionError):
+            raise InputError(shown(value), "is not a list or table of TOML") from None
+    return value

@@ -1,0 +1,210 @@
+"""The jobs of the page: one queue for all its tabs, computed by one process, each with its progress."""
+
+from __future__ import annotations
+
+import multiprocessing
+import threading
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from typing import Any
+
+from separatrix.app.worker import CANCEL, END, Report, Task, work
+from separatrix.errors import InputError
+
+WAITING, RUNNING = "waiting", "running"
+ACTIVE = (WAITING, RUNNING)
+MOST_WAITING, MOST_KEPT = 20, 50
+_AT_THE_END = 10.0
+"""Time that the process has to write what it finished when the page is closed [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """A question of the page and how far it is; times are those of `time.monotonic`."""
+
+    task: Task
+    study: str
+    title: str
+    state: str = WAITING
+    done: int = 0
+    total: int = 0
+    expected: float | None = None
+    message: str = ""
+    started: float | None = None
+    ended: float | None = None
+
+    @property
+    def number(self) -> int:
+        """Its number."""
+        return self.task.number
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it waits or runs."""
+        return self.state in ACTIVE
+
+    @property
+    def share(self) -> float | None:
+        """Share of its known points that are done; None before there is one."""
+        return self.done / self.total if self.total else None
+
+    @property
+    def seconds(self) -> float:
+        """Time since it was started; until its end if it has ended."""
+        return 0.0 if self.started is None else (self.ended or time.monotonic()) - self.started
+
+
+@dataclass(slots=True)
+class _State:
+    jobs: dict[int, Job] = field(default_factory=dict)
+    last: int = 0
+    process: BaseProcess | None = None
+    pipe: Connection | None = None
+    is_closed: bool = False
+
+
+class Jobs:
+    """The queue and its process, which is started with the first job and again if it was killed."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._lock, self._state = threading.Lock(), _State()
+
+    def ask(
+        self,
+        verb: str,
+        study: Path,
+        folder: Path,
+        *,
+        name: str,
+        title: str = "",
+        question: Mapping[str, Any] | None = None,
+        values: Mapping[str, float] | None = None,
+    ) -> Job:
+        """Put a question into the queue; the same one that still waits or runs is not asked twice.
+
+        Raises
+        ------
+        InputError
+            Too many wait.
+        """
+        with self._lock:
+            state = self._state
+            asked = Task(
+                number=state.last + 1,
+                verb=verb,
+                study=study,
+                folder=folder,
+                root=self.root,
+                question=dict(question or {}),
+                values=dict(values or {}),
+            )
+            active = [job for job in state.jobs.values() if job.is_active]
+            for job in active:
+                if replace(job.task, number=asked.number) == asked:
+                    return job
+            if len(active) >= MOST_WAITING:
+                raise InputError("The queue", f"holds {MOST_WAITING} jobs", cure="Wait, or cancel some.")
+            state.last += 1
+            state.jobs[asked.number] = job = Job(task=asked, study=name, title=title or verb)
+            ended = [number for number, one in state.jobs.items() if not one.is_active]
+            for number in ended[: max(0, len(ended) - MOST_KEPT)]:
+                del state.jobs[number]
+            self._feed()
+            return job
+
+    def all(self) -> list[Job]:
+        """Return the jobs, the newest first."""
+        with self._lock:
+            return sorted(self._state.jobs.values(), key=lambda job: -job.number)
+
+    def job(self, number: int) -> Job | None:
+        """Return a job by its number; None if there is none."""
+        with self._lock:
+            return self._state.jobs.get(number)
+
+    def cancel(self, number: int) -> None:
+        """End a job: one that runs keeps what it finished."""
+        with self._lock:
+            job = self._state.jobs.get(number)
+            if job is None or not job.is_active:
+                return
+            if job.state == WAITING:
+                self._change(number, state="cancelled", message="Cancelled before it began.")
+            elif self._state.pipe is not None:
+                self._change(number, message="Cancelling: the runs in hand are finished first.")
+                self._state.pipe.send(CANCEL)
+
+    def close(self) -> None:
+        """End the process; the job in hand writes what it finished."""
+        with self._lock:
+            self._state.is_closed = True
+            process, pipe = self._state.process, self._state.pipe
+        if process is not None and pipe is not None:
+            try:
+                pipe.send(END)
+            except OSError:  # it has ended already
+                return
+            process.join(_AT_THE_END)
+            process.terminate()
+
+    def _feed(self) -> None:
+        """Hand the first waiting job to the process, if none is in hand."""
+        state = self._state
+        if state.is_closed or any(job.state == RUNNING for job in state.jobs.values()):
+            return
+        first = next((job for job in state.jobs.values() if job.state == WAITING), None)
+        if first is None:
+            return
+        if state.process is None or not state.process.is_alive():
+            self._start()
+        if state.pipe is not None:
+            self._change(first.number, state=RUNNING, started=time.monotonic())
+            state.pipe.send(first.task)
+
+    def _start(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=work, args=(theirs,), name="separatrix worker", daemon=True)
+        process.start()
+        theirs.close()
+        self._state.process, self._state.pipe = process, ours
+        threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
+
+    def _listen(self, pipe: Connection) -> None:
+        """Take in what the process reports, until it ends."""
+        while True:
+            try:
+                report = pipe.recv()
+            except (EOFError, OSError):
+                report = None
+            with self._lock:
+                if report is None:
+                    self._lost(pipe)
+                    return
+                self._take_in(report)
+
+    def _take_in(self, report: Report) -> None:
+        known = ("state", "done", "total", "expected", "message")
+        new = {name: value for name in known if (value := getattr(report, name)) is not None}
+        if report.state is not None and report.state not in ACTIVE:
+            new["ended"] = time.monotonic()
+        self._change(report.number, **new)
+        self._feed()
+
+    def _lost(self, pipe: Connection) -> None:
+        """Note that the process has ended in the middle of a job, and go on with the next."""
+        if self._state.pipe is pipe:
+            self._state.process = self._state.pipe = None
+        for job in [job for job in self._state.jobs.values() if job.state == RUNNING]:
+            words = "The computing process ended. Finished runs are kept: resume to go on."
+            self._change(job.number, state="failed", message=words, ended=time.monotonic())
+        self._feed()
+
+    def _change(self, number: int, **new: Any) -> None:
+        if number in self._state.jobs:
+            self._state.jobs[number] = replace(self._state.jobs[number], **new)

@@ -1,0 +1,110 @@
+"""Figures to hover over: the series of `figures.hover` as Plotly draws them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from separatrix.figures.hover import Plot, Series
+
+Spec = dict[str, Any]
+"""Data and layout of a figure of Plotly, as JSON has it."""
+
+GRID = "rgba(128,128,128,0.25)"
+COLOURS = [[0.0, "#0072B2"], [0.5, "#f0f0f0"], [1.0, "#D55E00"]]
+"""Of the share of runs that whirl: the palette of the printed figures."""
+
+
+def spec(plot: Plot) -> Spec:
+    """Return the figure of a plot; colours of text and paper are set by the page, light or dark."""
+    layout: Spec = {
+        "title": {"text": _plain(plot.title), "font": {"size": 15}, "x": 0.01, "xanchor": "left"},
+        "xaxis": _axis(plot.x_label, is_log=plot.x_log),
+        "yaxis": _axis(plot.y_label, is_log=plot.y_log),
+        "hovermode": "closest",
+        "margin": {"l": 70, "r": 20, "t": 50, "b": 55},
+        "legend": {"orientation": "h", "y": -0.22, "font": {"size": 11}},
+        "shapes": [],
+    }
+    if plot.y_names:
+        places = [*range(len(plot.y_names))]
+        names = [_plain(name) for name in plot.y_names]
+        layout["yaxis"] |= {"tickvals": places, "ticktext": names, "automargin": True}
+    data: list[Spec] = []
+    for one in plot.series:
+        if one.kind == "upright":
+            layout["shapes"].append(_upright(one))
+        data += _traces(one, across=bool(plot.y_names))
+    return {"data": data, "layout": layout}
+
+
+def _axis(label: str, *, is_log: bool) -> Spec:
+    kind = {"type": "log"} if is_log else {}
+    return {"title": {"text": _plain(label)}, "gridcolor": GRID, "zeroline": False, **kind}
+
+
+def _plain(text: str) -> str:
+    """Return a text that Plotly shows as it is: it would take some tags."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
+    """Yield the traces of a series; intervals lie along x where places are names."""
+    base: Spec = {"name": _plain(one.name), "x": one.x, "y": one.y}
+    base |= (
+        {"text": [_plain(text) for text in one.text], "hoverinfo": "text"}
+        if one.text
+        else {"hoverinfo": "name"}
+    )
+    if one.kind == "cells":
+        yield base | {
+            "type": "heatmap",
+            "z": one.value,
+            "colorscale": COLOURS,
+            "zmin": 0,
+            "zmax": 1,
+            "colorbar": {"title": {"text": _plain(one.name), "side": "right"}, "thickness": 12},
+        }
+    elif one.kind == "band":
+        edge = {"mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "x": one.x}
+        yield edge | {"y": one.low, "showlegend": False}
+        yield edge | {"y": one.high, "fill": "tonexty", "name": base["name"], "fillcolor": _faint(one.colour)}
+    elif one.kind == "line":
+        yield base | {"mode": "lines", "line": {"color": one.colour, "width": 2}} | _interval(one, across)
+    elif one.kind == "points":
+        look = {"color": one.colour, "size": 10, "line": {"width": 1, "color": "white"}}
+        yield base | {"mode": "markers", "marker": look} | _interval(one, across)
+
+
+def _interval(one: Series, across: bool) -> Spec:
+    """Return the bars of the interval of each point."""
+    if not one.low or not one.high:
+        return {}
+    values = one.x if across else one.y
+    bars = {
+        "type": "data",
+        "symmetric": False,
+        "array": [_less(h, v) for h, v in zip(one.high, values, strict=True)],
+        "arrayminus": [_less(v, low) for low, v in zip(one.low, values, strict=True)],
+        "color": one.colour,
+        "thickness": 1,
+        "width": 3,
+    }
+    return {"error_x" if across else "error_y": bars}
+
+
+def _less(a: float | None, b: float | None) -> float | None:
+    return None if a is None or b is None else a - b
+
+
+def _upright(one: Series) -> Spec:
+    line = {"color": one.colour, "width": 1.5, "dash": "dash"}
+    label = {"text": _plain(one.name), "textangle": -90, "font": {"size": 11}, "textposition": "end"}
+    at = {"x0": one.x[0], "x1": one.x[0], "y0": 0, "y1": 1, "yref": "paper"}
+    return {"type": "line", "line": line, "label": label, **at}
+
+
+def _faint(colour: str) -> str:
+    """Return a colour of the palette, mostly transparent."""
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return f"rgba({red},{green},{blue},0.18)"

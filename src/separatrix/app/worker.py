@@ -1,0 +1,170 @@
+"""The process that computes for the page: one question after another, so that its kernels stay loaded."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import threading
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+from separatrix.errors import InputError, SeparatrixError
+from separatrix.units import Second
+
+CANCEL, END = "cancel", "end"
+"""What the page may send besides a task."""
+
+EVERY = 0.2
+"""Least time between two reports of progress [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A question: the verb, the study file, the folder of the answer, options of the verb, models of motion.
+
+    `values` are numbers of the study that are other than in the file, by the names of a map; no file is then
+    read back, and the answer is for looking only.
+    """
+
+    number: int
+    verb: str
+    study: Path
+    folder: Path
+    root: Path
+    question: Mapping[str, Any] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Report:
+    """How far a task is: the fields that are not None have changed."""
+
+    number: int
+    state: str | None = None
+    done: int | None = None
+    total: int | None = None
+    expected: float | None = None
+    message: str | None = None
+
+
+class Reporter:
+    """Tells the page how far a long job is, and what it will take."""
+
+    def __init__(self, number: int, send: Callable[[Report], None]) -> None:
+        self.number, self.send, self._last = number, send, 0.0
+
+    def __call__(self, done: int, total: int) -> None:
+        """Report the points done, now and then and at the end."""
+        now = time.monotonic()
+        if done == total or now - self._last > EVERY:
+            self._last = now
+            self.send(Report(number=self.number, done=done, total=total))
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:  # noqa: ARG002
+        """Report the time that the work is expected to take."""
+        self.send(Report(number=self.number, expected=float(estimate())))
+
+
+def work(pipe: Connection) -> None:
+    """Compute tasks from a pipe until it ends; the body of the process.
+
+    A cancel interrupts the task in hand as Ctrl-C would: what was finished is kept and answered.
+    """
+    waiting: SimpleQueue[Task | None] = SimpleQueue()
+    in_hand: list[int] = []
+
+    def listen() -> None:
+        while True:
+            try:
+                message = pipe.recv()
+            except (EOFError, OSError):  # the page is gone
+                message = END
+            if isinstance(message, Task):
+                waiting.put(message)
+                continue
+            if in_hand:
+                _thread.interrupt_main()
+            if message == END:
+                waiting.put(None)
+                return
+
+    threading.Thread(target=listen, daemon=True).start()
+
+    def send(report: Report) -> None:
+        try:
+            pipe.send(report)
+        except OSError:  # the page is gone; the task ends by itself
+            in_hand.clear()
+
+    while True:
+        try:
+            task = waiting.get()
+            if task is None:
+                return
+            _report_end(task, in_hand, send)
+        except KeyboardInterrupt:  # a cancel of a task that had just ended
+            in_hand.clear()
+
+
+def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) -> None:
+    """Compute a task and report how it ended."""
+    in_hand.append(task.number)
+    send(Report(number=task.number, state="running"))
+    try:
+        state, message = _answered(task, send)
+    except KeyboardInterrupt:
+        state, message = "cancelled", "Cancelled before anything was finished."
+    except SeparatrixError as error:
+        problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
+        state, message = "refused", "\n".join(str(one) for one in problems)
+    except Exception:  # noqa: BLE001 - a fault of ours is shown in the page with its place
+        state, message = "failed", "A fault of separatrix:\n" + traceback.format_exc(limit=-3)
+    in_hand.clear()
+    end = Report(number=task.number, state=state, message=message)
+    try:
+        send(end)
+    except KeyboardInterrupt:  # as above; the page must hear the end
+        send(end)
+
+
+def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
+    """Compute and write one answer; return how it ended, and a message."""
+    from separatrix.limits.map_parameters import varied
+    from separatrix.notes import grouped, noted_warnings
+    from separatrix.present import document
+    from separatrix.questions import VERBS, computed
+    from separatrix.regular_file import reading_only_in
+    from separatrix.saving import save_answer
+    from separatrix.study import with_models
+    from separatrix.study_file import read_study, require
+
+    verb = next(one for one in VERBS if one.name == task.verb)
+    question = dict(task.question)
+    models = {name: question.pop(name) for name in ("motion", "ball") if question.get(name)}
+    with noted_warnings() as notes, reading_only_in(task.root):
+        study = read_study(task.study)
+        require(study, verb.name, *verb.needs)
+        study = with_models(study, models) if models else study
+        study = varied(study, task.values) if task.values else study
+        task.folder.mkdir(parents=True, exist_ok=True)
+        reporter = Reporter(task.number, send)
+        found = computed(
+            verb, study, question, jobs=_threads(), folder=task.folder, cluster=None, progress=reporter
+        )
+        send(Report(number=task.number, message="Drawing the figures and writing the files."))
+        answer = document(verb.name, found.record, study, grouped(notes))
+        save_answer(task.folder, found.record, study, answer)
+    if found.is_complete:
+        return "finished", ""
+    return "cancelled", "The answer has what was finished. Resume to go on."
+
+
+def _threads() -> int:
+    """Return the threads of a task: one for each processor that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
