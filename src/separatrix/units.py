@@ -320,25 +320,14 @@ def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     return InputError(where, rule, shown(text), f'Did you mean "{known[found[0]]}"?' if found else "")
 
 
-_HABITS = {
+_HABITS = {unit: unit for unit in QUANTITIES} | {
     "m": "mm",
-    "s": "s",
     "rad": "deg",
     "rad/s": "rpm",
-    "Hz": "Hz",
     "kg": "g",
-    "N": "N",
-    "N m": "N m",
-    "N/m": "N/m",
-    "N s/m": "N s/m",
     "Pa": "GPa",
-    "kg/m3": "kg/m3",
-    "m/s": "m/s",
-    "m/s2": "m/s2",
-    "K": "K",
     "m/m/K": "um/m/K",
     "Pa s": "uPa s",
-    "J/kg/K": "J/kg/K",
     "kg m": "g mm",
     "kg m2": "kg mm2",
 }
