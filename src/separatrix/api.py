@@ -319,6 +319,7 @@ def sweep(
     *,
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
+    margins: bool = False,
     jobs: int | None = None,
     folder: str | Path | None = None,
     cluster: str | None = None,
@@ -329,6 +330,6 @@ def sweep(
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
 
         def compute(one: Study) -> Sweep:
-            return verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts)
+            return verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts, margins=margins)
 
         return _answer("sweep", study, compute)

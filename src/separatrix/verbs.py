@@ -312,6 +312,7 @@ def sweep(
     vary: Sequence[str] = (),
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
+    margins: bool = False,
 ) -> Sweep:
     """Chain and, if asked, verdict of many cases of a study.
 
@@ -320,8 +321,12 @@ def sweep(
     vary : sequence of str
         Ranges, each ``PARAM=LOW..HIGH[unit][:N][:log]``; every value of one with every value of the others.
     cases : Path, or sequence of mapping, optional
-        In their place a CSV file, or values by the names of a study file in SI units.
-    verdicts : bool
-        Whether to run the whole ensemble of each case, too.
+        In their place a CSV file, or values by the names of a study file in SI units; with `time_share`
+        they are a duty cycle.
+    verdicts, margins : bool
+        Whether to run the whole ensemble of each case, and to compute its threshold and margin, too.
     """
-    return run_cases(study, asked_cases(vary, cases), verdicts=verdicts, runner=runner)
+    asked = asked_cases(vary, cases)
+    with contextlib.suppress(SeparatrixError):
+        _ = solve(study).clearances  # warns of their guesses; a case warns of nothing
+    return run_cases(study, asked, verdicts=verdicts, margins=margins, runner=runner)

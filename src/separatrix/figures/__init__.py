@@ -12,6 +12,7 @@ from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
     contact,
+    envelope,
     map,
     mobility,
     ranking,
@@ -34,7 +35,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
-    "sweep": map.sweep_figures,
+    "sweep": envelope.figures,
     "contact": contact.figures,
 }
 """Verb -> what yields its pictures, each with the name of its file."""

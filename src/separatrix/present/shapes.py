@@ -271,7 +271,10 @@ def _(found: Sweep) -> Node:
         values: Node = {at.name: Leaf(value, at.unit or "-") for at, value in given}
         del case["values"]
         cases.append({"case": case.pop("case")} | values | case)
-    rest: Node = {"verdicts": Leaf(found.verdicts), "complete": Leaf(found.complete)}
+    rest: Node = {"verdicts": Leaf(found.verdicts), "margins": Leaf(found.margins)}
+    for name, part in (("worst", found.worst), ("duty", found.duty)):
+        rest[name] = Leaf(None) if part is None else Group(shape(part))
+    rest["complete"] = Leaf(found.complete)
     return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
 
 
