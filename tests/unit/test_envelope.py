@@ -26,7 +26,8 @@ STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
 SPEED, FRICTION = "operation.inner_speed", "ball_cage_friction"
 SMALL = 'extends = "momentum-wheel"\n[stability]\nruns = 4\nduration = "10 ms"\n'
-DUTY = f"{SPEED},{FRICTION},time_share\n0 rpm,0.1,1 h\n3000 rpm,0.1,2 h\n6000 rpm,1.5,30 min\n9000 rpm,0.1,30 min\n"
+ROWS = "0 rpm,0.1,1 h\n3000 rpm,0.1,2 h\n6000 rpm,1.5,30 min\n9000 rpm,0.1,30 min\n"
+DUTY = f"{SPEED},{FRICTION},time_share\n{ROWS}"
 
 
 @pytest.fixture
@@ -65,13 +66,12 @@ def test_a_duty_cycle_names_its_worst_case_and_its_time(answered):
     assert data["time_share"].values == pytest.approx([0.25, 0.5, 0.125, 0.125], rel=1e-12)
     assert float(data["duty_below_margin"]) == pytest.approx(0.125, rel=1e-12)
     assert float(data["duty_refused"]) == pytest.approx(0.25, rel=1e-12)
-    assert margin == pytest.approx(
-        data["restitution_threshold"].values - data["restitution_factor"].values, nan_ok=True
-    )
+    below = data["restitution_threshold"].values - data["restitution_factor"].values
+    assert margin == pytest.approx(below, nan_ok=True)
     assert "2: operation.inner_speed 6000 rpm, ball_cage_friction 1.5" in text
     assert "12.5 % with a margin below 0" in text
     assert {"envelope.png", "envelope.svg", "sweep.png"} <= {path.name for path in answered.iterdir()}
-    ((name, figure),) = [one for one in draw("sweep", data) if one[0] == "envelope"]
+    figure = dict(draw("sweep", data))["envelope"]
     assert "case 2: lowest margin" in figure.axes[0].get_title(loc="left")
     assert [axes.get_ylabel() for axes in figure.axes][1:] == ["P(stable) [-]", "frequency [Hz]", "time [%]"]
 
