@@ -14,6 +14,7 @@ from separatrix.chain.solution import solve
 from separatrix.distribution import Uniform
 from separatrix.draws import sample
 from separatrix.errors import InputError, ValidityWarning
+from separatrix.ranking.second import pocket_of, with_other_ball
 from separatrix.study import CageDesign, ClearanceState, Guidance, Material
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions, with_values
@@ -162,5 +163,18 @@ def test_draws_and_sweeps_go_through_it():
 def test_guesses_are_warned_of():
     """The library's expansion of Armalon is one."""
     study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
-    with pytest.warns(ValidityWarning, match="Clearances at 77 K rest on guesses: thermal expansion of Arm"):
+    with pytest.warns(ValidityWarning, match="Clearances at 77 K rest on guesses: thermal expansion of "):
         _ = solve(study).design
+
+
+@pytest.mark.filterwarnings("ignore:Clearances at")
+def test_each_candidate_has_its_own_pocket():
+    """With one stiffness for all; the second verdict, by the other ball, has the same clearances."""
+    study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
+    solved = [solve(study, one) for one in study.ranking.candidates]
+    pockets = {pocket_of(one) for one in solved}
+    assert len({pocket.stiffness for pocket in pockets}) == 1
+    assert len({pocket.clearance for pocket in pockets}) == len(
+        {one.cage_material.expansions for one in solved}
+    )
+    assert with_other_ball(solved[0], 0.1).pocket_clearance == solved[0].design.pocket_clearance

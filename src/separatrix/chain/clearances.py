@@ -236,7 +236,7 @@ def _strain(material: Material, temperature: Kelvin, where: str, guesses: list[s
     alpha, why = found
     if why:
         shown = format_quantity(alpha, "m/m/K", 3)
-        guesses.append(f"thermal expansion of {material.name}, {shown} ({why})")
+        guesses.append(f"thermal expansion of {where}, {shown} ({why})")
     return alpha * (temperature - ROOM)
 
 

@@ -28,6 +28,6 @@ def running_clearances(found: Clearances | None) -> list[tuple[str, str]]:
     rows.append(("Thermal strain", ", ".join(strains)))
     turning = f"cage +{found.hoop_strain * 100:.3g} % at its pitch radius"
     for part, grown in (("its land", found.cage_land_growth), ("the ring's land", found.ring_land_growth)):
-        turning += "" if grown is None else f", {part} +{quantity(grown, 'm', 3)} in radius"
+        turning += "" if not grown else f", {part} +{quantity(grown, 'm', 3)} in radius"
     rows.append(("Growth by rotation", turning))
     return rows
