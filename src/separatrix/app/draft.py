@@ -20,6 +20,7 @@ from separatrix.notes import grouped, noted_warnings
 from separatrix.regular_file import reading_only_in
 from separatrix.study import Study
 from separatrix.study_file import read_study
+from separatrix.study_file.templates import is_name
 from separatrix.toml_text import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
 
@@ -154,7 +155,7 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         if key in table:
             del table[key]
     else:
-        _put(table, key, typed(value))
+        _put(table, key, typed(value, is_name=is_name(section, key)))
     return tomlkit.dumps(document)
 
 
@@ -167,10 +168,15 @@ def _put(table: Any, key: str, value: Any) -> None:
     table[key] = new
 
 
-def typed(value: str) -> Any:
-    """Return a value of a form as TOML has it: a bare number, a list or table, else text."""
+def with_unit(value: str, unit: str) -> str:
+    """Return a value with the unit chosen beside it; one that is not a bare number has its own."""
+    return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
+
+
+def typed(value: str, *, is_name: bool = False) -> Any:
+    """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
     value = value.strip()
-    if _NUMBER.fullmatch(value):
+    if not is_name and _NUMBER.fullmatch(value):
         return float(value) if re.search(r"[.eE]", value) else int(value)
     if value[0] in "[{":
         try:

@@ -93,19 +93,20 @@ def _field(key: TemplateKey, value: Any, checked: Checked) -> Field:
     choices, is_open = choices_of(key.section, key.key)
     number, unit = quantity_of(value)
     usual = quantity_of(key.example)[1]
+    faults = tuple(checked.faults_of(key.section, key.key))
     text = "" if value is None else number if number is not None else _text(value)
     return Field(
         section=key.section,
         key=key.key,
         value=text,
-        unit=unit if number is not None else "" if text else usual,
+        unit=unit if number is not None else "" if text and not faults else usual,
         units=units_like(unit or usual),
         choices=choices,
         is_open=is_open,
         is_required=key.is_required,
         example=_text(key.example),
         meaning=key.meaning,
-        faults=tuple(checked.faults_of(key.section, key.key)),
+        faults=faults,
     )
 
 

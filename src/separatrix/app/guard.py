@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hmac
 from collections.abc import Awaitable, Callable, MutableMapping
 from http import HTTPStatus
@@ -16,6 +17,8 @@ Application = Callable[[Message, Receive, Send], Awaitable[None]]
 READING = ("GET", "HEAD")
 MOST_BYTES = 64 * 1024**2
 """Size of an upload."""
+
+TOO_LARGE = f"The upload is larger than {MOST_BYTES // 1024**2} MB."
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -90,8 +93,7 @@ class Guard:
             return HTTPStatus.FORBIDDEN, "Requests of other sites are refused."
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > MOST_BYTES:
-            words = f"The upload is larger than {MOST_BYTES // 1024**2} MB."
-            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, words
+            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, TOO_LARGE
         return None
 
     def _brings_token(self, scope: Message) -> bool:
@@ -112,35 +114,37 @@ class Guard:
 
     async def _pass(self, scope: Message, receive: Receive, send: Send) -> None:
         """Let the page answer, with our headers; a body that grows beyond the bound is cut off."""
-        taken, begun = 0, False
+        taken, begun, is_refused = 0, False, False
 
         async def bounded() -> Message:
-            nonlocal taken
+            nonlocal taken, is_refused
             message = await receive()
             taken += len(message.get("body", b""))
             if taken > MOST_BYTES:
+                if not begun:
+                    await _reply(send, HTTPStatus.REQUEST_ENTITY_TOO_LARGE, TOO_LARGE)
+                is_refused = True
                 raise TooLarge
             return message
 
         async def with_headers(message: Message) -> None:
             nonlocal begun
+            if is_refused:  # what the page makes of the end of the body
+                return
             if message["type"] == "http.response.start":
                 begun = True
                 ours = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
                 message["headers"] = [*message.get("headers", ()), *ours]
             await send(message)
 
-        try:
+        with contextlib.suppress(TooLarge):
             await self.application(scope, bounded, with_headers)
-        except TooLarge:
-            if not begun:
-                words = f"The upload is larger than {MOST_BYTES // 1024**2} MB."
-                await _reply(send, HTTPStatus.REQUEST_ENTITY_TOO_LARGE, words)
 
 
 async def _reply(send: Send, status: HTTPStatus, words: str, more: dict[str, str] | None = None) -> None:
     body = words.encode()
     headers = {"content-type": "text/plain; charset=utf-8", "content-length": str(len(body))}
+    headers |= {"connection": "close"} if status >= HTTPStatus.BAD_REQUEST else {}
     headers |= HEADERS | (more or {})
     pairs = [(name.encode(), value.encode()) for name, value in headers.items()]
     await send({"type": "http.response.start", "status": int(status), "headers": pairs})

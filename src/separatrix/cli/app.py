@@ -11,6 +11,7 @@ import typer
 
 from separatrix.cli import contact as one_contact
 from separatrix.cli import materials
+from separatrix.cli import page as the_page
 from separatrix.cli.comparing import compare
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
@@ -160,6 +161,7 @@ def _application() -> typer.Typer:
     )(_tribometer)
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
     app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
+    app.command("app", help=the_page.HELP, epilog=the_page.EPILOG)(the_page.page)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
 
@@ -175,7 +177,7 @@ def _start(
         raise typer.Exit
     if context.invoked_subcommand is None:
         verbs = ", ".join(
-            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "materials"]
+            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "app", "materials"]
         )
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 

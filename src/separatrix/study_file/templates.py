@@ -192,6 +192,11 @@ def choices_of(section: str, key: str) -> tuple[tuple[str, ...], bool]:
     return (library.names(_NAMES[name]), True) if name in _NAMES else ((), True)
 
 
+def is_name(section: str, key: str) -> bool:
+    """Whether a key holds a name, which is text even if it looks like a number: steel 52100."""
+    return key in TEXTS or bool(choices_of(section, key)[0])
+
+
 def template_workbook() -> bytes:
     """Return the workbook that ``separatrix new --excel`` writes; valid as it is."""
     document, book, choices = load(TEMPLATE), new_workbook(), _Choices()

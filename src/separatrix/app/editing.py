@@ -1,0 +1,194 @@
+"""Routes of the studies: the list, the form with the text beside it, and running a verb."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
+
+from separatrix.app import draft
+from separatrix.app.form import form
+from separatrix.app.page import Page, form_of
+from separatrix.errors import InputError
+from separatrix.questions import VERBS, Verb
+from separatrix.study import BallModel, MotionModel
+from separatrix.study_file import shipped_studies, template
+from separatrix.units import printable
+
+Form = Annotated[dict[str, str], Depends(form_of)]
+TYPED = {"points": int, "runs": int, "run": int, "samples": int}
+"""Options that are whole numbers."""
+
+CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
+
+
+def routes(page: Page) -> APIRouter:
+    """Return the routes of the studies."""
+    router = APIRouter(default_response_class=HTMLResponse)
+
+    @router.get("/")
+    def studies() -> Response:
+        rows = [summary(page, name) for name in page.folder.studies()]
+        return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
+
+    @router.post("/new")
+    def new(sent: Form) -> Response:
+        name = f"{sent.get('name', '').strip().removesuffix('.toml')}.toml"
+        path, base = page.folder.new(name), sent.get("base", "")
+        text = (
+            shipped_studies()[base].read_text(encoding="utf-8") if base in shipped_studies() else template()
+        )
+        with path.open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        return _to(f"/study/{page.folder.name(path)}")
+
+    @router.get("/study/{name:path}")
+    def study(name: str) -> Response:
+        path = page.folder.study(name)
+        return page.html("study.html", **editor(page, name, path), **running(page, name))
+
+    @router.post("/edit/{name:path}")
+    def edit(name: str, sent: Form) -> Response:
+        path = page.folder.study(name)
+        text, problem = draft.current_text(path), ""
+        if sent.get("version") != draft.version_of(text):
+            problem = CHANGED
+        elif "text" in sent:
+            draft.keep(path, sent["text"].replace("\r\n", "\n"))
+        else:
+            try:
+                section, _, key = sent.get("field", "").rpartition(".")
+                value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
+                draft.keep(path, draft.edited(text, section, key, value))
+            except InputError as error:
+                problem = str(error)
+        return page.html("editor.html", **editor(page, name, path, problem))
+
+    @router.post("/save/{name:path}")
+    def save(name: str) -> Response:
+        path = page.folder.study(name)
+        draft.save(path)
+        return page.html("editor.html", **editor(page, name, path))
+
+    @router.post("/discard/{name:path}")
+    def discard(name: str) -> Response:
+        path = page.folder.study(name)
+        draft.draft_path(path).unlink(missing_ok=True)
+        return page.html("editor.html", **editor(page, name, path))
+
+    @router.post("/run/{name:path}")
+    def run(name: str, sent: Form) -> Response:
+        path, verb = page.folder.study(name), verb_named(sent.get("verb", ""))
+        if path.suffix == ".toml" and (faults := draft.check(path, page.folder.root).faults):
+            raise InputError(name, f"is not run: {faults[0].message}")
+        draft.save(path)
+        place = page.folder.answers(name)
+        page.jobs.ask(verb.name, path, place, name=name, question=question_of(verb, sent))
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    @router.get("/jobs")
+    def jobs() -> Response:
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    @router.post("/jobs/{number}/cancel")
+    def cancel(number: int) -> Response:
+        page.jobs.cancel(number)
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    @router.post("/jobs/{number}/resume")
+    def resume(number: int) -> Response:
+        job = page.jobs.job(number)
+        if job is None:
+            raise InputError("The job", "is not known any more", cure="Run the verb again: it resumes too.")
+        task = job.task
+        page.jobs.ask(
+            task.verb,
+            task.study,
+            task.folder,
+            name=job.study,
+            title=job.title,
+            question=task.question,
+            values=task.values,
+        )
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    return router
+
+
+def _to(place: str) -> Response:
+    """Lead the browser to another page, asked by htmx or by itself."""
+    return RedirectResponse(place, status_code=303)
+
+
+def summary(page: Page, name: str) -> dict[str, Any]:
+    """Return what the list shows of a study: its answers, and the verdicts of its ranking."""
+    ranked = page.document(name, "rank") or {}
+    overall = ranked.get("overall") or []
+    counts = {
+        verdict: sum(row.get("verdict") == verdict for row in overall) for verdict in ("STABLE", "UNSTABLE")
+    }
+    best = next((row["name"] for row in overall if row.get("rank") == 1), None)
+    return {
+        "name": name,
+        "title": ranked.get("title", ""),
+        "answers": page.answered(name),
+        "best": best,
+        "counts": counts,
+        "count": len(overall),
+        "has_draft": draft.draft_path(page.folder.study(name)).is_file(),
+    }
+
+
+def editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, Any]:
+    """Return what the form and the text beside it show."""
+    if path.suffix != ".toml":
+        return {"name": name, "checked": None, "sections": (), "problem": "", "has_draft": False}
+    checked = draft.check(path, page.folder.root)
+    return {
+        "name": name,
+        "checked": checked,
+        "sections": form(checked),
+        "problem": problem,
+        "has_draft": draft.draft_path(path).is_file(),
+    }
+
+
+def running(page: Page, name: str) -> dict[str, Any]:
+    """Return what the panel of verbs shows."""
+    return {
+        "verbs": VERBS,
+        "answers": page.answered(name),
+        "jobs": page.jobs.all(),
+        "motions": [one.value for one in MotionModel],
+        "balls": [one.value for one in BallModel],
+    }
+
+
+def verb_named(name: str) -> Verb:
+    """Return a verb of the table."""
+    found = next((verb for verb in VERBS if verb.name == name), None)
+    if found is None:
+        raise InputError("verb", "is not known", got=f'"{printable(name)}"')
+    return found
+
+
+def question_of(verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
+    """Return the options of a verb as a form gives them; empty ones have their defaults."""
+    question: dict[str, Any] = {}
+    for name in (*verb.question, *(("motion", "ball") if verb.moves_a_cage else ())):
+        text = sent.get(name, "").strip()
+        if not text or name in ("animate", "cases"):
+            continue
+        if name == "vary":
+            question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
+        elif name in ("adaptive", "verdicts"):
+            question[name] = True
+        elif name in TYPED:
+            if not text.isascii() or not text.isdigit() or len(text) > 9:
+                raise InputError(f"--{name}", "must be a whole number", got=f'"{printable(text)}"')
+            question[name] = int(text)
+        else:
+            question[name] = text
+    return question

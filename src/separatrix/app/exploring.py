@@ -1,0 +1,191 @@
+"""Routes of the sliders: eta and margins of a changed study at once, its curve refined in the background."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Request
+from fastapi.responses import HTMLResponse, JSONResponse, Response
+
+from separatrix.app import draft
+from separatrix.app.page import Page
+from separatrix.app.plotly import spec
+from separatrix.cage_choice import cage_candidate, environment_of
+from separatrix.chain.solution import Solution, solve
+from separatrix.errors import InputError
+from separatrix.figures.hover import Series, stability_plot
+from separatrix.figures.style import VERMILION
+from separatrix.limits.map_parameters import parameters, value_in, varied
+from separatrix.notes import noted_warnings
+from separatrix.regular_file import reading_only_in
+from separatrix.study import Study
+from separatrix.study_file import read_study
+from separatrix.units import format_quantity
+
+POCKET_FRICTION = "cage.ball_cage_friction"
+SLIDERS = (
+    *("film.thickness", "film.race_friction", "cage.mass", "cage.pocket_clearance", "cage.land_clearance"),
+    POCKET_FRICTION,
+)
+OF_THE_CURVE = ("cage.mass", "cage.pocket_clearance", "cage.land_clearance")
+"""What moves the curve; the others move the bearing or the friction along it."""
+
+REACH = 4.0
+"""A slider goes from the study's value divided by this to it times this."""
+
+EXPLORED = "explored"
+"""Folder of the refined curves, in that of the answers."""
+
+
+class Slider(NamedTuple):
+    """One number of a study that can be moved: its value in SI and as text."""
+
+    key: str
+    label: str
+    value: float
+    text: str
+
+
+def routes(page: Page) -> APIRouter:
+    """Return the routes of the sliders."""
+    router = APIRouter()
+
+    @router.get("/explore/{name:path}", response_class=HTMLResponse)
+    def explore(name: str) -> Response:
+        study = _study(page, name)
+        return page.html("explore.html", name=name, title=study.title, sliders=sliders(study))
+
+    @router.get("/explored/{name:path}")
+    def explored(request: Request, name: str) -> Response:
+        values = _values(request)
+        with draft.ONE_AT_A_TIME, noted_warnings():
+            study = _study(page, name)
+            changed = varied(study, values) if values else study
+            found = _found(page, name, solve(changed), values)
+        return JSONResponse(found)
+
+    @router.post("/refine/{name:path}")
+    def refine(request: Request, name: str) -> Response:
+        values = {key: value for key, value in _values(request).items() if key in OF_THE_CURVE}
+        if not values:
+            raise InputError("The curve", "is that of the study")
+        place = _place(page, name, values)
+        words = ", ".join(key.rpartition(".")[2].replace("_", " ") for key in values)
+        title = f"stability, other {words}"
+        for job in page.jobs.all():  # an older place of the same slider is of no use any more
+            if job.is_active and job.study == name and job.title == title and job.task.values != values:
+                page.jobs.cancel(job.number)
+        job = page.jobs.ask(
+            "stability", page.folder.study(name), place, name=name, title=title, values=values
+        )
+        return JSONResponse({"job": job.number})
+
+    return router
+
+
+def _study(page: Page, name: str) -> Study:
+    with reading_only_in(page.folder.root):
+        return read_study(page.folder.study(name))
+
+
+def _values(request: Request) -> dict[str, float]:
+    """Return the values of the sliders that were moved, in SI."""
+    try:
+        return {key: float(value) for key, value in request.query_params.items() if key in SLIDERS}
+    except ValueError:
+        raise InputError("A slider", "must have a number") from None
+
+
+def sliders(study: Study) -> list[Slider]:
+    """Return the sliders of the numbers that a study has."""
+    units = {key: parameter.unit for key, parameter in parameters().items()}
+    values = {key: value_in(study, key) for key in SLIDERS}
+    if study.cage is not None:
+        values[POCKET_FRICTION] = _friction(solve(study))
+    return [
+        Slider(
+            key,
+            key.rpartition(".")[2].replace("_", " "),
+            value,
+            format_quantity(value, units.get(key, "-"), 3),
+        )
+        for key, value in values.items()
+        if value is not None and value > 0.0
+    ]
+
+
+def _friction(solution: Solution) -> float | None:
+    friction = solution.friction
+    return None if friction is None else float(friction.mean)
+
+
+def _place(page: Page, name: str, values: dict[str, float]) -> Path:
+    mark = hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
+    return page.folder.answers(name) / EXPLORED / mark
+
+
+def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) -> dict[str, Any]:
+    """Return eta, the margins on the finished curve that fits best, and the figure."""
+    eta, damping = solution.restitution.restitution_factor, solution.restitution.race_damping
+    of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
+    refined = page.dataset(_place(page, name, of_curve) / "stability.nc") if of_curve else None
+    saved = [page.dataset(page.folder.answers(name) / f"{verb}.nc") for verb in ("stability", "rank")]
+    data = refined if refined is not None else next((one for one in saved if one is not None), None)
+    friction = _friction(solution)
+    threshold = None if data is None or friction is None else threshold_on(data, friction)
+    return {
+        "values": {one.key: one.text for one in sliders(solution.study)},
+        "eta": f"{eta:.3f}",
+        "damping": format_quantity(damping, "N s/m", 3),
+        "friction": "not known" if friction is None else f"{friction:.3g}",
+        "threshold": "not known" if threshold is None else f"{threshold:.2f}",
+        "margin": "not known" if threshold is None else f"{threshold - eta:+.2f}",
+        "is_refined": not of_curve or refined is not None,
+        "has_curve": data is not None,
+        "whose": _whose(solution.study),
+        "figure": None if data is None else _figure(data, eta, friction),
+    }
+
+
+def _whose(study: Study) -> str:
+    made_of = cage_candidate(study)
+    place = environment_of(study.ranking) if study.ranking else None
+    return ", ".join(one for one in (made_of.name if made_of else "", place or "") if one)
+
+
+def threshold_on(data: xr.Dataset, friction: float) -> float:
+    """Return the restitution factor at which a saved curve falls below a friction; 1 where it never does."""
+    eta, critical = (data[name].values.astype(float) for name in ("restitution_factor", "critical_friction"))
+    known = np.isfinite(critical)
+    eta, critical = eta[known], critical[known]
+    below = np.flatnonzero(critical < friction)
+    if not below.size:
+        return 1.0
+    first = int(below[0])
+    if first == 0:
+        return float(eta[0])
+    (x0, x1), (y0, y1) = eta[first - 1 : first + 1], critical[first - 1 : first + 1]
+    return float(x0 + (x1 - x0) * (y0 - friction) / (y0 - y1))
+
+
+def _figure(data: xr.Dataset, eta: float, friction: float | None) -> dict[str, Any]:
+    """Return the stability curve with the changed bearing on it."""
+    plot = stability_plot(data)
+    figure = spec(plot)
+    figure["layout"]["shapes"] = []
+    if friction is not None:
+        here = Series(name="with the sliders", kind="points", x=(eta,), y=(friction,), colour=VERMILION)
+        trace = spec_of(here)
+        figure["data"].append(trace)
+    return figure
+
+
+def spec_of(one: Series) -> dict[str, Any]:
+    """Return the trace of the one point that the sliders move."""
+    look = {"color": one.colour, "size": 15, "symbol": "star", "line": {"width": 1, "color": "white"}}
+    return {"name": one.name, "x": one.x, "y": one.y, "mode": "markers", "marker": look, "hoverinfo": "name"}

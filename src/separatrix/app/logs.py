@@ -1,0 +1,158 @@
+"""Routes of the tribometer logs: drop them, see what was read and where running-in ends, move that end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import HTMLResponse, JSONResponse, Response
+
+from separatrix.app import draft
+from separatrix.app.files import LOGS, Folder
+from separatrix.app.page import Page, form_of
+from separatrix.errors import InputError
+from separatrix.figures.style import BLUE, GREY, VERMILION
+from separatrix.friction.file import friction_text
+from separatrix.friction.reduction import Reduction
+from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
+from separatrix.notes import noted_warnings
+from separatrix.present.text.tribometer import tribometer as in_words
+from separatrix.present.tribometer import page_data
+from separatrix.units import format_number
+
+Form = Annotated[dict[str, str], Depends(form_of)]
+UNITS = {"time": "s", "distance": "m", "cycles": ""}
+"""Axis along which running-in is cut -> its unit."""
+
+FRICTION_FILE = "friction.toml"
+
+
+def routes(page: Page) -> APIRouter:
+    """Return the routes of the logs."""
+    router = APIRouter()
+    place = page.folder.root / LOGS
+
+    def uploads() -> Folder:
+        place.mkdir(exist_ok=True)
+        return Folder(root=place)
+
+    @router.get("/logs", response_class=HTMLResponse)
+    def logs() -> Response:
+        return page.html("logs.html", names=names_of(place))
+
+    @router.put("/logs/{name}", response_class=HTMLResponse)
+    async def drop(name: str, request: Request) -> Response:
+        content = await request.body()
+        await run_in_threadpool(_keep, uploads(), name, content)
+        return page.html("log_list.html", names=names_of(place))
+
+    @router.get("/log/{name}", response_class=HTMLResponse)
+    def log(name: str, run_in: str = "") -> Response:
+        found = reduced(uploads().inside(name), run_in)
+        words = in_words(found, written=None, plots=None)
+        tests = [test(one) for one in found.reductions]
+        return page.html("log.html", name=name, tests=tests, words=words, run_in=run_in)
+
+    @router.get("/log-figure/{name}/{number}")
+    def figure(name: str, number: int, run_in: str = "") -> Response:
+        found = reduced(uploads().inside(name), run_in).reductions
+        if not 0 <= number < len(found):
+            raise InputError(name, "has no such test")
+        return JSONResponse(trace(found[number]))
+
+    @router.post("/logs-friction", response_class=HTMLResponse)
+    def friction(sent: Form) -> Response:
+        path = page.folder.new(f"{sent.get('name', '').strip().removesuffix('.toml')}.toml")
+        found = reduced([uploads().inside(name) for name in names_of(place)], "", complete=True)
+        if found.friction_tests is None:
+            cure = "Name what slid on what in a column map, and use the command line."
+            raise InputError("The logs", "do not all state their materials", cure=cure)
+        path.write_text(friction_text(found.friction_tests), encoding="utf-8")
+        return page.html("written.html", name=path.name)
+
+    return router
+
+
+def names_of(place: Path) -> list[str]:
+    """Return the names of the logs in a folder."""
+    if not place.is_dir():
+        return []
+    files = (path for path in place.iterdir() if path.is_file() and not path.name.startswith("."))
+    return sorted(path.name for path in files if path.suffix.casefold() not in OTHERS)
+
+
+def _keep(folder: Folder, name: str, content: bytes) -> None:
+    """Keep a log that was dropped; one of the same name and content is there already."""
+    known = folder.root / name
+    if "/" not in name and known.is_file() and known.read_bytes() == content:
+        return
+    folder.new(name).write_bytes(content)
+
+
+def reduced(paths: Path | list[Path], run_in: str, *, complete: bool = False) -> ReducedLogs:
+    """Return what logs show; `run_in` is where running-in ends, or empty to find it."""
+    with draft.ONE_AT_A_TIME, noted_warnings():
+        return tribometer(paths, run_in=run_in or None, complete=complete)
+
+
+def test(one: Reduction) -> dict[str, Any]:
+    """Return what the page shows of a test beside its figure."""
+    found, unit = one.test, UNITS[one.test.run_in_axis]
+    low, high = found.interval
+    return {
+        "source": found.source,
+        "friction": format_number(found.friction, 3),
+        "interval": f"{format_number(low, 3)} to {format_number(high, 3)}",
+        "run_in": f"{format_number(found.run_in_end, 4)} {unit}".strip(),
+        "method": found.run_in_method,
+        "axis": found.run_in_axis,
+        "unit": unit,
+        "flags": list(found.flags),
+    }
+
+
+def trace(one: Reduction) -> dict[str, Any]:
+    """Return the figure of a test: friction with its extremes, the cut of running-in, the steady mean."""
+    data, found = page_data(one), one.test
+    unit = UNITS[found.run_in_axis]
+    along = data["trace"].values.tolist()
+    label = f"{found.run_in_axis} [{unit}]" if unit else found.run_in_axis
+    return {
+        "data": [*_lines(along, data)],
+        "layout": {
+            "title": {"text": "", "font": {"size": 15}},
+            "xaxis": {"title": {"text": label}, "zeroline": False},
+            "yaxis": {"title": {"text": "friction [-]"}, "zeroline": False},
+            "hovermode": "x unified",
+            "margin": {"l": 60, "r": 20, "t": 20, "b": 50},
+            "legend": {"orientation": "h", "y": -0.25},
+            "shapes": [
+                _upright(found.run_in_end, VERMILION, "running-in ends"),
+                _mean(found.run_in_end, found.steady_end, found.friction),
+            ],
+        },
+        "cut": {"at": found.run_in_end, "unit": unit},
+    }
+
+
+def _lines(along: list[float], data: Any) -> Iterator[dict[str, Any]]:
+    for name, words, look in (
+        ("trace_low", "lowest", {"color": GREY, "width": 0.7}),
+        ("trace_high", "highest", {"color": GREY, "width": 0.7}),
+        ("trace_mean", "mean", {"color": BLUE, "width": 1.5}),
+    ):
+        yield {"x": along, "y": data[name].values.tolist(), "name": words, "mode": "lines", "line": look}
+
+
+def _upright(at: float, colour: str, words: str) -> dict[str, Any]:
+    line = {"color": colour, "width": 2, "dash": "dash"}
+    ends = {"x0": at, "x1": at, "y0": 0, "y1": 1, "yref": "paper"}
+    return {"type": "line", "line": line, "label": {"text": words, "textangle": -90}, **ends}
+
+
+def _mean(start: float, end: float, friction: float) -> dict[str, Any]:
+    line = {"color": VERMILION, "width": 1.5}
+    return {"type": "line", "line": line, "x0": start, "x1": end, "y0": friction, "y1": friction}

@@ -1,0 +1,166 @@
+"""Routes of the answers: tables, figures to hover over, files, the moving cage, a point of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Depends
+from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
+
+from separatrix.app.files import ANSWER_SUFFIXES
+from separatrix.app.motion import motion
+from separatrix.app.page import Page, form_of
+from separatrix.app.plotly import spec
+from separatrix.errors import InputError
+from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
+from separatrix.figures.space import is_in_space
+from separatrix.limits.map_parameters import KICK, RESTITUTION
+from separatrix.questions import VERBS
+from separatrix.units import format_number, printable, shown
+
+Form = Annotated[dict[str, str], Depends(form_of)]
+
+PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot]]] = {
+    "traction": {"curves": traction_plot},
+    "stability": {"curve": stability_plot},
+    "rank": {"curve": stability_plot, "candidates": candidates_plot},
+    "map": {"map": map_plot},
+}
+"""Verb -> its figures to hover over."""
+
+SHOWN = (".png",)
+POINT = "points"
+"""Folder of the runs at points of a map, in that of the answers."""
+
+SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".txt": "text/plain"}
+"""Files that the browser shows; all others it keeps."""
+
+
+def routes(page: Page) -> APIRouter:
+    """Return the routes of the answers."""
+    router = APIRouter()
+
+    @router.get("/answer/{verb}/{name:path}", response_class=HTMLResponse)
+    def answer(verb: str, name: str, environment: int = 0) -> Response:
+        found = page.document(name, known_verb(verb))
+        if found is None:
+            raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
+        place = page.folder.answers(name)
+        return page.html(
+            "answer.html",
+            name=name,
+            verb=verb,
+            found=found,
+            text=_text(place / f"{verb}.txt"),
+            plots=[*PLOTS.get(verb, {})],
+            pictures=_files(place, verb, SHOWN),
+            files=_files(place, verb, ANSWER_SUFFIXES),
+            folder=page.folder.name(place),
+            environment=environment,
+            answers=page.answered(name),
+            jobs=page.jobs.all(),
+        )
+
+    @router.get("/plot/{verb}/{figure}/{name:path}")
+    def plot(verb: str, figure: str, name: str, environment: int | None = None) -> Response:
+        draw = PLOTS.get(verb, {}).get(figure)
+        data = page.dataset(page.folder.answers(name) / f"{known_verb(verb)}.nc")
+        if draw is None or data is None:
+            raise InputError(f"{name}: {verb}", "has no such figure")
+        if environment is not None and "environment" in data.dims and figure == "curve":
+            data = data.isel(environment=min(max(environment, 0), data.sizes["environment"] - 1))
+        return JSONResponse(spec(draw(data)))
+
+    @router.get("/file/{name:path}")
+    def file(name: str) -> Response:
+        path = page.folder.inside(name)
+        if not path.is_file() or path.suffix not in ANSWER_SUFFIXES:
+            raise InputError(shown(name), "is not a file of an answer")
+        kind = SHOWN_INLINE.get(path.suffix)
+        if kind is None:
+            return FileResponse(path, filename=path.name)
+        return FileResponse(path, media_type=kind)
+
+    @router.get("/cage/{name:path}", response_class=HTMLResponse)
+    def cage(name: str, point: str = "") -> Response:
+        data = _run(page, name, point)
+        found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
+        words = str(data.attrs.get("title", name))
+        return page.html(
+            "cage.html", name=name, point=point, title=words, found=found, in_space=is_in_space(data)
+        )
+
+    @router.get("/motion/{name:path}")
+    def moving(name: str, point: str = "") -> Response:
+        data = _run(page, name, point)
+        if is_in_space(data):
+            raise InputError(name, "moves in space", cure="Open simulation.html of the answer.")
+        return JSONResponse(motion(data))
+
+    @router.post("/point/{name:path}", response_class=HTMLResponse)
+    def point(name: str, sent: Form) -> Response:
+        path = page.folder.study(name)
+        data = page.dataset(page.folder.answers(name) / "map.nc")
+        if data is None:
+            raise InputError(f"{name}: map", "has no answer yet", cure="Run the map first.")
+        values = {str(data[f"{axis}_parameter"].values): _nearest(data, axis, sent) for axis in "xy"}
+        folder = "_".join(f"{key.rpartition('.')[2]}-{format_number(v, 4)}" for key, v in values.items())
+        place = page.folder.answers(name) / POINT / printable(folder, 100).replace("/", "-")
+        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"]))}
+        if RESTITUTION in values:
+            question["restitution_factor"] = values.pop(RESTITUTION)
+        page.jobs.ask(
+            "simulate", path, place, name=name, title=f"simulate {folder}", question=question, values=values
+        )
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    return router
+
+
+def known_verb(name: str) -> str:
+    """Return the name of a verb; another one is refused."""
+    if name not in [verb.name for verb in VERBS]:
+        raise InputError("verb", "is not known", got=f'"{printable(name)}"')
+    return name
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
+
+
+def _files(place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
+    """Return the names of the files of an answer."""
+    if not place.is_dir():
+        return []
+    stems = (verb, "simulation") if verb == "simulate" else (verb,)
+    return sorted(
+        path.name
+        for path in place.iterdir()
+        if path.suffix in suffixes and path.is_file() and path.stem.startswith(stems)
+    )
+
+
+def _run(page: Page, name: str, point: str) -> xr.Dataset:
+    """Return the dataset of a simulated run: that of the study, or one at a point of its map."""
+    place = page.folder.answers(name)
+    if point:
+        place = page.folder.inside(f"{page.folder.name(place)}/{POINT}/{point}")
+    data = page.dataset(place / "simulate.nc")
+    if data is None:
+        raise InputError(f"{name}: simulate", "has no answer yet", cure="Run the verb.")
+    return data
+
+
+def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
+    """Return the value of the map's axis next to the place that was clicked, in SI."""
+    from separatrix.figures.map import axis_values
+
+    try:
+        at = float(sent.get(axis, ""))
+    except ValueError:
+        raise InputError(axis, "must be a number") from None
+    return float(data[axis].values[int(np.argmin(np.abs(axis_values(data, axis) - at)))])

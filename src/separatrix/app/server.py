@@ -1,0 +1,117 @@
+"""The server of the local page: its routes behind the guard, on this machine only."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import socket
+from collections.abc import AsyncIterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import uvicorn
+from fastapi import FastAPI, Request
+from fastapi.responses import FileResponse, Response
+from fastapi.staticfiles import StaticFiles
+
+from separatrix.app import editing, exploring, logs, results
+from separatrix.app.files import Folder
+from separatrix.app.guard import Guard
+from separatrix.app.jobs import Jobs
+from separatrix.app.page import Page
+from separatrix.errors import InputError, SeparatrixError
+
+HOST = "127.0.0.1"
+MOST_CONNECTIONS = 200
+IDLE = 10
+"""Time after which an idle connection is closed [s]."""
+
+STATIC = Path(__file__).with_name("static")
+A_DAY = {"cache-control": "max-age=86400"}
+
+
+def plotly_file() -> Path:
+    """Return the file of JavaScript in the Python package of Plotly, without importing the package."""
+    found = find_spec("plotly")
+    if found is None or found.origin is None:
+        raise InputError(
+            "separatrix app", "needs its extra", cure='Install it: pip install "separatrix[app]".'
+        )
+    return Path(found.origin).parent / "package_data" / "plotly.min.js"
+
+
+def application(root: Path) -> FastAPI:
+    """Return the page of a folder, unguarded."""
+    page, drawing = Page(folder=Folder(root=root), jobs=Jobs(root)), plotly_file()
+
+    @contextlib.asynccontextmanager
+    async def life(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        page.jobs.close()
+
+    app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
+    app.state.root = root
+    for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
+        app.include_router(routes(page))
+
+    @app.exception_handler(SeparatrixError)
+    def refused(request: Request, error: SeparatrixError) -> Response:
+        problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
+        template = "refusal.html" if "hx-request" in request.headers else "refused.html"
+        return page.html(template, status=422, faults=[str(one) for one in problems])
+
+    @app.get("/static/plotly.min.js")
+    def plotly() -> FileResponse:
+        return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
+
+    app.mount("/static", StaticFiles(directory=STATIC))
+    return app
+
+
+def listening(port: int) -> socket.socket:
+    """Return a socket that listens on this machine only; port 0 takes any free one.
+
+    Raises
+    ------
+    InputError
+        The port is taken.
+    """
+    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        found.bind((HOST, port))
+    except OSError as error:
+        found.close()
+        cure = "Choose another one, or leave it out for any that is free."
+        raise InputError("--port", "cannot be used", got=f"{port} ({error.strerror})", cure=cure) from None
+    found.listen(128)
+    return found
+
+
+def link_of(port: int, token: str) -> str:
+    """Return the link that opens the page."""
+    return f"http://{HOST}:{port}/?token={token}"
+
+
+class Server(uvicorn.Server):
+    """The page of a folder behind its guard; `link` opens it."""
+
+    def __init__(self, root: Path, *, port: int = 0) -> None:
+        self.socket, token = listening(port), secrets.token_urlsafe(24)
+        self.link = link_of(self.socket.getsockname()[1], token)
+        guarded = Guard(application(root), token=token, port=self.socket.getsockname()[1])
+        super().__init__(
+            uvicorn.Config(
+                guarded,
+                log_level="warning",
+                access_log=False,
+                server_header=False,
+                limit_concurrency=MOST_CONNECTIONS,
+                timeout_keep_alive=IDLE,
+                timeout_graceful_shutdown=3,
+                lifespan="on",
+            )
+        )
+
+    def serve_until_ended(self) -> None:
+        """Serve until Ctrl-C."""
+        self.run(sockets=[self.socket])
