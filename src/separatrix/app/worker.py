@@ -158,8 +158,8 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
             verb, study, question, jobs=_threads(), folder=task.folder, cluster=None, progress=reporter
         )
         send(Report(number=task.number, message="Drawing the figures and writing the files."))
-        answer = document(verb.name, found.record, study, grouped(notes))
-        save_answer(task.folder, found.record, study, answer)
+        answer = document(verb.name, found.record, found.study, grouped(notes))
+        save_answer(task.folder, found.record, found.study, answer)
     if found.is_complete:
         return "finished", ""
     return "cancelled", "The answer has what was finished. Resume to go on."

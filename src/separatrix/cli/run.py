@@ -69,7 +69,7 @@ def run(verb: Verb, name: str, options: Options) -> int:
         if folder is not None:
             stack.enter_context(writable_folder(folder))
         found = _computed(verb, study, options, folder)
-        _deliver(verb, found.record, study, grouped(notes), folder, options)
+        _deliver(verb, found.record, found.study, grouped(notes), folder, options)
     if found.is_complete:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
+    comparison,
     contact,
     envelope,
     map,
@@ -53,7 +54,7 @@ def draw(
     Parameters
     ----------
     verb : str
-        The question; `compare` draws two simulations together.
+        The question; `compare` draws two simulations, stability curves or rankings together.
     data, other : Dataset
         From `present.dataset` or `present.load`; only `compare` takes a second one.
     names : tuple of str
@@ -68,7 +69,8 @@ def draw(
                 for one, name in zip((data, other), names, strict=True)
             ]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
-            yield "comparison", settled(simulation.comparison(pair[0][0], pair[1][0], titles))
+            together = comparison.curves if "restitution_factor" in data.sizes else simulation.comparison
+            yield "comparison", settled(together(pair[0][0], pair[1][0], titles))
         elif verb in FIGURES:
             data = literal_texts(data)
             for name, figure in FIGURES[verb](data):

@@ -55,7 +55,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
     """
     from separatrix import __version__
     from separatrix.present.shapes import all_notes, shape
-    from separatrix.study_file import resolved
+    from separatrix.study_file import provenance_of, resolved
 
     with null_if_not_finite() as left_out:
         body = plain(Group(shape(answer)), verb)
@@ -75,6 +75,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         "seed": study.stability.seed,
         **body,
         "warnings": warnings,
+        "provenance": plain(provenance_of(study, verb), "provenance"),
     }
 
 
