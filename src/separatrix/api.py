@@ -325,6 +325,7 @@ def sweep(
     *,
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
+    margins: bool = False,
     jobs: int | None = None,
     folder: str | Path | None = None,
     cluster: str | None = None,
@@ -332,7 +333,7 @@ def sweep(
 ) -> Answer[Sweep]:
     """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
-    question: dict[str, Any] = {"vary": ranges, "cases": cases, "verdicts": verdicts}
+    question: dict[str, Any] = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
         return _answer("sweep", study, lambda one: verbs.sweep(one, runner, **question), **question)
 

@@ -110,7 +110,7 @@ VERBS: tuple[Verb, ...] = (
         epilog="Every value of one --vary goes with every value of the others. A case that is refused is a "
         "row with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
         '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
-        question=("vary", "cases", "verdicts"),
+        question=("vary", "cases", "verdicts", "margins"),
         keeps_runs=True,
     ),
 )

@@ -13,6 +13,7 @@ from separatrix.figures import (
     chain,
     comparison,
     contact,
+    envelope,
     map,
     mobility,
     ranking,
@@ -35,7 +36,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
-    "sweep": map.sweep_figures,
+    "sweep": envelope.figures,
     "contact": contact.figures,
 }
 """Verb -> what yields its pictures, each with the name of its file."""

@@ -17,6 +17,7 @@ from separatrix.chain.mobility import SlipLaw
 from separatrix.errors import SeparatrixError
 from separatrix.present.walk import Group, Leaf, Table, shape
 from separatrix.study import (
+    ClearanceState,
     ContactPressure,
     Guidance,
     KinematicModel,
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 Document = dict[str, Any]
 
 SPELLED = (
-    *(CageMotion, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape, PressureSlip, Race),
-    *(SlipLaw, TractionModel, Worn),
+    *(CageMotion, ClearanceState, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape),
+    *(PressureSlip, Race, SlipLaw, TractionModel, Worn),
 )
 """Enumerations whose values are shown; of the others the names."""
 
