@@ -161,7 +161,8 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
         answer = document(verb.name, found.record, study, grouped(notes))
         save_answer(task.folder, found.record, study, answer)
     if found.is_complete:
-        return "finished", ""
+        taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
+        return "finished", taken
     return "cancelled", "The answer has what was finished. Resume to go on."
 
 
