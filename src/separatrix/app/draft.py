@@ -21,6 +21,7 @@ from separatrix.regular_file import reading_only_in
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.study_file.document import load
+from separatrix.study_file.templates import is_name
 from separatrix.toml_text import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
 
@@ -175,7 +176,7 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         if key in table:
             del table[key]
     else:
-        _put(table, key, typed(value))
+        _put(table, key, typed(value, is_name=is_name(section, key)))
     return tomlkit.dumps(document)
 
 
@@ -193,10 +194,10 @@ def with_unit(value: str, unit: str) -> str:
     return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
 
 
-def typed(value: str) -> Any:
-    """Return a value of a form as TOML has it: a bare number, a list or table, else text."""
+def typed(value: str, *, is_name: bool = False) -> Any:
+    """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
     value = value.strip()
-    if _NUMBER.fullmatch(value):
+    if not is_name and _NUMBER.fullmatch(value):
         return float(value) if re.search(r"[.eE]", value) else int(value)
     if value[0] in "[{":
         try:

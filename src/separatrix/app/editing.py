@@ -195,7 +195,7 @@ def question_of(verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
             continue
         if name == "vary":
             question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-        elif name in ("adaptive", "verdicts"):
+        elif name in ("adaptive", "verdicts", "margins"):
             question[name] = True
         elif name in TYPED:
             if not text.isascii() or not text.isdigit() or len(text) > 9:

@@ -207,7 +207,8 @@ class Jobs:
         if self._state.pipe is pipe:
             self._state.process = self._state.pipe = None
         for job in [job for job in self._state.jobs.values() if job.state == RUNNING]:
-            words = "The computing process ended. Finished runs are kept: resume to go on."
+            words = "The computing process ended; the terminal of `separatrix app` may say why. "
+            words += "Finished runs are kept: resume to go on."
             self._change(job.number, state="failed", message=words, ended=time.monotonic())
         self._feed()
 

@@ -56,6 +56,7 @@ def application(root: Path) -> FastAPI:
         page.jobs.close()
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
+    app.state.root, app.state.page = root, page
     for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
         app.include_router(routes(page))
 

@@ -6,7 +6,6 @@ import _thread
 import os
 import threading
 import time
-import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
@@ -74,7 +73,8 @@ class Reporter:
 def work(pipe: Connection) -> None:
     """Compute tasks from a pipe until it ends; the body of the process.
 
-    A cancel interrupts the task in hand as Ctrl-C would: what was finished is kept and answered.
+    A cancel interrupts the task in hand as Ctrl-C would: what was finished is kept and answered. A fault of
+    ours ends the process with its place in the terminal, and the page begins another one.
     """
     waiting: SimpleQueue[Task | None] = SimpleQueue()
     in_hand: list[int] = []
@@ -123,8 +123,6 @@ def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) 
     except SeparatrixError as error:
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
         state, message = "refused", "\n".join(str(one) for one in problems)
-    except Exception:  # noqa: BLE001 - a fault of ours is shown in the page with its place
-        state, message = "failed", "A fault of separatrix:\n" + traceback.format_exc(limit=-3)
     in_hand.clear()
     end = Report(number=task.number, state=state, message=message)
     try:
@@ -158,8 +156,8 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
             verb, study, question, jobs=_threads(), folder=task.folder, cluster=None, progress=reporter
         )
         send(Report(number=task.number, message="Drawing the figures and writing the files."))
-        answer = document(verb.name, found.record, study, grouped(notes))
-        save_answer(task.folder, found.record, study, answer)
+        answer = document(verb.name, found.record, found.study, grouped(notes))
+        save_answer(task.folder, found.record, found.study, answer)
     if found.is_complete:
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken

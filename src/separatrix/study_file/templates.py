@@ -14,6 +14,7 @@ from separatrix import library
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import (
     BallModel,
+    ClearanceState,
     ContactPressure,
     Guidance,
     KinematicModel,
@@ -75,6 +76,7 @@ _CHOICES: dict[str, type[Enum]] = {
     "traction.pressure": ContactPressure,
     "traction.pressure_slip": PressureSlip,
     "cage.guidance": Guidance,
+    "cage.clearances": ClearanceState,
     "cage.pocket_shape": PocketShape,
     "cage.ball": BallModel,
     "cage.motion": MotionModel,
@@ -188,6 +190,11 @@ def choices_of(section: str, key: str) -> tuple[tuple[str, ...], bool]:
     if name in _CHOICES:
         return tuple(str(one.value) for one in _CHOICES[name]), False
     return (library.names(_NAMES[name]), True) if name in _NAMES else ((), True)
+
+
+def is_name(section: str, key: str) -> bool:
+    """Whether a key holds a name, which is text even if it looks like a number: steel 52100."""
+    return key in TEXTS or bool(choices_of(section, key)[0])
 
 
 def template_workbook() -> bytes:

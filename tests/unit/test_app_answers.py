@@ -1,0 +1,195 @@
+"""What the page runs and shows: jobs with progress, answers, figures, points of a map, sliders, logs."""
+
+import json
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from raw_logs import anton_paar
+from test_cli_answers import SMALL
+
+from separatrix.app.server import application
+from separatrix.chain.solution import solve
+from separatrix.limits.map_parameters import varied
+from separatrix.present import load
+from separatrix.study_file import read_study
+
+LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
+PATIENCE = 300.0
+"""Time for a job, kernels compiled first [s]."""
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    """A folder with a short study and a long one."""
+    place = tmp_path_factory.mktemp("studies")
+    (place / "small.toml").write_text(SMALL)
+    (place / "long.toml").write_text(LONG)
+    return place
+
+
+@pytest.fixture(scope="module")
+def page(root):
+    """The page of that folder, with its answers to `rank` and to a small `map`."""
+    with TestClient(application(root)) as client:
+        client.post("/run/small.toml", data={"verb": "rank"})
+        axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2"}
+        client.post("/run/small.toml", data={"verb": "map", "runs": "1", **axes})
+        until(client, lambda jobs: all("finished" in job for job in jobs))
+        yield client
+
+
+def jobs(page):
+    """Return the jobs, the newest first, each as the state and text that is shown."""
+    return page.get("/jobs").text.split('<article class="job ')[1:]
+
+
+def until(page, holds):
+    """Wait until something holds for the jobs."""
+    end = time.monotonic() + PATIENCE
+    while not holds(found := jobs(page)):
+        assert time.monotonic() < end, found
+        assert not any(job.startswith(("refused", "failed")) for job in found), found
+        time.sleep(0.1)
+    return found
+
+
+def test_an_answer_is_that_of_the_command_line(page, root):
+    """The same files in the same folder, and the verdicts of its document in the table."""
+    found = json.loads((root / "small" / "rank.json").read_text())
+    text = page.get("/answer/rank/small.toml").text
+    for row in found["overall"]:
+        assert row["name"] in text
+        assert row["verdict"] in text
+        assert f"{row['margin']:+.2f}" in text
+    assert (root / "small" / "rank.xlsx").exists()
+
+
+@pytest.mark.parametrize(
+    ("figure", "names"),
+    [
+        ("rank/curve", {"linear limit", "half of 4 runs whirl"}),
+        ("rank/candidates", {"overall"}),
+        ("map/map", {"share of the runs that whirl"}),
+    ],
+)
+def test_a_figure_has_its_series_and_a_text_at_each_point(page, figure, names):
+    """What is hovered over is the series that the report has."""
+    found = page.get(f"/plot/{figure}/small.toml").json()
+    assert names <= {trace.get("name") for trace in found["data"]}
+    texts = [len(trace["text"]) == len(trace["x"]) for trace in found["data"] if trace.get("text")]
+    assert texts
+    assert all(texts)
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.31, 0.06), (0.88, 0.49)])
+def test_a_click_in_a_map_runs_the_point_next_to_it(page, root, x, y):
+    """The run has the friction, and the race damping of the restitution factor, of that point."""
+    page.post("/point/small.toml", data={"x": x, "y": y})
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    eta, friction = round(x, 1), {0.06: 0.05, 0.49: 0.5}[y]
+    place = root / "small" / "points" / f"restitution_factor-{eta:g}_ball_cage_friction-{friction:g}"
+    data = load(place / "simulate.nc")
+    assert float(data["cage_ball_cage_friction"]) == pytest.approx(friction)
+    assert float(data["kick"]) == pytest.approx(float(load(root / "small" / "map.nc")["kick"]))
+    seen = page.get(f"/motion/small.toml?point={place.name}").json()
+    assert len(seen["offset"]) == len(seen["time"]) == len(seen["force"])
+    true = np.hypot(*data["position"].values[[0, -1]].T)
+    assert seen["true_offset"][0] == pytest.approx(true[0], rel=1e-4, abs=1e-12)  # 5 digits are sent
+    assert seen["true_offset"][-1] == pytest.approx(true[1], rel=1e-4)
+    assert page.get(f"/cage/small.toml?point={place.name}").status_code == 200
+
+
+def test_the_damping_of_a_point_is_that_of_its_restitution_factor(page, root):
+    """Races that give way less return more; both points above are of one cage."""
+    places = sorted((root / "small" / "points").iterdir())
+    low, high = (float(load(place / "simulate.nc")["cage_race_damping"]) for place in places)
+    assert 0.0 < low < high
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"film.thickness": 2e-6},
+        {"film.race_friction": 0.2, "cage.ball_cage_friction": 0.2},
+        {"cage.mass": 0.05},
+    ],
+)
+def test_sliders_show_what_the_chain_computes(page, root, values):
+    """Eta of the changed study; threshold and margin on the finished curve; other cages are to be refined."""
+    found = page.get("/explored/small.toml", params=values).json()
+    changed = solve(varied(read_study(root / "small.toml"), values))
+    eta = changed.restitution.restitution_factor
+    assert found["eta"] == f"{eta:.3f}"
+    assert float(found["margin"]) == pytest.approx(float(found["threshold"]) - eta, abs=0.01)  # 2 decimals
+    assert found["is_refined"] == ("cage.mass" not in values)
+
+
+def test_a_slider_of_the_cage_refines_its_curve(page):
+    """The curve of the changed cage is computed once, and then belongs to the values."""
+    page.post("/refine/small.toml?cage.mass=0.05")
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    assert page.get("/explored/small.toml?cage.mass=0.05").json()["is_refined"]
+
+
+def test_a_slider_out_of_range_is_refused_in_words(page):
+    """As a study file would be."""
+    found = page.get("/explored/small.toml?film.race_friction=7")
+    assert (found.status_code, "race_friction" in found.text) == (422, True)
+
+
+def test_a_job_is_cancelled_and_resumed(page, root):
+    """What was finished is in the answer and in the ledger; the second call takes it from there."""
+    page.post("/run/long.toml", data={"verb": "rank"})
+    until(page, lambda jobs: "<progress max" in jobs[0])
+    number = jobs(page)[0].partition("/jobs/")[2].partition("/")[0]
+    page.post(f"/jobs/{number}/cancel")
+    end = time.monotonic() + PATIENCE
+    while jobs(page)[0].startswith("running"):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    assert jobs(page)[0].startswith("cancelled")
+    assert (root / "long" / "finished-runs.sqlite").exists()
+    assert "Resume" in jobs(page)[0]
+    page.post(f"/jobs/{number}/resume")
+    assert jobs(page)[0].startswith(("running", "waiting"))
+    page.post(f"/jobs/{int(number) + 1}/cancel")
+    until(page, lambda jobs: jobs[0].startswith("cancelled"))
+
+
+def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
+    """The page says so, and computes the next question in a new process."""
+    state = page.app.state.page.jobs._state
+    page.post("/run/long.toml", data={"verb": "rank"})
+    until(page, lambda jobs: jobs[0].startswith("running"))
+    os.kill(state.process.pid, signal.SIGKILL)
+    end = time.monotonic() + 20
+    while not jobs(page)[0].startswith("failed"):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert "resume to go on" in jobs(page)[0]
+    page.post("/run/small.toml", data={"verb": "bearing"})
+    end = time.monotonic() + PATIENCE
+    while not jobs(page)[0].startswith("finished"):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def test_a_dropped_log_is_read_and_its_cut_is_moved(page, root):
+    """Friction of the steady part, found and then cut by hand."""
+    time_ = np.arange(0.0, 600.0, 0.5)
+    log = anton_paar(0.2 + 0.3 * np.exp(-time_ / 40.0), time_)
+    assert page.put("/logs/test.txt", content=log).status_code == 200
+    found = page.get("/log/test.txt").text
+    assert "What was read" in found
+    moved = page.get("/log/test.txt?run_in=300 s").text
+    assert "running-in ends at 300 s" in moved
+    figure = page.get("/log-figure/test.txt/0?run_in=300 s").json()
+    assert figure["layout"]["shapes"][0]["x0"] == pytest.approx(300.0, abs=1.0)  # the next row
+    assert page.put("/logs/test.txt", content=log).status_code == 200  # the same again
+    assert page.put("/logs/test.txt", content=log + b" ").status_code == 422
+    assert page.get("/log/test.txt?run_in=never").status_code == 422

@@ -1,0 +1,163 @@
+"""A study in the page: text and form are one, drafts outlive the server, faults are beside their keys."""
+
+import re
+import tomllib
+
+import pytest
+from fastapi.testclient import TestClient
+from test_cli_answers import SMALL
+
+from separatrix.app import draft
+from separatrix.app.form import form
+from separatrix.app.server import application
+from separatrix.errors import InputError
+from separatrix.study_file import read_study, shipped_studies, template
+from separatrix.study_file.sections import READERS
+from separatrix.study_file.templates import template_keys
+
+COMMENTED = """# a study
+title = "One"   # its name
+
+[cage]
+mass = "25 g"              # weighed
+guidance = "outer"
+"""
+
+
+@pytest.fixture
+def page(tmp_path):
+    """The page of a folder with one study, without its guard."""
+    (tmp_path / "small.toml").write_text(SMALL)
+    with TestClient(application(tmp_path)) as client:
+        yield client
+
+
+def version(text):
+    """Version of the study that a form was drawn from."""
+    return re.search('name="version" value="([0-9a-f]+)"', text)[1]
+
+
+def edit(page, **fields):
+    """Change a key of small.toml, as the form of a fresh page does."""
+    fields = {"version": version(page.get("/study/small.toml").text), **fields}
+    return page.post("/edit/small.toml", data=fields)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value", "expected"),
+    [
+        ("cage", "mass", "30 g", 'mass = "30 g"              # weighed'),
+        ("cage", "mass", "", None),
+        ("cage", "land_friction", "0.2", "land_friction = 0.2"),
+        ("cage", "pocket_angles", '["0 deg", "30 deg"]', 'pocket_angles = ["0 deg", "30 deg"]'),
+        ("bearing", "ball_count", "13", "[bearing]\nball_count = 13"),
+        ("film", "thickness", "0.5 um +- 20 %", 'thickness = "0.5 um +- 20 %"'),
+        ("", "title", 'Two "quoted"', 'title = "Two \\"quoted\\""   # its name'),
+    ],
+)
+def test_one_key_is_changed_and_the_rest_stays(section, key, value, expected):
+    """Comments, order and all other lines are those of before."""
+    text = draft.edited(COMMENTED, section, key, value)
+    others = [line for line in COMMENTED.splitlines() if not line.startswith(f"{key} =")]
+    assert [line for line in text.splitlines() if line in others][: len(others)] == others
+    assert expected is None or expected in text
+    assert (key in tomllib.loads(text).get(section, tomllib.loads(text))) == (expected is not None)
+
+
+def test_text_that_is_not_toml_is_mended_as_text():
+    """A form cannot change what it cannot read."""
+    with pytest.raises(InputError, match="Mend it in the text first"):
+        draft.edited("title = ", "cage", "mass", "1 g")
+
+
+@pytest.mark.parametrize("study", ["template", *shipped_studies()])
+def test_a_form_sent_back_unchanged_changes_no_value(study):
+    """Number and unit of every field make the same study again."""
+    text = template() if study == "template" else shipped_studies()[study].read_text()
+    checked = draft.Checked(text=text, study=None, faults=())
+    again = text
+    for section in form(checked):
+        for field in section.fields:
+            if field.value:
+                again = draft.edited(
+                    again, field.section, field.key, draft.with_unit(field.value, field.unit)
+                )
+    assert tomllib.loads(again) == tomllib.loads(text)
+
+
+def test_the_form_has_every_key_of_the_records():
+    """What a study file may hold can be typed in; wholes tables are left to the text."""
+    shown = {(one.section, one.key) for one in template_keys()}
+    lacking = {(section, key) for section, readers in READERS.items() for key in readers} - shown
+    assert lacking == {("ranking", "candidates")}
+
+
+def test_a_wrong_unit_is_refused_beside_its_field(page):
+    """The message is in the field's own form; the study file itself is not touched."""
+    found = edit(page, field="cage.mass", value="25 mm", unit="g")
+    field = re.search(r'<form class="field wrong".*?</form>', found.text, re.DOTALL)[0]
+    assert 'value="cage.mass"' in field
+    assert "needs a unit of mass" in field
+    assert "1 fault to mend" in found.text
+    assert read_study(_folder(page) / "small.toml")
+    mended = edit(page, field="cage.mass", value="26", unit="g").text
+    assert "Every value is accepted" in mended
+    assert "mass = &#34;26 g&#34;" in mended  # the text beside it follows
+
+
+def _folder(page):
+    return page.app.state.root
+
+
+def test_the_form_follows_the_text(page):
+    """The other way round."""
+    text = SMALL.replace("[cage]", '[cage]\nmass = "31 g"')
+    found = edit(page, text=text).text
+    assert re.search(r'id="f-cage-mass" name="value" value="31"', found)
+
+
+def test_an_older_tab_changes_nothing(page):
+    """What another tab saved meanwhile is shown instead."""
+    old = version(page.get("/study/small.toml").text)
+    edit(page, field="cage.mass", value="26", unit="g")
+    found = page.post("/edit/small.toml", data={"version": old, "field": "cage.mass", "value": "99 g"}).text
+    assert "Another tab changed this study" in found
+    assert "99 g" not in draft.current_text(_folder(page) / "small.toml")
+
+
+def test_a_draft_outlives_the_server_and_is_saved_or_discarded(page):
+    """It is a hidden file beside the study."""
+    edit(page, field="cage.mass", value="26", unit="g")
+    with TestClient(application(_folder(page))) as other:
+        assert "mass = &#34;26 g&#34;" in other.get("/study/small.toml").text
+        assert "unsaved edits" in other.get("/").text
+        other.post("/discard/small.toml")
+    assert (_folder(page) / "small.toml").read_text() == SMALL
+    edit(page, field="cage.mass", value="27", unit="g")
+    page.post("/save/small.toml")
+    assert 'mass = "27 g"' in (_folder(page) / "small.toml").read_text()
+    assert not draft.draft_path(_folder(page) / "small.toml").exists()
+
+
+def test_a_study_with_a_fault_is_not_run(page):
+    """Nor is its fault written into the file."""
+    edit(page, field="cage.mass", value="25 mm", unit="")
+    found = page.post("/run/small.toml", data={"verb": "rank"}, headers={"HX-Request": "true"})
+    assert (found.status_code, "is not run" in found.text) == (422, True)
+    assert (_folder(page) / "small.toml").read_text() == SMALL
+
+
+@pytest.mark.parametrize("name", ["../up", "a/b", ".hidden", "", "small", "x" * 200, "a\0b"])
+def test_a_new_study_has_a_plain_name_that_is_free(page, name):
+    """Nothing is written for another one."""
+    before = sorted(_folder(page).iterdir())
+    assert page.post("/new", data={"name": name}).status_code == 422
+    assert sorted(_folder(page).iterdir()) == before
+
+
+def test_a_new_study_is_a_copy_or_the_template(page):
+    """And is open at once."""
+    found = page.post("/new", data={"name": "mine", "base": "cryogenic-turbopump"})
+    assert (found.status_code, found.url.path) == (200, "/study/mine.toml")
+    page.post("/new", data={"name": "other"})
+    assert (_folder(page) / "other.toml").read_text() == template()
