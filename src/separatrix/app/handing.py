@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
@@ -40,15 +41,15 @@ def routes(page: Page) -> APIRouter:
     @router.get("/compare")
     def compare(first: str = "", second: str = "", verb: str = "") -> Response:
         names = [name for name in page.folder.studies() if page.answered(name)]
-        found = {"verbs": [], "comparison": None, "text": "", "verdicts": [], "rows": [], "inputs": []}
+        shown: dict[str, Any] = {"verbs": [], "verb": verb, "comparison": None}
         if first and second:
-            found |= _compared(page.folder.answers(first), page.folder.answers(second), verb)
-        return page.html("compare.html", names=names, first=first, second=second, verb=verb, **found)
+            shown = _compared(page.folder.answers(first), page.folder.answers(second), verb)
+        return page.html("compare.html", names=names, first=first, second=second, **shown)
 
     return router
 
 
-def _compared(first: Path, second: Path, verb: str) -> dict[str, object]:
+def _compared(first: Path, second: Path, verb: str) -> dict[str, Any]:
     """Return the comparison of two folders of answers, by one verb that both have."""
     pair = [_answers(place) for place in (first, second)]
     shared = [one for one in VERBS if all(one in found for found in pair)]

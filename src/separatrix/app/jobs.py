@@ -139,6 +139,12 @@ class Jobs:
                 self._change(number, message="Cancelling: the runs in hand are finished first.")
                 self._state.pipe.send(CANCEL)
 
+    def forget_ended(self) -> None:
+        """Drop the jobs that have ended from the list; their answers stay."""
+        with self._lock:
+            jobs = self._state.jobs
+            self._state.jobs = {number: job for number, job in jobs.items() if job.is_active}
+
     def close(self) -> None:
         """End the process; the job in hand writes what it finished."""
         with self._lock:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -127,7 +127,7 @@ def _read(asked: str) -> tuple[Study, list[str]]:
 
 def _of_folder(folder: Path, options: ReportOptions) -> tuple[dict[str, Kept], list[str]]:
     """Return the answers of a folder, and of the chain those that it lacks, if its study can be read back."""
-    from separatrix.reporting.kept import NEEDED, read_folder
+    from separatrix.reporting.kept import NEEDED, read_folder, verbs_of
 
     found, missing = read_folder(folder), list[str]()
     study = _read_back(next(iter(found.values())).document, str(folder))

@@ -15,6 +15,8 @@ from separatrix.regular_file import size_of
 if TYPE_CHECKING:
     import xarray as xr
 
+    from separatrix.study import Study
+
 MOST_BYTES = 256 * 1024**2
 """Size of a document; the longest simulations have some 30 MB."""
 
