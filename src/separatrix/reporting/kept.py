@@ -28,6 +28,7 @@ NEEDED = {
     "rank": ("environment", "environments", "stability", "chain", "pocket"),
     "sensitivity": ("environment", "environments", "drivers", "next_tests", "undecided"),
     "map": (),
+    "sweep": ("parameters", "cases", "worst", "duty"),
 }
 """Verbs that a report shows, in the order of the chain, and the keys that each document must have."""
 
