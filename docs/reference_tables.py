@@ -298,15 +298,19 @@ def json_page() -> str:
     for verb, made_of in VERBS.items():
         records = records_of(*made_of.records)
         shown |= dict.fromkeys(records)
-        links = ", ".join(f"[{one.__name__}](#record-{one.__name__.lower()})" for one in records)
+        links = ", ".join(f"[{one.__name__}](#{_anchor(one)})" for one in records)
         page += [f"## {verb}\n", f"Records: {links}.\n", *_table(made_of.own)]
     page += ["## Records\n"]
     for record in shown:
         text, _, _ = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n")
         name = record.__name__
-        page += [f"(record-{name.lower()})=\n### {name}\n", _markdown(text).strip() + "\n"]
+        page += [f"({_anchor(record)})=\n### {name}\n", _markdown(text).strip() + "\n"]
         page += _table(lines_of(record))
     return "\n".join(page)
+
+
+def _anchor(record: type) -> str:
+    return f"{record.__module__}-{record.__name__}".removeprefix("separatrix.").replace(".", "-").lower()
 
 
 def _table(lines: Iterable[Line]) -> list[str]:

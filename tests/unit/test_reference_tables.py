@@ -1,5 +1,6 @@
 """The generated reference: each key of a study, and each name in a real document of every verb."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -124,4 +125,6 @@ def test_a_line_states_unit_dimensions_and_meaning():
     assert (margin.unit, margin.meaning) == ("-", "Threshold less the chain's restitution factor [-].")
     page = json_page()
     assert all(f"\n## {verb}\n" in page for verb in VERBS)
-    assert page.count("(record-judgement)=") == 1
+    assert page.count("(cage-verdict-judgement)=") == 1
+    anchors = re.findall(r"^\((.*)\)=$", page, flags=re.MULTILINE)
+    assert len(set(anchors)) == len(anchors)
