@@ -10,7 +10,7 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer ContactCases bearing check map mobility rank restitution sensitivity simulate "
+    "api": "Answer ContactCases bearing check compare map mobility rank restitution sensitivity simulate "
     "solve_contact stability sweep traction",
     "ball_traction": "BallTraction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
@@ -26,6 +26,7 @@ _PUBLIC = {
     "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
     "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "comparing.records": "Comparison",
     "contact_file": "read_contact",
     "contact_file.question": "ContactQuestion rolling_cases",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.cage import History, PlanarCage, SpaceAnalysis, SpaceHistory
+from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
@@ -25,10 +26,15 @@ from separatrix.units import Metre, MetrePerSecond, Ratio
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CheckAnswer:
-    """The bearing at standstill; None with the reason if its balance was not found."""
+    """The bearing at standstill, and the running clearances of the cage; None with the reason if refused.
+
+    The clearances are also None, without a reason, for a study that states the running ones.
+    """
 
     static: BearingState | None
     static_reason: str = ""
+    clearances: Clearances | None = None
+    clearances_reason: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

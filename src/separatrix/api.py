@@ -25,10 +25,11 @@ from separatrix.chain.contacts import BearingState
 from separatrix.errors import ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.explore.sweep import Case, Sweep
+from separatrix.kept_files import noting
 from separatrix.notes import grouped, noted_warnings
 from separatrix.runner import Progress, made_into
 from separatrix.study import Study
-from separatrix.study_file import read_study, require
+from separatrix.study_file import asked_by, read_study, require
 from separatrix.units import MetrePerSecond, Ratio
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from separatrix.comparing.records import Comparison
     from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
 
 Record = TypeVar("Record")
@@ -97,16 +99,20 @@ class Answer(Generic[Record]):
         return plot(self.verb, self.to_xarray(), name)
 
 
-def _answer(verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str) -> Answer[Record]:
+def _answer(
+    verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str, **question: object
+) -> Answer[Record]:
     """Answer of a verb, with what was noted on the way; the notes are warnings for the caller, too."""
     with noted_warnings() as notes:
         asked = study if isinstance(study, Study) else read_study(study)
         require(asked, verb, *needs)
 
         def made(record: Record) -> Answer[Record]:
-            return Answer(verb=verb, record=record, study=asked, notes=tuple(grouped(notes)))
+            known = asked_by(asked, verb, question, reading)
+            return Answer(verb=verb, record=record, study=known, notes=tuple(grouped(notes)))
 
-        answer = made_into(made, lambda: compute(asked))
+        with noting() as reading:
+            answer = made_into(made, lambda: compute(asked))
     for note in answer.notes:
         warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
@@ -223,7 +229,7 @@ def simulate(
 ) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
     asked: dict[str, Any] = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
-    return _answer("simulate", study, lambda one: verbs.simulate(one, **asked), "cage")
+    return _answer("simulate", study, lambda one: verbs.simulate(one, **asked), "cage", **asked)
 
 
 def stability(
@@ -275,12 +281,10 @@ def map(
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
+    question: dict[str, Any] = {"x": x, "y": y, "points": points, "runs": runs}
+    question |= {"kick": kick, "adaptive": adaptive}
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
-
-        def compute(one: Study) -> MapAnswer:
-            return verbs.map(one, runner, x=x, y=y, points=points, runs=runs, kick=kick, adaptive=adaptive)
-
-        return _answer("map", study, compute, "cage")
+        return _answer("map", study, lambda one: verbs.map(one, runner, **question), "cage", **question)
 
 
 def rank(
@@ -307,10 +311,12 @@ def sensitivity(
 ) -> Answer[SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        needs = "cage", "ranking"
-        return _answer(
-            "sensitivity", study, lambda one: verbs.sensitivity(one, runner, samples=samples), *needs
-        )
+        question = {"samples": samples}
+
+        def compute(one: Study) -> SensitivityAnswer:
+            return verbs.sensitivity(one, runner, samples=samples)
+
+        return _answer("sensitivity", study, compute, "cage", "ranking", **question)
 
 
 def sweep(
@@ -319,6 +325,7 @@ def sweep(
     *,
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
+    margins: bool = False,
     jobs: int | None = None,
     folder: str | Path | None = None,
     cluster: str | None = None,
@@ -326,9 +333,33 @@ def sweep(
 ) -> Answer[Sweep]:
     """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
+    question: dict[str, Any] = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
     with verbs.long_job(jobs, folder, cluster, progress) as runner:
+        return _answer("sweep", study, lambda one: verbs.sweep(one, runner, **question), **question)
 
-        def compute(one: Study) -> Sweep:
-            return verbs.sweep(one, runner, vary=ranges, cases=cases, verdicts=verdicts)
 
-        return _answer("sweep", study, compute)
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Comparison:
+    """Two answers of one verb: what differs, and whether by more than counting noise.
+
+    Parameters
+    ----------
+    first, second : Answer, str or Path
+        An answer, or the folder or file of a saved one.
+
+    Raises
+    ------
+    InputError
+        One of them is not an answer, or they are of different verbs.
+    """
+    from separatrix.comparing.pair import compared, pair_of
+    from separatrix.comparing.saved import Saved, read_answers
+    from separatrix.saving import WITHOUT_DATA
+
+    def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
+        if not isinstance(one, Answer):
+            return read_answers(Path(one))
+        has_arrays = one.verb not in WITHOUT_DATA
+        data = one.to_xarray() if has_arrays else None
+        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document(), data=data)}
+
+    return compared(*pair_of(saved(first), saved(second)))

@@ -5,15 +5,36 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from separatrix import _check
 from separatrix._check import between, must, positive
-from separatrix.units import KilogramPerMetre3, Metre, Pascal, Radian, Ratio, format_quantity
+from separatrix.units import (
+    Kelvin,
+    KilogramPerMetre3,
+    Metre,
+    Pascal,
+    PerKelvin,
+    Radian,
+    Ratio,
+    format_quantity,
+)
 
 MOST_BALLS = 200
+ROOM: Kelvin = 293.0
+"""Temperature at which parts are measured."""
+
 _GROOVE = "If you have the groove radius, divide it by the ball diameter."
 _MODULI = "Steel has about 200 GPa, PTFE 0.5 GPa."
+
+
+class Expansion(NamedTuple):
+    """Mean thermal expansion from 293 K to each temperature between two, and how sure it is."""
+
+    low: Kelvin
+    high: Kelvin
+    mean: PerKelvin
+    confidence: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +46,12 @@ class Material:
     poisson_ratio: Ratio = field(metadata=must(between, 0.0, 0.5, open_high=True))
     density: KilogramPerMetre3 | None = field(default=None, metadata=must(positive, 1.0, 1e5))
     compressive_strength: Pascal | None = field(default=None, metadata=must(positive, 1e4, 1e11))
+    thermal_expansion: PerKelvin | None = field(default=None, metadata=must(between, -1e-4, 1e-3))
+    """Mean from 293 K to the operating temperature; None: that of `expansions`."""
+
+    expansions: tuple[Expansion, ...] = ()
+    """Of the library, by rising temperature."""
+
     source: str = "given in the study"
     confidence: str = "given in the study"
     record: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)

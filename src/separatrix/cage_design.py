@@ -43,6 +43,13 @@ class Guidance(Enum):
     BALL = "ball"
 
 
+class ClearanceState(Enum):
+    """What the stated clearances are those of: the running bearing, or its parts at 293 K at rest."""
+
+    RUNNING = "as running"
+    AT_REST = "at rest, 293 K"
+
+
 class PocketContact(Enum):
     """How the force between ball and pocket grows: with the approach, or with its power 1.5."""
 
@@ -160,6 +167,7 @@ class CageDesign:
     outer_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
     width: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
     pocket_clearance: Metre = field(metadata=_SAME["pocket_clearance"])
+    clearances: ClearanceState = field(default=ClearanceState.RUNNING, metadata=must(one_of, ClearanceState))
     material: Material | None = None
     material_name: str | None = None
     """Candidate of the ranking that the cage is made of; by default the one named like `material`."""

@@ -110,7 +110,7 @@ VERBS: tuple[Verb, ...] = (
         epilog="Every value of one --vary goes with every value of the others. A case that is refused is a "
         "row with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
         '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
-        question=("vary", "cases", "verdicts"),
+        question=("vary", "cases", "verdicts", "margins"),
         keeps_runs=True,
     ),
 )
@@ -118,9 +118,13 @@ VERBS: tuple[Verb, ...] = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Computed:
-    """The record of an answer, whether it is all that was asked, and the runs kept by an earlier call."""
+    """The record of an answer, whether it is all that was asked, and the runs kept by an earlier call.
+
+    `study` is the one asked, with the question for the provenance of its answer.
+    """
 
     record: Any
+    study: Study
     is_complete: bool
     runs_taken: int = 0
 
@@ -154,17 +158,22 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
+    from separatrix.kept_files import noting
     from separatrix.runner import Interrupted
+    from separatrix.study_file import asked_by
 
     function = getattr(verbs, verb.name)
-    if not verb.keeps_runs:
-        return Computed(record=function(study, **question), is_complete=True)
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        try:
-            record, is_complete = function(study, runner, **question), True
-        except Interrupted as stop:
-            if stop.finished is None:
-                raise
-            record, is_complete = stop.finished, False
-    taken = runner.ledger.taken if runner.ledger is not None else 0
-    return Computed(record=record, is_complete=is_complete, runs_taken=taken)
+    with noting() as reading:
+        if not verb.keeps_runs:
+            record, is_complete, taken = function(study, **question), True, 0
+        else:
+            with verbs.long_job(jobs, folder, cluster, progress) as runner:
+                try:
+                    record, is_complete = function(study, runner, **question), True
+                except Interrupted as stop:
+                    if stop.finished is None:
+                        raise
+                    record, is_complete = stop.finished, False
+            taken = runner.ledger.taken if runner.ledger is not None else 0
+    asked = asked_by(study, verb.name, question, reading)
+    return Computed(record=record, study=asked, is_complete=is_complete, runs_taken=taken)

@@ -19,6 +19,7 @@ from separatrix.bearing_design import BallBearing as BallBearing
 from separatrix.bearing_design import Material as Material
 from separatrix.cage_design import BallModel as BallModel
 from separatrix.cage_design import CageDesign as CageDesign
+from separatrix.cage_design import ClearanceState as ClearanceState
 from separatrix.cage_design import Guidance as Guidance
 from separatrix.cage_design import MotionModel as MotionModel
 from separatrix.cage_design import PocketContact as PocketContact

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.errors import InputError
+from separatrix.kept_files import note
 from separatrix.regular_file import size_of, unreadable
 from separatrix.units import printable, shown
 
@@ -182,6 +183,7 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
         raise unreadable(path_text(path), error) from None
     if len(raw) > kind.most_bytes:
         raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
+    note(path, raw)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

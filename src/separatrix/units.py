@@ -53,6 +53,7 @@ NewtonPerMetre1_5 = Annotated[float, "N/m1.5"]
 NewtonSecondPerMetre = Annotated[float, "N s/m"]
 Pascal = Annotated[float, "Pa"]
 Kelvin = Annotated[float, "K"]
+PerKelvin = Annotated[float, "m/m/K"]
 Joule = Annotated[float, "J"]
 Watt = Annotated[float, "W"]
 
@@ -86,6 +87,7 @@ QUANTITIES = {
     "m/s": "speed",
     "m/s2": "acceleration",
     "K": "temperature",
+    "m/m/K": "thermal expansion",
     "Pa s": "viscosity",
     "J/kg/K": "heat capacity",
     "kg m": "unbalance",
@@ -150,6 +152,7 @@ UNITS: dict[str, dict[str, str]] = {
     "m/s": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": "1/3.6"},
     "m/s2": {"m/s2": "1", "mm/s2": "1e-3", "g0": "9.80665"},
     "K": {"K": "1", "degC": "1 + 273.15", "°C": "1 + 273.15", "degF": "5/9 + 459.67"},
+    "m/m/K": {"m/m/K": "1", "um/m/K": "1e-6", "ppm/K": "1e-6"},
     "Pa s": {"Pa s": "1", "mPa s": "1e-3", "uPa s": "1e-6"},
     "J/kg/K": {"J/kg/K": "1", "kJ/kg/K": "1e3"},
     "kg m": {"kg m": "1", "kg mm": "1e-3", "g m": "1e-3", "g cm": "1e-5", "g mm": "1e-6", "mg mm": "1e-9"},
@@ -317,24 +320,14 @@ def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     return InputError(where, rule, shown(text), f'Did you mean "{known[found[0]]}"?' if found else "")
 
 
-_HABITS = {
+_HABITS = {unit: unit for unit in QUANTITIES} | {
     "m": "mm",
-    "s": "s",
     "rad": "deg",
     "rad/s": "rpm",
-    "Hz": "Hz",
     "kg": "g",
-    "N": "N",
-    "N m": "N m",
-    "N/m": "N/m",
-    "N s/m": "N s/m",
     "Pa": "GPa",
-    "kg/m3": "kg/m3",
-    "m/s": "m/s",
-    "m/s2": "m/s2",
-    "K": "K",
+    "m/m/K": "um/m/K",
     "Pa s": "uPa s",
-    "J/kg/K": "J/kg/K",
     "kg m": "g mm",
     "kg m2": "kg mm2",
 }
@@ -349,6 +342,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "N": ((1e-3, "mN"), (1.0, "N"), (1e4, "kN")),
     "N/m": ((1.0, "N/m"), (1e3, "kN/m"), (1e6, "MN/m")),
     "Pa": ((1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa")),
+    "m/m/K": ((1e-6, "um/m/K"),),
     "Pa s": ((1e-6, "uPa s"), (1e-3, "mPa s"), (1.0, "Pa s")),
     "kg m": ((1e-6, "g mm"),),
     "kg m2": ((1e-6, "kg mm2"),),

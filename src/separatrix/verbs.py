@@ -84,9 +84,17 @@ def check(study: Study) -> CheckAnswer:
     _try_predicted_friction(study)
     at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
     try:
-        return CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
+        found = CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
     except SeparatrixError as error:
-        return CheckAnswer(static=None, static_reason=str(error))
+        found = CheckAnswer(static=None, static_reason=str(error))
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings(
+                "ignore", "(?!Clearances)", ValidityWarning
+            )  # the chain was not asked for
+            return replace(found, clearances=solve(study).clearances)
+    except SeparatrixError as error:
+        return replace(found, clearances_reason=str(error))
 
 
 def _try_predicted_friction(study: Study) -> None:
@@ -103,7 +111,8 @@ def _try_predicted_friction(study: Study) -> None:
 
 def bearing(study: Study) -> BearingState:
     """Ball equilibrium and the contacts of the most loaded ball."""
-    return solve(study).bearing
+    solution = solve(study)
+    return replace(solution.bearing, clearances=solution.clearances)
 
 
 def traction(study: Study) -> TractionAnswer:
@@ -141,6 +150,7 @@ def restitution(study: Study) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
+    _ = solution.clearances  # refused, and warned of
     with warnings.catch_warnings():  # of films that are not the study's
         warnings.simplefilter("ignore", ValidityWarning)
         films, wear = exact_films(solution), wear_curve(solution)
@@ -302,6 +312,7 @@ def sweep(
     vary: Sequence[str] = (),
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
+    margins: bool = False,
 ) -> Sweep:
     """Chain and, if asked, verdict of many cases of a study.
 
@@ -310,8 +321,12 @@ def sweep(
     vary : sequence of str
         Ranges, each ``PARAM=LOW..HIGH[unit][:N][:log]``; every value of one with every value of the others.
     cases : Path, or sequence of mapping, optional
-        In their place a CSV file, or values by the names of a study file in SI units.
-    verdicts : bool
-        Whether to run the whole ensemble of each case, too.
+        In their place a CSV file, or values by the names of a study file in SI units; with `time_share`
+        they are a duty cycle.
+    verdicts, margins : bool
+        Whether to run the whole ensemble of each case, and to compute its threshold and margin, too.
     """
-    return run_cases(study, asked_cases(vary, cases), verdicts=verdicts, runner=runner)
+    asked = asked_cases(vary, cases)
+    with contextlib.suppress(SeparatrixError):
+        _ = solve(study).clearances  # warns of their guesses; a case warns of nothing
+    return run_cases(study, asked, verdicts=verdicts, margins=margins, runner=runner)

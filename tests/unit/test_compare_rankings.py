@@ -60,12 +60,16 @@ def pair(tmp_path, monkeypatch):
 def test_verdict_margin_and_probability_of_each_material(pair, capsys):
     """A material that only one of them has is there too; 0 is a number, NaN is none."""
     found = document(capsys, "compare", *pair)
-    a, b = found["environments"][1]["materials"]
-    assert (a["first"]["verdict"], a["second"]["verdict"]) == ("UNSTABLE", "UNDECIDED")
-    assert (a["first"]["margin"], a["second"]["margin"]) == (0.5, -0.25)
-    assert (a["first"]["probability_stable"], a["second"]["probability_stable"]) == (0.0, None)
-    assert (b["first"], b["second"]["verdict"]) == (None, "STABLE")
-    assert [one["name"] for one in found["environments"]][1:] == ["gas"]
+    rows = {(row["place"], row["name"]): row for row in [*found["verdicts"], *found["rows"]]}
+    verdict, margin = rows["gas / A", "verdict"], rows["gas / A", "margin"]
+    assert (verdict["first"]["value"], verdict["second"]["value"]) == ("UNSTABLE", "UNDECIDED")
+    assert (margin["first"]["value"], margin["second"]["value"]) == (0.5, -0.25)
+    assert (margin["change"], margin["noise"]) == (-0.75, "UNJUDGED")
+    probability = rows["gas / A", "probability_stable"]
+    assert (probability["first"]["value"], probability["second"]["value"]) == (0.0, None)
+    only = rows["gas / B", ""]
+    assert (only["first"]["value"], only["second"]["value"]) == (None, "there")
+    assert found["verdicts"][0]["name"] == "verdict"
 
 
 def test_inputs_that_differ_are_those_of_a_study_file(pair, capsys):
@@ -83,7 +87,7 @@ def test_the_tables_are_printed_and_written(pair, tmp_path, capsys):
     assert main(["compare", *pair, "--out", "both"]) == 0
     text = capsys.readouterr().out
     assert "UNSTABLE  UNDECIDED" in text
-    assert "+0.50   -0.25" in text
+    assert "-0.75" in text
     assert {path.name for path in (tmp_path / "both").iterdir()} == {"compare.json", "compare.txt"}
 
 

@@ -25,12 +25,15 @@ from separatrix.staged import staged, writable_folder
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
-    *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare", "materials"),
+    *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare"),
+    *("reproduce", "app", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),
     "contact": ("--json", "--out", "--quiet"),
-    "compare": ("--json", "--out", "--quiet"),
+    "compare": ("--json", "--out", "--quiet", "--full"),
+    "reproduce": ("--json", "--quiet", "--jobs"),
+    "app": ("--port", "--open"),
     "tribometer": ("--json", "--out"),
     "materials": ("list", "show", "check", "add"),
 }

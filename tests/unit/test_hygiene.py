@@ -19,6 +19,14 @@ ROOT = SOURCE.parent.parent
 
 FORBIDDEN_CALLS = {"print", "eval", "exec", "breakpoint", "input"}
 FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "requests", "urllib", "http", "socket"}
+NETWORK = {
+    "cluster.py": {"socket"},  # it reaches the scheduler that a user names
+    "app/server.py": {"socket"},  # it listens on this machine
+    "app/guard.py": {"http", "urllib"},  # names of statuses, and the reading of addresses
+    "app/page.py": {"urllib"},
+}
+"""File -> what it may import of the forbidden modules."""
+
 LIMIT = 400
 
 
@@ -41,7 +49,7 @@ def test_a_module_keeps_the_rules(path):
     tree = ast.parse(text)
     assert not [n.lineno for n in ast.walk(tree) if isinstance(n, ast.Assert)]
     assert not calls(tree) & FORBIDDEN_CALLS
-    allowed = {"socket"} if path.name == "cluster.py" else set()  # it reaches the scheduler that a user names
+    allowed = NETWORK.get(str(path.relative_to(SOURCE)), set())
     assert not imported(tree) & FORBIDDEN_MODULES - allowed
     assert not re.search(r"fastmath\s*=\s*True|parallel\s*=\s*True|np\.random\.seed|\bTODO\b|\bFIXME\b", text)
     broad = [n for n in ast.walk(tree) if isinstance(n, ast.ExceptHandler) and _is_broad(n.type)]

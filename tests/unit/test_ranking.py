@@ -27,6 +27,7 @@ from separatrix.ranking.order import margin_interval, same_rank
 from separatrix.ranking.rank import _row
 from separatrix.ranking.reason import disagreement, reason
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
+from separatrix.ranking.second import Pocket
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
@@ -87,6 +88,7 @@ def test_on_one_curve_frictions_tell_who_issame_rank():
     assert same_rank(b, a, known)
     assert not same_rank(c, a, known)  # 2.5 standard deviations; the intervals meet
     assert same_rank(replace(c, ball_cage_stiffness=4e6), a, known)
+    assert same_rank(replace(c, pocket_clearance=5e-4), a, known)
     assert same_rank(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
 
 
@@ -283,9 +285,10 @@ def test_a_study_without_candidates_is_refused():
 def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     """Every number of it is absent, so that the answer can be written."""
     eta = SimpleNamespace(restitution_factor=0.3)
-    question = SimpleNamespace(stiffness={"A": 1e6}, cages={1e6: SimpleNamespace(restitution=eta)})
+    pocket = Pocket(1e6, 1e-4, 0.0)
+    question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
     evidence = judgement(largest_contact_force=float(bad))
-    found = SimpleNamespace(judgements={(1e6, 0.1): evidence}, points={})
+    found = SimpleNamespace(judgements={(pocket, 0.1): evidence}, points={})
     row = _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01), None)
     assert isinstance(row, NotFinished)
     assert row.judgement is None

@@ -7,7 +7,7 @@ import re
 import threading
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from separatrix.notes import grouped, noted_warnings
 from separatrix.regular_file import reading_only_in
 from separatrix.study import Study
 from separatrix.study_file import read_study
+from separatrix.study_file.document import load
 from separatrix.study_file.templates import is_name
 from separatrix.toml_text import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
@@ -51,6 +52,8 @@ class Checked:
     study: Study | None
     faults: tuple[Fault, ...]
     notes: tuple[str, ...] = ()
+    inherited: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Values by section and key, those of the file that it extends among them."""
 
     @property
     def version(self) -> str:
@@ -107,8 +110,26 @@ def check(study: Path, root: Path) -> Checked:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
             found = read_study(path)
     except InputError as error:
-        return Checked(text=text, study=None, faults=tuple(_faults(error, path, study)))
-    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(notes)))
+        faults = tuple(_faults(error, path, study))
+        return Checked(text=text, study=None, faults=faults, inherited=_given(path, root))
+    given = _given(path, root)
+    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(notes)), inherited=given)
+
+
+def _given(path: Path, root: Path) -> dict[str, dict[str, Any]]:
+    """Return the values of a study that extends another, with those of the other, by section and key."""
+    try:
+        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
+            found = load(path)
+    except InputError:  # shown among the faults
+        return {}
+    if "extends" not in found.top:
+        return {}
+    sections = {"": found.top, **found.sections}
+    return {
+        name: {key: value for key, value in values.items() if not isinstance(value, InputError)}
+        for name, values in sections.items()
+    }
 
 
 def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:

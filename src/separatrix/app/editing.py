@@ -13,7 +13,7 @@ from separatrix.app.form import form
 from separatrix.app.page import Page, form_of
 from separatrix.errors import InputError
 from separatrix.questions import VERBS, Verb
-from separatrix.study import BallModel, MotionModel
+from separatrix.study import BallModel, MotionModel, Study
 from separatrix.study_file import shipped_studies, template
 from separatrix.units import printable
 
@@ -47,7 +47,9 @@ def routes(page: Page) -> APIRouter:
     @router.get("/study/{name:path}")
     def study(name: str) -> Response:
         path = page.folder.study(name)
-        return page.html("study.html", **editor(page, name, path), **running(page, name))
+        shown = editor(page, name, path)
+        found = shown["checked"].study if shown["checked"] else None
+        return page.html("study.html", title=page.title(name), **shown, **running(page, name, found))
 
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:
@@ -97,6 +99,11 @@ def routes(page: Page) -> APIRouter:
         page.jobs.cancel(number)
         return page.html("jobs.html", jobs=page.jobs.all())
 
+    @router.post("/jobs/forget")
+    def forget() -> Response:
+        page.jobs.forget_ended()
+        return page.html("jobs.html", jobs=page.jobs.all())
+
     @router.post("/jobs/{number}/resume")
     def resume(number: int) -> Response:
         job = page.jobs.job(number)
@@ -132,7 +139,7 @@ def summary(page: Page, name: str) -> dict[str, Any]:
     best = next((row["name"] for row in overall if row.get("rank") == 1), None)
     return {
         "name": name,
-        "title": ranked.get("title", ""),
+        "title": page.title(name) or ranked.get("title", ""),
         "answers": page.answered(name),
         "best": best,
         "counts": counts,
@@ -155,10 +162,15 @@ def editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, An
     }
 
 
-def running(page: Page, name: str) -> dict[str, Any]:
-    """Return what the panel of verbs shows."""
+def running(page: Page, name: str, found: Study | None) -> dict[str, Any]:
+    """Return what the panel of verbs shows; `lacking` are sections that a verb needs and a study lacks."""
+    lacking = {
+        verb.name: [section for section in verb.needs if found and getattr(found, section) is None]
+        for verb in VERBS
+    }
     return {
         "verbs": VERBS,
+        "lacking": lacking,
         "answers": page.answered(name),
         "jobs": page.jobs.all(),
         "motions": [one.value for one in MotionModel],
@@ -183,7 +195,7 @@ def question_of(verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
             continue
         if name == "vary":
             question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-        elif name in ("adaptive", "verdicts"):
+        elif name in ("adaptive", "verdicts", "margins"):
             question[name] = True
         elif name in TYPED:
             if not text.isascii() or not text.isdigit() or len(text) > 9:

@@ -58,7 +58,12 @@ def routes(page: Page) -> APIRouter:
     @router.get("/explore/{name:path}", response_class=HTMLResponse)
     def explore(name: str) -> Response:
         study = _study(page, name)
-        return page.html("explore.html", name=name, title=study.title, sliders=sliders(study))
+        if study.cage is None:
+            raise InputError(f"{name}: the sliders", "need the section [cage]", cure="Add it to the inputs.")
+        answers = page.answered(name)
+        return page.html(
+            "explore.html", name=name, title=study.title, sliders=sliders(study), answers=answers
+        )
 
     @router.get("/explored/{name:path}")
     def explored(request: Request, name: str) -> Response:

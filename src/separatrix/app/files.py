@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +20,7 @@ ANSWER_SUFFIXES = (
 MOST_STUDIES, DEEPEST = 500, 3
 _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
+_SHEET = re.compile(rb'name="bearing"', re.IGNORECASE)
 _BEGINNING = 64 * 1024
 LOGS = "logs"
 """Folder of the tribometer logs that were dropped on the page."""
@@ -91,7 +94,7 @@ class Folder:
                 continue
             if path.is_dir() and depth < DEEPEST:
                 yield from self._studies(path, depth + 1)
-            elif path.suffix == ".toml" and path.is_file() and is_study(path):
+            elif path.suffix in STUDY_SUFFIXES and path.is_file() and is_study(path):
                 yield path
 
 
@@ -100,6 +103,20 @@ def _place(name: str) -> tuple[int, str]:
 
 
 def is_study(path: Path) -> bool:
-    """Whether a TOML file begins as a study does; a library or a friction file does not."""
+    """Whether a file begins as a study does, or has its sheets; a library or a friction file does not."""
+    if path.suffix != ".toml":
+        part = "content.xml" if path.suffix == ".ods" else "xl/workbook.xml"
+        try:
+            with zipfile.ZipFile(path) as book, book.open(part) as sheets:
+                return _SHEET.search(sheets.read(_BEGINNING)) is not None
+        except (
+            OSError,
+            KeyError,
+            ValueError,
+            RuntimeError,
+            zipfile.BadZipFile,
+            zlib.error,
+        ):  # not a workbook
+            return False
     with path.open("rb") as file:
         return _HEADER.search(file.read(_BEGINNING)) is not None

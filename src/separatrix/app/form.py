@@ -28,7 +28,8 @@ class Field:
     """One key: what it holds as text and unit, what it may hold, its meaning, and what is wrong with it.
 
     `units` are the spellings that its unit may have; `choices` what it must be one of (`is_open` lets it be
-    another name). `unit` is that of the value, or of the example where it has none.
+    another name). `unit` is that of the value, or of the example where it has none. `inherited` is the value
+    of the file that the study extends.
     """
 
     section: str
@@ -40,6 +41,7 @@ class Field:
     is_open: bool
     is_required: bool
     example: str
+    inherited: str
     meaning: str
     faults: tuple[str, ...]
 
@@ -82,31 +84,37 @@ def _section(name: str, data: dict[str, Any], checked: Checked) -> FormSection:
     given = data.get(name, {}) if name else {k: v for k, v in data.items() if not isinstance(v, dict)}
     given = given if isinstance(given, dict) else {}
     keys = [one for one in template_keys() if one.section == name and one.key not in LEFT_TO_TEXT]
-    fields = tuple(_field(one, given.get(one.key), checked) for one in keys)
+    base = checked.inherited.get(name, {})
+    fields = tuple(
+        _field(one, given.get(one.key), None if one.key in given else base.get(one.key), checked)
+        for one in keys
+    )
     known = {one.key for one in keys}
     others = [one.message for one in checked.faults if one.section == name and one.key not in known]
     remark = section_remarks().get(name, "")
     return FormSection(name=name, remark=remark, fields=fields, faults=tuple(others))
 
 
-def _field(key: TemplateKey, value: Any, checked: Checked) -> Field:
+def _field(key: TemplateKey, value: Any, inherited: Any, checked: Checked) -> Field:
     choices, is_open = choices_of(key.section, key.key)
     number, unit = quantity_of(value)
-    usual = quantity_of(key.example)[1]
-    faults = tuple(checked.faults_of(key.section, key.key))
-    text = "" if value is None else number if number is not None else _text(value)
+    usual = quantity_of(inherited)[1] or quantity_of(key.example)[1]
+    units = units_like(usual)
+    is_split = number is not None and unit in ("", *units)  # a unit of another kind stays beside its number
+    text = "" if value is None else number if is_split and number is not None else _text(value)
     return Field(
         section=key.section,
         key=key.key,
         value=text,
-        unit=unit if number is not None else "" if text and not faults else usual,
-        units=units_like(unit or usual),
+        unit=usual if not text else unit if is_split else "",
+        units=units,
         choices=choices,
         is_open=is_open,
-        is_required=key.is_required,
+        is_required=key.is_required and inherited is None,
         example=_text(key.example),
+        inherited="" if inherited is None else _text(inherited),
         meaning=key.meaning,
-        faults=faults,
+        faults=tuple(checked.faults_of(key.section, key.key)),
     )
 
 

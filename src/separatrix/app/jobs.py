@@ -139,6 +139,12 @@ class Jobs:
                 self._change(number, message="Cancelling: the runs in hand are finished first.")
                 self._state.pipe.send(CANCEL)
 
+    def forget_ended(self) -> None:
+        """Drop the jobs that have ended from the list; their answers stay."""
+        with self._lock:
+            jobs = self._state.jobs
+            self._state.jobs = {number: job for number, job in jobs.items() if job.is_active}
+
     def close(self) -> None:
         """End the process; the job in hand writes what it finished."""
         with self._lock:
@@ -201,7 +207,8 @@ class Jobs:
         if self._state.pipe is pipe:
             self._state.process = self._state.pipe = None
         for job in [job for job in self._state.jobs.values() if job.state == RUNNING]:
-            words = "The computing process ended. Finished runs are kept: resume to go on."
+            words = "The computing process ended; the terminal of `separatrix app` may say why. "
+            words += "Finished runs are kept: resume to go on."
             self._change(job.number, state="failed", message=words, ended=time.monotonic())
         self._feed()
 

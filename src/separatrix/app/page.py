@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
+import tomllib
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,13 +21,14 @@ from separatrix.app.files import Folder
 from separatrix.app.jobs import Jobs
 from separatrix.errors import InputError
 from separatrix.questions import VERBS
+from separatrix.toml_text import read_text
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST_READ = 16
-"""Datasets that are kept in memory."""
+MOST_READ = 64
+"""Answers and titles that are kept in memory."""
 
 VERDICTS = {"STABLE": "stable", "UNSTABLE": "unstable", "UNDECIDED": "undecided"}
 """Verdict -> the class of its look."""
@@ -62,6 +64,16 @@ class Page:
         found: Mapping[str, Any] | None
         found = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
         return found
+
+    def title(self, study: str) -> str:
+        """Return the title that the file of a study has; empty if it has none of its own."""
+        path = self.folder.study(study)
+
+        def load() -> str:
+            title = tomllib.loads(read_text(path)).get("title", "")
+            return title if isinstance(title, str) else ""
+
+        return (self._known(path, load) if path.suffix == ".toml" else None) or ""
 
     def dataset(self, path: Path) -> xr.Dataset | None:
         """Return a saved dataset; None if there is none."""

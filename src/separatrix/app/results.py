@@ -32,6 +32,15 @@ PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot]]] = {
 }
 """Verb -> its figures to hover over."""
 
+FIGURES_OF = {
+    "stability": ("stability-curve",),
+    "rank": ("rank-", "stability-curve"),
+    "map": ("stability-map",),
+    "sweep": ("stability-map", "sweep-"),
+    "simulate": ("simulation",),
+}
+"""Verb -> how the names of its figures begin, if not as the verb."""
+
 SHOWN = (".png",)
 POINT = "points"
 """Folder of the runs at points of a map, in that of the answers."""
@@ -91,7 +100,13 @@ def routes(page: Page) -> APIRouter:
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
         words = str(data.attrs.get("title", name))
         return page.html(
-            "cage.html", name=name, point=point, title=words, found=found, in_space=is_in_space(data)
+            "cage.html",
+            name=name,
+            point=point,
+            title=words,
+            found=found,
+            in_space=is_in_space(data),
+            answers=page.answered(name),
         )
 
     @router.get("/motion/{name:path}")
@@ -136,11 +151,11 @@ def _files(place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
     """Return the names of the files of an answer."""
     if not place.is_dir():
         return []
-    stems = (verb, "simulation") if verb == "simulate" else (verb,)
+    stems = FIGURES_OF.get(verb, (f"{verb}-",))
     return sorted(
         path.name
         for path in place.iterdir()
-        if path.suffix in suffixes and path.is_file() and path.stem.startswith(stems)
+        if path.suffix in suffixes and (path.stem == verb or path.stem.startswith(stems)) and path.is_file()
     )
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import secrets
 import socket
+import threading
 from collections.abc import AsyncIterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,12 +16,15 @@ from fastapi import FastAPI, Request
 from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 
-from separatrix.app import editing, exploring, logs, results
+from separatrix.app import draft, editing, exploring, handing, logs, results
 from separatrix.app.files import Folder
 from separatrix.app.guard import Guard
 from separatrix.app.jobs import Jobs
 from separatrix.app.page import Page
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError
+from separatrix.notes import noted_warnings
+from separatrix.study_file import read_study
 
 HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200
@@ -46,12 +51,13 @@ def application(root: Path) -> FastAPI:
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
+        threading.Thread(target=made_ready, args=(page,), daemon=True).start()
         yield
         page.jobs.close()
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
-    for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
+    for routes in (editing.routes, results.routes, handing.routes, exploring.routes, logs.routes):
         app.include_router(routes(page))
 
     @app.exception_handler(SeparatrixError)
@@ -66,6 +72,15 @@ def application(root: Path) -> FastAPI:
 
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
+
+
+def made_ready(page: Page) -> None:
+    """Load what solves studies and reads answers, before the first view that needs it."""
+    with draft.ONE_AT_A_TIME, noted_warnings():
+        solve(read_study("cryogenic-turbopump"))
+    names = ((name, verb) for name in page.folder.studies() for verb in page.answered(name))
+    for name, verb in itertools.islice(names, 1):
+        page.dataset(page.folder.answers(name) / f"{verb}.nc")
 
 
 def listening(port: int) -> socket.socket:

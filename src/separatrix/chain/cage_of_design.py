@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _NOT_COPIED = {
     *("mass", "moment_of_inertia", "ball_cage_stiffness", "ball_cage_friction"),  # the chain computes these
+    "clearances",  # these are the running ones
     *("material", "material_name", "pocket_contact", "impact_speed"),  # they are in the pocket's stiffness
     *("inner_diameter", "outer_diameter", "width", "transverse_inertia"),  # these are in the inertia
     *("ball", "motion"),  # the models, in `traction` and `space`

@@ -13,6 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from separatrix.chain.clearances import Clearances
 from separatrix.chain.contact_limits import beyond_contacts
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
@@ -63,6 +64,8 @@ class BearingState:
     inner: RaceContact
     outer: RaceContact
     notes: tuple[str, ...] = ()
+    clearances: Clearances | None = None
+    """Of the cage as it runs; only in the answer of `bearing`."""
 
     @property
     def cage_speed(self) -> RadianPerSecond:

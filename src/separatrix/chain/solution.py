@@ -17,6 +17,7 @@ from separatrix.cage.space_body import SpaceBody
 from separatrix.cage_body import CageInertia, cage_inertia
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
 from separatrix.chain.cage_of_design import as_designed, space_body, warn_if_balls_are_driven
+from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
     RaceSlopes,
@@ -46,7 +47,9 @@ from separatrix.study import (
     BallModel,
     CageDesign,
     Candidate,
+    ClearanceState,
     Friction,
+    Material,
     MotionModel,
     PocketContact,
     StabilitySettings,
@@ -94,10 +97,7 @@ def solve(study: Study, candidate: Candidate | None = None) -> Solution:
 
 @dataclass(frozen=True, kw_only=True)
 class Solution:
-    """Every link of the chain of a study; asked for a link, it solves those before it.
-
-    `candidate` is the one that the cage is asked to be made of; None is the study's own cage.
-    """
+    """Every link of the chain, solved with those before it; `candidate` None is the study's own cage."""
 
     study: Study
     candidate: Candidate | None = None
@@ -140,17 +140,30 @@ class Solution:
         return race_slopes(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
 
     @property
-    def design(self) -> CageDesign:
-        """The cage of the study.
-
-        Raises
-        ------
-        InputError
-            It has none.
-        """
+    def stated_design(self) -> CageDesign:
+        """The cage as the study states it; refused where it has none."""
         if self.study.cage is None:
             raise InputError(self.study.name, "lacks the section [cage]", cure=NO_CAGE)
         return self.study.cage
+
+    @property
+    def cage_material(self) -> Material | None:
+        """Material of the candidate, else of the cage; None where neither is known."""
+        own, asked = cage_candidate(self.study), self.candidate.material if self.candidate else None
+        return asked or self.stated_design.material or (own.material if own else None)
+
+    @cached_property
+    def clearances(self) -> Clearances | None:
+        """Clearances at temperature and speed; None where the study states the running ones."""
+        if self.study.cage is None or self.stated_design.clearances is ClearanceState.RUNNING:
+            return None
+        parts = (self.study.bearing, self.study.operation, self.stated_design, self.cage_material)
+        return running_clearances(*parts, cage_mass=self.inertia.mass, cage_speed=self.bearing.cage_speed)
+
+    @cached_property
+    def design(self) -> CageDesign:
+        """The cage with its clearances as it runs."""
+        return as_it_runs(self.stated_design, self.clearances)
 
     @cached_property
     def impact_speed(self) -> MetrePerSecond:
@@ -172,11 +185,9 @@ class Solution:
     @cached_property
     def _stiffness(self) -> tuple[NewtonPerMetre, str]:
         """k_BC and where it comes from: the study, or Hertz with the modulus of the cage's material."""
-        design, own = self.design, cage_candidate(self.study)
-        if design.ball_cage_stiffness is not None:
-            return design.ball_cage_stiffness, "given in the study"
-        asked = self.candidate.material if self.candidate else None
-        wall = asked or design.material or (own.material if own else None)
+        given, wall = self.stated_design.ball_cage_stiffness, self.cage_material
+        if given is not None:
+            return given, "given in the study"
         if wall is None:
             rule = "is missing, and no cage material is known"
             raise InputError("[cage] ball_cage_stiffness", rule, cure=NO_STIFFNESS)
@@ -189,13 +200,7 @@ class Solution:
 
     @property
     def ball_cage_stiffness(self) -> NewtonPerMetre:
-        """k_BC of this pocket.
-
-        Raises
-        ------
-        InputError
-            The study gives neither it nor a cage material.
-        """
+        """k_BC of this pocket; refused where neither it nor a cage material is known."""
         return self._stiffness[0]
 
     @property
@@ -219,7 +224,7 @@ class Solution:
     @cached_property
     def inertia(self) -> CageInertia:
         """Mass and moments of inertia of the cage: as stated, of its shape, or of a thin ring."""
-        return cage_inertia(self.design, self.study.bearing)
+        return cage_inertia(self.stated_design, self.study.bearing)
 
     @cached_property
     def mobility(self) -> Mobility:
@@ -288,19 +293,16 @@ class Solution:
         if asked is None or candidate is None:
             return {}
         names = names_of_fluid(self.study)
+        at, scatter = self.study.operation, asked.friction_scatter
         return {
-            environment: None
-            if one is None
-            else friction_in_pocket(
-                one, self.pocket if one.law else None, self.study.operation, asked.friction_scatter, names
-            )
-            for environment, one in candidate.friction.items()
+            place: one and friction_in_pocket(one, self.pocket if one.law else None, at, scatter, names)
+            for place, one in candidate.friction.items()
         }
 
     @property
     def friction(self) -> Friction | None:
         """Friction of cage on ball: the study's, or that of the candidate in the bearing's environment."""
-        given, asked = self.design.ball_cage_friction, self.study.ranking
+        given, asked = self.stated_design.ball_cage_friction, self.study.ranking
         if given is not None:
             return Friction(mean=given)
         environment = environment_of(asked) if asked else None
@@ -308,13 +310,7 @@ class Solution:
 
     @cached_property
     def cage(self) -> PlanarCage:
-        """Cage in the plane, with its friction.
-
-        Raises
-        ------
-        InputError
-            The friction is not known: what is missing, and what can be given instead.
-        """
+        """Cage in the plane, with its friction; refused where that is not known."""
         require_friction(self.study)
         friction = self.friction
         return self.cage_with(friction.mean if friction else 0.0)

@@ -9,14 +9,14 @@ from typing import Annotated, Any
 
 import typer
 
+from separatrix.cli import comparing, materials, reproducing
 from separatrix.cli import contact as one_contact
-from separatrix.cli import materials
 from separatrix.cli import page as the_page
-from separatrix.cli.comparing import compare
+from separatrix.cli import report as reporting
 from separatrix.cli.console import Interruptible, answer, complain, interrupted
 from separatrix.cli.run import Options, check_animation, make_study, run
 from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import OPTIONS, Jobs, Json, Quiet, folder, named, threads
+from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, named, threads
 from separatrix.errors import InputError, SeparatrixError
 from separatrix.questions import VERBS, Verb
 
@@ -82,13 +82,41 @@ def _interruptible(work: Callable[[], int], ended: str) -> int:
 
 
 def _compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or .nc of simulate or of rank.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another one.")],
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or file of an answer.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same verb.")],
+    full: Annotated[bool, typer.Option("--full", help=FULL_HELP)] = False,
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
 ) -> int:
-    return compare(first, second, folder(out), as_json=json)
+    return comparing.compare(first, second, folder(out), as_json=json, full=full)
+
+
+def _reproduce(
+    path: Annotated[Path, typer.Argument(metavar="RESULT", help=reproducing.PATH_HELP)],
+    json: Json = False,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    def work() -> int:
+        return reproducing.reproduce(path, as_json=json, quiet=quiet, jobs=threads(jobs))
+
+    return _interruptible(work, "no answer is compared.")
+
+
+def _report(
+    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=reporting.ASKED_HELP)],
+    second: Annotated[
+        Path | None, typer.Argument(metavar="[FOLDER]", help=reporting.SECOND_HELP, show_default=False)
+    ] = None,
+    pdf: Annotated[bool, typer.Option("--pdf", help=reporting.PDF_HELP)] = False,
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=reporting.OUT_HELP)] = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    options = reporting.ReportOptions(out=folder(out), pdf=pdf, json=json, quiet=quiet, jobs=threads(jobs))
+    return _interruptible(lambda: reporting.report(asked, second, options), "no report was written.")
 
 
 def _contact(
@@ -160,7 +188,9 @@ def _application() -> typer.Typer:
         "exists is never overwritten.",
     )(_tribometer)
     app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
-    app.command("compare", help="Two saved answers of simulate, or of rank, side by side.")(_compare)
+    app.command("compare", help=comparing.HELP, epilog=comparing.EPILOG)(_compare)
+    app.command("reproduce", help=reproducing.HELP, epilog=reproducing.EPILOG)(_reproduce)
+    app.command("report", help=reporting.HELP, epilog=reporting.EPILOG)(_report)
     app.command("app", help=the_page.HELP, epilog=the_page.EPILOG)(the_page.page)
     app.add_typer(materials.application(), name="materials", help=materials.HELP)
     return app
@@ -176,9 +206,8 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(
-            ["new", *(verb.name for verb in VERBS), "tribometer", "contact", "compare", "app", "materials"]
-        )
+        others = ("tribometer", "contact", "compare", "reproduce", "report", "app", "materials")
+        verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 

@@ -68,15 +68,15 @@ def run(verb: Verb, name: str, options: Options) -> int:
             folder = Path(study.name)
         if folder is not None:
             stack.enter_context(writable_folder(folder))
-        found = _computed(verb, study, options, folder)
-        _deliver(verb, found.record, study, grouped(notes), folder, options)
+        found = computed_with_progress(verb, study, options, folder)
+        _deliver(verb, found.record, found.study, grouped(notes), folder, options)
     if found.is_complete:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and folder is not None else ""
     return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
 
 
-def _computed(verb: Verb, study: Study, options: Options, folder: Path | None) -> Computed:
+def computed_with_progress(verb: Verb, study: Study, options: Options, folder: Path | None) -> Computed:
     """Compute the answer with a bar of progress; say how many runs an earlier call had kept."""
     with progress_bar(f"{verb.name} {study.name}", quiet=options.quiet) as progress:
         found = computed(

@@ -38,8 +38,9 @@ ANIMATE_HELP = "Also write an animation."
 FULL_HELP = "The whole answer, not only what fits a screen."
 VARY_HELP = f"PARAM={AXIS}; may be repeated."
 VERDICTS_HELP = "Run the ensemble of every case, too."
+MARGINS_HELP = "Compute threshold and margin of every case, too."
 ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, and check some of them."
-CASES_HELP = "CSV: parameters in its first row, then a case a row."
+CASES_HELP = "CSV: parameters in its first row, then a case a row; with time_share a duty cycle."
 CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
 MOTION_HELP = "Where the cage moves [default: as the study says, or in the plane]."
 BALL_HELP = "What a ball does that is pushed [default: as the study says, or a damper]."
@@ -64,6 +65,7 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "vary": (Annotated[list[str] | None, typer.Option("--vary", metavar="AXIS", help=VARY_HELP)], None),
     "cases": (Annotated[str | None, typer.Option(metavar="FILE", help=CASES_HELP)], None),
     "verdicts": (Annotated[bool, typer.Option("--verdicts", help=VERDICTS_HELP)], False),
+    "margins": (Annotated[bool, typer.Option("--margins", help=MARGINS_HELP)], False),
     "full": (Annotated[bool, typer.Option("--full", help=FULL_HELP)], False),
     "json": (Json, False),
     "out": (Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)], None),

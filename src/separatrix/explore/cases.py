@@ -5,15 +5,17 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
 from separatrix.errors import InputError, together
 from separatrix.explore.axes import find_parameter, plain_number, read_axis
+from separatrix.explore.envelope import TIME_SHARE
 from separatrix.explore.sweep import MOST_CASES, Case
 from separatrix.limits.map_parameters import Parameter
 from separatrix.toml_text import Kind, path_text, read_text
-from separatrix.units import parse, shown
+from separatrix.units import NUMBER, parse, shown
 
 POINTS = 10
 """Values of an axis, unless it states a number."""
@@ -57,6 +59,8 @@ def asked_cases(vary: Sequence[str], cases: Path | Sequence[Case] | None) -> lis
 def read_cases(path: Path) -> list[Case]:
     """Cases of a table: parameters in its first row, then a case a row, each value with its unit.
 
+    A column `time_share` has shares without a unit, or times.
+
     Raises
     ------
     InputError
@@ -67,7 +71,9 @@ def read_cases(path: Path) -> list[Case]:
     where = path_text(path)
     if len(rows) < 2:
         raise InputError(where, "needs a row of parameters and below it a row for each case")
-    heads = [find_parameter(cell.strip(), f"{where} row 1") for cell in rows[0]]
+    heads = [_head(cell.strip(), f"{where} row 1") for cell in rows[0]]
+    if [head.name for head in heads] == [TIME_SHARE]:
+        raise InputError(f"{where} row 1", "needs a parameter beside time_share")
     cases, wrong = [], []
     for number, row in enumerate(rows[1:], start=2):
         try:
@@ -76,7 +82,18 @@ def read_cases(path: Path) -> list[Case]:
             wrong.append(error)
     if wrong:
         raise together(wrong)
+    column = [head.name for head in heads].index(TIME_SHARE) if TIME_SHARE in cases[0] else None
+    if column is not None and len({_is_plain(row[column]) for row in rows[1:]}) > 1:
+        raise InputError(f"{where}, {TIME_SHARE}", "must be shares, or times with their unit, not both")
     return cases
+
+
+def _head(name: str, where: str) -> Parameter:
+    return Parameter(TIME_SHARE, "-") if name == TIME_SHARE else find_parameter(name, where)
+
+
+def _is_plain(text: str) -> bool:
+    return re.fullmatch(NUMBER, text.strip()) is not None
 
 
 def _case(heads: Sequence[Parameter], row: Sequence[str], where: str) -> Case:
@@ -88,6 +105,11 @@ def _case(heads: Sequence[Parameter], row: Sequence[str], where: str) -> Case:
 
 
 def _value(parameter: Parameter, text: str, where: str) -> float:
+    if parameter.name == TIME_SHARE:
+        value = plain_number(text, where) if _is_plain(text) else parse(text, "s", where)
+        if value < 0.0:
+            raise InputError(where, "must be >= 0", got=shown(text))
+        return value
     if parameter.unit not in ("-", ""):
         return parse(text, parameter.unit, where)
     value = plain_number(text, where)

@@ -1,21 +1,25 @@
-"""Many cases of a study, each with other values: the chain and, if asked, the verdict."""
+"""Many cases of a study, each with other values: the chain and, if asked, margin and verdict."""
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from separatrix.cage import Judgement, judge
+from separatrix.cage import Judgement, judge, linear_whirl_frequency
+from separatrix.cage_choice import require_friction
 from separatrix.chain.contacts import BearingState
-from separatrix.chain.restitution import Restitution
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.explore.envelope import TIME_SHARE, Duty, WorstCase, duty, orders, time_shares, worst_case
+from separatrix.limits import own_threshold
 from separatrix.limits.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.runner import Runner
 from separatrix.study import Study
 from separatrix.units import (
+    Hertz,
     Metre,
     Newton,
     NewtonPerMetre,
@@ -40,8 +44,9 @@ Case = Mapping[str, float]
 class SweptCase:
     """What the chain gives for a case; None from where it was refused, with the reason.
 
-    Loads, contacts and slopes are those of the most loaded ball. The verdict with its evidence is None unless
-    it was asked for; what the names mean is said at `Judgement`.
+    Loads, contacts and slopes are those of the most loaded ball, clearances those of the running cage.
+    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless asked for.
+    Frequencies are those that a sensor on the housing would see (`explore.envelope.orders`).
     """
 
     case: int
@@ -62,6 +67,18 @@ class SweptCase:
     damping_ratio: Ratio | None = None
     restitution_factor: Ratio | None = None
     ball_cage_friction: Ratio | None = None
+    pocket_clearance: Metre | None = None
+    land_clearance: Metre | None = None
+    shaft_frequency: Hertz | None = None
+    cage_frequency: Hertz | None = None
+    outer_pass_frequency: Hertz | None = None
+    inner_pass_frequency: Hertz | None = None
+    linear_whirl_frequency: Hertz | None = None
+    orbit_frequency: Hertz | None = None
+    restitution_threshold: Ratio | None = None
+    restitution_threshold_low: Ratio | None = None
+    restitution_threshold_high: Ratio | None = None
+    margin: Ratio | None = None
     verdict: str | None = None
     probability_stable: Ratio | None = None
     probability_low: Ratio | None = None
@@ -72,6 +89,7 @@ class SweptCase:
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
     runs: int | None = None
+    time_share: Ratio | None = None
     reason: str = ""
 
 
@@ -84,11 +102,17 @@ EVIDENCE = {f.name for f in fields(SweptCase)} & {f.name for f in fields(Judgeme
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """Cases in their order, and the parameters that they vary; an interrupt leaves some out."""
+    """Cases in their order, and the parameters that they vary; an interrupt leaves some out.
+
+    `worst` is None where no case has an answer, `duty` without shares of time.
+    """
 
     parameters: tuple[Parameter, ...]
     cases: tuple[SweptCase, ...]
     verdicts: bool
+    margins: bool
+    worst: WorstCase | None
+    duty: Duty | None
     complete: bool
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -114,6 +138,7 @@ def sweep(
     cases: Sequence[Case],
     *,
     verdicts: bool = False,
+    margins: bool = False,
     runner: Runner | None = None,
 ) -> Sweep:
     """Run the chain for each case of a study.
@@ -123,31 +148,43 @@ def sweep(
     study : Study
         Where a case says nothing.
     cases : sequence of mapping
-        Values by the names of a study file, in SI units; every case has the same names.
+        Values by the names of a study file, in SI units, and perhaps ``"time_share"`` (shares, hours: any
+        unit, for they are divided by their sum); every case has the same names.
     verdicts : bool
         Whether to run the whole ensemble of each case, too.
+    margins : bool
+        Whether to compute the threshold of each case, too.
     runner : Runner, optional
         How the runs are made; the numbers do not depend on it.
 
     Raises
     ------
     InputError
-        No cases or too many, a name that a sweep cannot vary, or cases that differ in their names.
+        No cases or too many, a name that a sweep cannot vary, cases that differ in their names, or shares
+        of time below zero.
     Interrupted
         With the cases that were finished, if any was.
     """
-    names = _names(cases)
+    names, shares = _names(cases), time_shares(cases)
     known = parameters()
     runner = runner or Runner()
 
     def run(place: int) -> SweptCase:
-        return _swept(study, place, cases[place], runner if verdicts else None)
+        values = {name: cases[place][name] for name in names}
+        found = SweptCase(
+            case=place, values=tuple(values.values()), time_share=shares[place] if shares else None
+        )
+        return _swept(study, found, values, runner, verdicts=verdicts, margins=margins)
 
     def table(found: Mapping[int, SweptCase]) -> Sweep:
+        done = tuple(found[place] for place in sorted(found))
         return Sweep(
             parameters=tuple(known[name] for name in names),
-            cases=tuple(found[place] for place in sorted(found)),
+            cases=done,
             verdicts=verdicts,
+            margins=margins,
+            worst=worst_case(done),
+            duty=duty(done),
             complete=len(found) == len(cases),
         )
 
@@ -159,31 +196,40 @@ def sweep(
 def _names(cases: Sequence[Case]) -> list[str]:
     if not 1 <= len(cases) <= MOST_CASES:
         raise InputError("A sweep", f"must have between 1 and {MOST_CASES} cases", got=str(len(cases)))
-    names = list(cases[0])
+    all_names = list(cases[0])
+    names = [name for name in all_names if name != TIME_SHARE]
     known = parameters()
     for name in names:
         if name not in known or name in (RESTITUTION, KICK):
             raise InputError(name, "is not a numeric input that a sweep can vary")
     for place, case in enumerate(cases):
-        if list(case) != names:
-            raise InputError(f"Case {place}", f"must give {', '.join(names)}", got=", ".join(case))
+        if list(case) != all_names:
+            raise InputError(f"Case {place}", f"must give {', '.join(all_names)}", got=", ".join(case))
     return names
 
 
-def _swept(study: Study, place: int, case: Case, runner: Runner | None) -> SweptCase:
+def _swept(
+    study: Study, found: SweptCase, case: Case, runner: Runner, *, verdicts: bool, margins: bool
+) -> SweptCase:
     """One case, as far as the chain goes."""
-    found = SweptCase(case=place, values=tuple(case.values()))
     try:
-        solution = solve(varied(study, case))
+        asked = varied(study, case)
+        solution = solve(asked)
         found = replace(found, **_of_bearing(solution.bearing))
+        turning: dict[str, Any] = orders(
+            asked.operation, asked.bearing.ball_count, solution.bearing.cage_speed
+        )
+        found = replace(found, **turning)
         traction = solution.slopes
         found = replace(found, slope_inner=traction.inner.slope, slope_outer=traction.outer.slope)
         if study.cage is None:
             return found
-        found = replace(found, **_of_restitution(solution.restitution))
+        found = replace(found, **_of_restitution(solution))
         friction = solution.friction
         found = replace(found, ball_cage_friction=None if friction is None else friction.mean)
-        return found if runner is None else replace(found, **_verdict(solution, runner))
+        if margins:
+            found = replace(found, **_margin(solution, runner))
+        return replace(found, **_verdict(solution, runner)) if verdicts else found
     except SeparatrixError as error:
         return replace(found, reason=str(error))
 
@@ -198,15 +244,30 @@ def _of_bearing(state: BearingState) -> dict[str, Any]:
     return found
 
 
-def _of_restitution(found: Restitution) -> dict[str, Any]:
+def _of_restitution(solution: Solution) -> dict[str, Any]:
+    """Restitution factor, running clearances, and the whirl without clearance."""
     names = ("ball_cage_stiffness", "race_damping", "damping_ratio", "restitution_factor")
-    return {name: getattr(found, name) for name in names}
+    found: dict[str, Any] = {name: getattr(solution.restitution, name) for name in names}
+    found |= {name: getattr(solution.design, name) for name in ("pocket_clearance", "land_clearance")}
+    return found | {"linear_whirl_frequency": linear_whirl_frequency(solution.cage_with(0.0))}
+
+
+def _margin(solution: Solution, runner: Runner) -> dict[str, Any]:
+    """Threshold at the pocket's friction, and the distance to it."""
+    require_friction(solution.study)
+    friction, eta = solution.cage.ball_cage_friction, solution.restitution.restitution_factor
+    found = own_threshold(solution.cage_with(0.0), solution.stability, friction, runner)
+    ends = {f"restitution_threshold_{end}": getattr(found, end) for end in ("low", "high")}
+    return {"restitution_threshold": found.value, **ends, "margin": found.value - eta}
 
 
 def _verdict(solution: Solution, runner: Runner) -> dict[str, Any]:
-    """Verdict of the whole ensemble, with its evidence."""
+    """Verdict of the whole ensemble, with its evidence; the orbit of the runs that whirl."""
     cage = solution.cage
     judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
     found = {name: getattr(judged, name) for name in EVIDENCE}
+    whirls = any(count.whirls and count.kick == judged.worst_kick for count in judged.by_kick)
+    if whirls and judged.whirl_ratio is not None:
+        found["orbit_frequency"] = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
     motion = None if judged.cage_motion is None else judged.cage_motion.value
     return found | {"verdict": judged.verdict.name, "cage_motion": motion}

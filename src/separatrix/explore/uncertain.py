@@ -41,6 +41,7 @@ from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
 from separatrix.ranking.plausible import Moved, beyond_motion
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
+from separatrix.ranking.second import Pocket, pocket_of
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
@@ -144,11 +145,11 @@ def _answer(
 
 
 def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], object]]:
-    """Inverse questions: a friction for each pocket stiffness, a film for each candidate."""
+    """Inverse questions: a friction for each pocket, a film for each candidate."""
     ranking = ranking_question(drawn.study)
-    alike: dict[float, list[str]] = {}
+    alike: dict[Pocket, list[str]] = {}
     for name in dict.fromkeys(case.candidate for case in drawn.friction):
-        alike.setdefault(drawn.central[name].ball_cage_stiffness, []).append(name)
+        alike.setdefault(pocket_of(drawn.central[name]), []).append(name)
     pieces: dict[str, Callable[[], object]] = {
         f"friction {names[0]}": partial(
             allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, runner

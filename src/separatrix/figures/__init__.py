@@ -11,7 +11,9 @@ from matplotlib.figure import Figure
 from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
+    comparison,
     contact,
+    envelope,
     map,
     mobility,
     ranking,
@@ -34,7 +36,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
-    "sweep": map.sweep_figures,
+    "sweep": envelope.figures,
     "contact": contact.figures,
 }
 """Verb -> what yields its pictures, each with the name of its file."""
@@ -46,17 +48,21 @@ def draw(
     other: xr.Dataset | None = None,
     *,
     names: tuple[str, str] = ("", ""),
+    only: str | None = None,
 ) -> Iterator[tuple[str, Figure]]:
     """Yield name and figure of every picture of an answer.
 
     Parameters
     ----------
     verb : str
-        The question; `compare` draws two simulations together.
+        The question; `compare` draws two simulations, stability curves or rankings together.
     data, other : Dataset
         From `present.dataset` or `present.load`; only `compare` takes a second one.
     names : tuple of str
         What `compare` writes above the two columns; by default the titles of the studies.
+    only : str, optional
+        Only the picture of this name, without title and operating point above it: for a document that has
+        them already.
     """
     if (verb == "compare") != (other is not None):
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
@@ -67,11 +73,13 @@ def draw(
                 for one, name in zip((data, other), names, strict=True)
             ]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
-            yield "comparison", settled(simulation.comparison(pair[0][0], pair[1][0], titles))
+            together = comparison.curves if "restitution_factor" in data.sizes else simulation.comparison
+            yield "comparison", settled(together(pair[0][0], pair[1][0], titles))
         elif verb in FIGURES:
             data = literal_texts(data)
             for name, figure in FIGURES[verb](data):
-                yield name, settled(headed(figure, data))
+                if only in (None, name):
+                    yield name, settled(figure if only else headed(figure, data))
 
 
 def save_all(pictures: Iterable[tuple[str, Figure]], folder: Path) -> None:

@@ -206,6 +206,7 @@ def _thresholds(
         data[f"{prefix}restitution_threshold{end}"].values.astype(float) for end in ("", "_low", "_high")
     )
     places = np.flatnonzero(np.isfinite(found))
+    data = data[[name for name in data.data_vars if str(name).startswith(prefix)]]  # few are sliced faster
     return Series(
         name=title,
         kind="points",

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
+from separatrix.bearing_design import ROOM, Expansion
 from separatrix.errors import DataError, InputError
 from separatrix.library.reading import Content, read_library
 from separatrix.library.records import KINDS, PROPERTIES, FrictionTable, LibraryFile, Record, choose
@@ -93,7 +94,11 @@ class Library:
 
 def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
-    chosen = {key: choose(data, temperature, PROPERTIES[key].words) for key, data in record.data.items()}
+    chosen = {
+        key: choose(data, temperature, PROPERTIES[key].words)
+        for key, data in record.data.items()
+        if key != "thermal_expansion"  # of which all data serve, at any temperature
+    }
     sources = [f"{PROPERTIES[key].words}: {choice.datum.source}" for key, choice in chosen.items()]
     confidences = [f"{PROPERTIES[key].words}: {choice.datum.confidence}" for key, choice in chosen.items()]
     composition = [f"Composition: {record.composition}"] if record.composition else []
@@ -101,8 +106,13 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     # numbers on which any answer depends
     acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
     taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
+    expansions = (
+        Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence)
+        for d in record.data.get("thermal_expansion", ())
+    )
     return Material(
         name=record.name,
+        expansions=tuple(sorted(expansions)),
         source=". ".join([*composition, *remark, *sources]),
         confidence=", ".join(confidences),
         record={**record.plain(), "taken": taken, "taken_at": temperature},

@@ -33,6 +33,7 @@ PROPERTIES = {
     "poisson_ratio": Property("-", "Poisson's ratio", 0.001, 0.499),
     "density": Property("kg/m3", "density", 1e-6, 1e5),
     "compressive_strength": Property("Pa", "compressive strength", 1e4, 1e11),
+    "thermal_expansion": Property("m/m/K", "thermal expansion", -1e-4, 1e-3),
     "viscosity": Property("Pa s", "viscosity", 1e-8, 1e3),
     "heat_capacity": Property("J/kg/K", "heat capacity", 1.0, 1e6),
     "triple_temperature": Property("K", "triple point", 0.1, 5000.0),
@@ -43,12 +44,11 @@ PROPERTIES = {
 """Every number that a record may hold."""
 
 ELASTIC = ("elastic_modulus", "poisson_ratio")
-SOLID = {key: PROPERTIES[key] for key in (*ELASTIC, "compressive_strength")} | {
-    "density": PROPERTIES["density"]._replace(low=1.0)
-}
+SOLID_ONLY = (*ELASTIC, "compressive_strength", "thermal_expansion")
+SOLID = {key: PROPERTIES[key] for key in SOLID_ONLY} | {"density": PROPERTIES["density"]._replace(low=1.0)}
 """Numbers of a solid; its density is not that of a gas."""
 
-FLUID = {key: known for key, known in PROPERTIES.items() if key not in (*ELASTIC, "compressive_strength")}
+FLUID = {key: known for key, known in PROPERTIES.items() if key not in SOLID_ONLY}
 """Numbers of a fluid."""
 
 CONDITIONS = {

@@ -7,6 +7,7 @@ from separatrix.limits.point import CriticalFriction, critical_friction
 from separatrix.limits.response import SEARCHED_FRICTION, Crossing, Response, Side
 from separatrix.limits.threshold import (
     RestitutionThreshold,
+    own_threshold,
     restitution_threshold,
     threshold_factors,
     threshold_points,
@@ -31,6 +32,7 @@ __all__ = [
     "curve_of_points",
     "hard_limit",
     "linear_limit",
+    "own_threshold",
     "race_damping_at",
     "restitution_threshold",
     "stability_curve",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from separatrix.cage import PlanarCage
-from separatrix.limits.curve import Tracer, height
+from separatrix.limits.curve import Node, Tracer, height
 from separatrix.limits.growth import GrowthCounter
 from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import Side
@@ -88,6 +88,28 @@ def threshold_points(
     return runner.work_out(
         tracer.point, tracer.first, into=lambda found: rising(found.values()), more=tracer.more
     )
+
+
+def own_threshold(
+    cage: PlanarCage, settings: StabilitySettings, friction: Ratio, runner: Runner
+) -> RestitutionThreshold:
+    """Threshold of one friction: the curve is followed, here and now, as finely as that needs.
+
+    Raises
+    ------
+    Interrupted
+        A threshold needs all the points.
+    """
+    tracer = Tracer(
+        GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False, frictions=[friction]
+    )
+    found: dict[Node, CriticalFriction] = {}
+    waiting = list(tracer.first)
+    while waiting:
+        node = waiting.pop()
+        found[node] = tracer.point(node)
+        waiting += [one for one in tracer.more(node, found) if one not in found and one not in waiting]
+    return restitution_threshold(rising(found.values()), friction)
 
 
 def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:

@@ -17,6 +17,7 @@ from separatrix.chain.mobility import SlipLaw
 from separatrix.errors import SeparatrixError
 from separatrix.present.walk import Group, Leaf, Table, shape
 from separatrix.study import (
+    ClearanceState,
     ContactPressure,
     Guidance,
     KinematicModel,
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 Document = dict[str, Any]
 
 SPELLED = (
-    *(CageMotion, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape, PressureSlip, Race),
-    *(SlipLaw, TractionModel, Worn),
+    *(CageMotion, ClearanceState, ContactPressure, Guidance, KinematicModel, PocketContact, PocketShape),
+    *(PressureSlip, Race, SlipLaw, TractionModel, Worn),
 )
 """Enumerations whose values are shown; of the others the names."""
 
@@ -54,7 +55,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
     """
     from separatrix import __version__
     from separatrix.present.shapes import all_notes, shape
-    from separatrix.study_file import resolved
+    from separatrix.study_file import provenance_of, resolved
 
     with null_if_not_finite() as left_out:
         body = plain(Group(shape(answer)), verb)
@@ -74,6 +75,7 @@ def document(verb: str, answer: object, study: Study, notes: Sequence[str]) -> D
         "seed": study.stability.seed,
         **body,
         "warnings": warnings,
+        "provenance": plain(provenance_of(study, verb), "provenance"),
     }
 
 

@@ -24,6 +24,7 @@ from separatrix.cage import History, Judgement, SpaceHistory
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
+from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.mobility import Mobility
@@ -67,7 +68,11 @@ def _(at: RaceContact) -> Node:
 
 @shape.register
 def _(found: BearingState) -> Node:
-    return shape(found.equilibrium) | {"contacts": _contacts(found)}
+    return shape(found.equilibrium) | {"contacts": _contacts(found), **_clearances(found.clearances)}
+
+
+def _clearances(found: Clearances | None) -> Node:
+    return {"clearances": Leaf(None) if found is None else Group(shape(found))}
 
 
 def _contacts(found: BearingState) -> Group:
@@ -77,7 +82,8 @@ def _contacts(found: BearingState) -> Group:
 @shape.register
 def _(found: CheckAnswer) -> Node:
     at_rest = Leaf(None) if found.static is None else _contacts(found.static)
-    return {"static": at_rest, "static_reason": Leaf(found.static_reason)}
+    node: Node = {"static": at_rest, "static_reason": Leaf(found.static_reason)}
+    return node | _clearances(found.clearances) | {"clearances_reason": Leaf(found.clearances_reason)}
 
 
 @shape.register
@@ -106,6 +112,7 @@ def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve
 def _chain(found: Solution) -> Node:
     """Restitution and the contacts, which have the slopes of their traction curves."""
     node = shape(found.restitution) | {"stiffness_source": Leaf(found.stiffness_source)}
+    node |= _clearances(found.clearances)
     contacts, curves = found.bearing, found.slopes
     for race, at, curve in (
         ("inner", contacts.inner, curves.inner),
@@ -264,7 +271,10 @@ def _(found: Sweep) -> Node:
         values: Node = {at.name: Leaf(value, at.unit or "-") for at, value in given}
         del case["values"]
         cases.append({"case": case.pop("case")} | values | case)
-    rest: Node = {"verdicts": Leaf(found.verdicts), "complete": Leaf(found.complete)}
+    rest: Node = {"verdicts": Leaf(found.verdicts), "margins": Leaf(found.margins)}
+    for name, part in (("worst", found.worst), ("duty", found.duty)):
+        rest[name] = Leaf(None) if part is None else Group(shape(part))
+    rest["complete"] = Leaf(found.complete)
     return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
 
 

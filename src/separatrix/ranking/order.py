@@ -47,15 +47,19 @@ def meet(other: Interval, leader: Interval) -> bool:
     return other[2] >= leader[1]
 
 
+POCKET = ("ball_cage_stiffness", "pocket_clearance", "land_clearance")
+"""What candidates with one curve have alike."""
+
+
 def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
     """Whether a row and the leader of its group do not differ beyond their scatter.
 
     On one curve the order of thresholds is the order of frictions whatever the curve, so frictions decide;
-    with another pocket stiffness there are another curve and eta, and the intervals of the margins decide.
+    with another pocket there are another curve and eta, and the intervals of the margins decide.
     """
     if row.margin == leader.margin:
         return True
-    if row.ball_cage_stiffness == leader.ball_cage_stiffness:
+    if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
     return meet(margin_interval(row), margin_interval(leader))
 

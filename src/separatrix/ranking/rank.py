@@ -44,28 +44,28 @@ from separatrix.ranking.records import (
     Ranking,
     Row,
 )
-from separatrix.ranking.second import Second, is_beyond, second_verdict
+from separatrix.ranking.second import Pocket, Second, is_beyond, pocket_of, second_verdict
 from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study
-from separatrix.units import NewtonPerMetre, Ratio
+from separatrix.units import Ratio
 
-Key = tuple[NewtonPerMetre, Ratio]
-"""Pocket stiffness, and a friction: what a verdict is about."""
+Key = tuple[Pocket, Ratio]
+"""A pocket, and a friction: what a verdict is about."""
 
 
-Piece = tuple[NewtonPerMetre, Ratio | Node] | Case | Second
-"""A verdict, or with the pocket stiffness a node of its curve; of drawn bearings; a second verdict."""
+Piece = tuple[Pocket, Ratio | Node] | Case | Second
+"""A verdict, or with the pocket a node of its curve; of drawn bearings; a second verdict."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Question:
-    """Solutions by pocket stiffness, and the frictions of the candidates with them."""
+    """Solutions by pocket, and the frictions of the candidates with them."""
 
     settings: StabilitySettings
-    cages: Mapping[NewtonPerMetre, Solution]
-    tracers: Mapping[NewtonPerMetre, Tracer]
-    stiffness: Mapping[str, NewtonPerMetre]
-    reference: NewtonPerMetre
+    cages: Mapping[Pocket, Solution]
+    tracers: Mapping[Pocket, Tracer]
+    pockets: Mapping[str, Pocket]
+    reference: Pocket
     drawn: DrawnBearings | None
     own: frozenset[Key]
     runner: Runner
@@ -73,14 +73,14 @@ class _Question:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Findings:
-    """What was computed, by pocket stiffness; an interrupt leaves entries out."""
+    """What was computed, by pocket; an interrupt leaves entries out."""
 
-    points: Mapping[NewtonPerMetre, Sequence[CriticalFriction]]
+    points: Mapping[Pocket, Sequence[CriticalFriction]]
     here: CriticalFriction | None
     judgements: Mapping[Key, Judgement]
     drawn: Mapping[Case, Judgement]
     seconds: Mapping[Key, Judgement]
-    traced: Mapping[NewtonPerMetre, bool]
+    traced: Mapping[Pocket, bool]
     complete: bool
 
 
@@ -123,9 +123,9 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     means = {name: overall(own.get(e) for e in asked.environments) for name, own in seen.items()}
     tables = (*frictions.values(), means)
     keys = sorted(
-        {(question.stiffness[n], f.mean) for table in tables for n, f in table.items() if f is not None}
+        {(question.pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     )
-    here = {(question.stiffness[n], f.mean) for n, f in frictions[environment].items() if f is not None}
+    here = {(question.pockets[n], f.mean) for n, f in frictions[environment].items() if f is not None}
     question = replace(question, tracers=_tracers(question, study.stability, keys), own=frozenset(here))
 
     def ranking(found: _Findings) -> Ranking:
@@ -136,7 +136,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             candidate=reference_candidate(study, asked).name,
             restitution_factor=_eta(question, question.reference),
             restitution_factor_free_spin=reference.restitution.restitution_factor_free_spin,
-            ball_cage_stiffness=question.reference,
+            ball_cage_stiffness=question.reference.stiffness,
             pocket=reference.pocket,
             friction_scatter=asked.friction_scatter,
             solid_lubrication_limit=SOLID_LUBRICATION_LIMIT,
@@ -171,13 +171,13 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
 
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
     solved = {c.name: solve(study, c) for c in asked.candidates}
-    cages = {one.ball_cage_stiffness: one for one in solved.values()}
-    reference = solved[reference_candidate(study, asked).name].ball_cage_stiffness
+    cages = {pocket_of(one): one for one in solved.values()}
+    reference = pocket_of(solved[reference_candidate(study, asked).name])
     return _Question(
         settings=cages[reference].stability,
         cages=cages,
         tracers={},
-        stiffness={name: one.ball_cage_stiffness for name, one in solved.items()},
+        pockets={name: pocket_of(one) for name, one in solved.items()},
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
         own=frozenset(),
@@ -185,24 +185,22 @@ def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question
     )
 
 
-def _tracers(
-    question: _Question, settings: StabilitySettings, keys: Sequence[Key]
-) -> dict[NewtonPerMetre, Tracer]:
-    """For each pocket stiffness: the reference's curve is shown, of the others the thresholds count."""
+def _tracers(question: _Question, settings: StabilitySettings, keys: Sequence[Key]) -> dict[Pocket, Tracer]:
+    """For each pocket: the reference's curve is shown, of the others the thresholds count."""
     factors = threshold_factors(settings)
     return {
         k: Tracer(
             GrowthCounter(one.cage_with(0.0), settings, question.runner),
             factors,
             band=False,
-            frictions=None if k == question.reference else [f for stiffness, f in keys if stiffness == k],
+            frictions=None if k == question.reference else [f for pocket, f in keys if pocket == k],
         )
         for k, one in question.cages.items()
     }
 
 
-def _eta(question: _Question, stiffness: NewtonPerMetre) -> Ratio:
-    return question.cages[stiffness].restitution.restitution_factor
+def _eta(question: _Question, pocket: Pocket) -> Ratio:
+    return question.cages[pocket].restitution.restitution_factor
 
 
 def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findings], Ranking]) -> Ranking:
@@ -246,12 +244,12 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
             raise LookupError(piece)
         return question.drawn.judge(piece, question.settings.kicks, question.runner)
     if isinstance(piece, Second):
-        solution = question.cages[piece.stiffness]
+        solution = question.cages[piece.pocket]
         return second_verdict(solution, piece.friction, question.settings, question.runner)
-    stiffness, what = piece
+    pocket, what = piece
     if isinstance(what, tuple):
-        return question.tracers[stiffness].point(what)
-    cage = question.cages[stiffness].cage_with(what)
+        return question.tracers[pocket].point(what)
+    cage = question.cages[pocket].cage_with(what)
     return judge(cage, question.runner.whole_ensemble(cage, question.settings))
 
 
@@ -261,13 +259,13 @@ def _more(
     """Nodes of the same curve that are wanted once this one is known, or a second verdict."""
     if isinstance(piece, Case | Second):
         return []
-    stiffness, node = piece
+    pocket, node = piece
     found = results[piece]
     if not isinstance(node, tuple):
-        second = isinstance(found, Judgement) and _wants_second(question, (stiffness, node), found)
-        return [Second(stiffness, node)] if second else []
-    wanted = question.tracers[stiffness].more(node, _points_of(results, stiffness))
-    return [(stiffness, node) for node in wanted]
+        second = isinstance(found, Judgement) and _wants_second(question, (pocket, node), found)
+        return [Second(pocket, node)] if second else []
+    wanted = question.tracers[pocket].more(node, _points_of(results, pocket))
+    return [(pocket, node) for node in wanted]
 
 
 def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
@@ -276,15 +274,15 @@ def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
 
 
 def _points_of(
-    results: Mapping[Piece, CriticalFriction | Judgement], stiffness: NewtonPerMetre
+    results: Mapping[Piece, CriticalFriction | Judgement], pocket: Pocket
 ) -> dict[Node, CriticalFriction]:
-    """Points of the curve of one pocket stiffness."""
+    """Points of the curve of one pocket."""
     return {
         what: found
         for piece, found in results.items()
         if isinstance(found, CriticalFriction) and not isinstance(piece, Case | Second)
         for k, what in [piece]
-        if k == stiffness and isinstance(what, tuple)
+        if k == pocket and isinstance(what, tuple)
     }
 
 
@@ -310,13 +308,13 @@ def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
     if len(question.cages) < 2 or not all(found.traced.values()):
         return {"own_eta": None, "own_curves": None}
     nodes = {
-        stiffness: ([point.restitution_factor for point in points], [height(point) for point in points])
-        for stiffness, points in found.points.items()
+        pocket: ([point.restitution_factor for point in points], [height(point) for point in points])
+        for pocket, points in found.points.items()
     }
     grid = sorted({eta for etas, _ in nodes.values() for eta in etas})
     curves = (
-        OwnCurve(name=name, own_critical_friction=tuple(np.interp(grid, *nodes[stiffness]).tolist()))
-        for name, stiffness in question.stiffness.items()
+        OwnCurve(name=name, own_critical_friction=tuple(np.interp(grid, *nodes[pocket]).tolist()))
+        for name, pocket in question.pockets.items()
     )
     return {"own_eta": tuple(grid), "own_curves": tuple(curves)}
 
@@ -345,8 +343,8 @@ def _row(
     question: _Question, found: _Findings, case: Case, friction: MeanFriction, chance: Ratio | None
 ) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
-    stiffness = question.stiffness[case.candidate]
-    eta = _eta(question, stiffness)
+    pocket = question.pockets[case.candidate]
+    eta = _eta(question, pocket)
     row = NotFinished(
         name=case.candidate,
         friction=friction.mean,
@@ -355,18 +353,20 @@ def _row(
         probability_lowest_friction=chance,
         friction_scatter_assumed=friction.assumed,
         extrapolation=friction.extrapolation,
-        ball_cage_stiffness=stiffness,
+        ball_cage_stiffness=pocket.stiffness,
+        pocket_clearance=pocket.clearance,
+        land_clearance=pocket.land or None,
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    judgement = found.judgements.get((stiffness, friction.mean))
+    judgement = found.judgements.get((pocket, friction.mean))
     if judgement is None:
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
     drawn = found.drawn.get(case)
-    second = found.seconds.get((stiffness, friction.mean))
-    threshold = _threshold(found, stiffness, friction)
+    second = found.seconds.get((pocket, friction.mean))
+    threshold = _threshold(found, pocket, friction)
     if threshold is None:
         unfinished = f"{judgement.reason} Its threshold: {NOT_FINISHED}."
         return replace(row, judgement=judgement, over_inputs=drawn, other_ball=second, reason=unfinished)
@@ -382,12 +382,10 @@ def _row(
     )
 
 
-def _threshold(
-    found: _Findings, stiffness: NewtonPerMetre, friction: MeanFriction
-) -> RestitutionThreshold | None:
+def _threshold(found: _Findings, pocket: Pocket, friction: MeanFriction) -> RestitutionThreshold | None:
     """Threshold at the mean friction, its interval widened by those at the ends of the friction's."""
-    points = found.points[stiffness]
-    if not found.traced[stiffness]:
+    points = found.points[pocket]
+    if not found.traced[pocket]:
         return None
     value, *ends = (restitution_threshold(points, f) for f in (friction.mean, *friction.interval()))
     return replace(value, low=min(t.low for t in ends), high=max(t.high for t in ends))

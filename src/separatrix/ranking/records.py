@@ -9,7 +9,7 @@ from separatrix.cage import Judgement
 from separatrix.chain.pocket import PocketConditions
 from separatrix.limits import StabilityCurve
 from separatrix.study import BallModel, MotionModel
-from separatrix.units import MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
+from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +36,8 @@ class NotFinished:
     friction_scatter_assumed: bool
     extrapolation: tuple[str, ...]
     ball_cage_stiffness: NewtonPerMetre
+    pocket_clearance: Metre
+    land_clearance: Metre | None
     restitution_factor: Ratio
     judgement: Judgement | None = None
     over_inputs: Judgement | None = None
@@ -64,6 +66,8 @@ class Ranked:
         In what respect the friction is extrapolated beyond its tests, in words.
     ball_cage_stiffness, restitution_factor : float
         Of its pocket [N/m], and of the chain with it [-].
+    pocket_clearance, land_clearance : float
+        Of its cage as it runs; None without a land [m].
     restitution_threshold, restitution_threshold_low, restitution_threshold_high : float
         Largest restitution factor at which it is stable, and its 95 % interval [-].
     margin : float
@@ -92,6 +96,8 @@ class Ranked:
     friction_scatter_assumed: bool
     extrapolation: tuple[str, ...]
     ball_cage_stiffness: NewtonPerMetre
+    pocket_clearance: Metre
+    land_clearance: Metre | None
     restitution_factor: Ratio
     restitution_threshold: Ratio
     restitution_threshold_low: Ratio

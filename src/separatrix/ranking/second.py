@@ -3,24 +3,39 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from separatrix.cage import Judgement, PlanarCage, judge
 from separatrix.chain.solution import Solution, solve
 from separatrix.ranking.plausible import transmitted_force
 from separatrix.runner import PART, Runner
 from separatrix.study import BallModel, StabilitySettings
-from separatrix.units import NewtonPerMetre, Ratio
+from separatrix.units import Metre, NewtonPerMetre, Ratio
 
 NOTICED: Ratio = 0.1
 """Pocket force over the races' capacity from which the models of a ball may differ: there the law of
 traction still has its slope, and at the capacity itself a fifth less."""
 
 
+class Pocket(NamedTuple):
+    """What the cages of candidates differ in besides friction; 0 without a land."""
+
+    stiffness: NewtonPerMetre
+    clearance: Metre
+    land: Metre
+
+
+def pocket_of(solution: Solution) -> Pocket:
+    """Stiffness and running clearances of the cage."""
+    design = solution.design
+    return Pocket(solution.ball_cage_stiffness, design.pocket_clearance, design.land_clearance or 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Second:
     """What a second verdict is about."""
 
-    stiffness: NewtonPerMetre
+    pocket: Pocket
     friction: Ratio
 
 
@@ -31,9 +46,9 @@ def is_beyond(solution: Solution, judgement: Judgement) -> bool:
 
 def with_other_ball(solution: Solution, friction: Ratio) -> PlanarCage:
     """Return the cage with the model of a ball that its study does not ask for."""
-    is_damper = solution.design.ball is BallModel.DAMPER
+    is_damper = solution.stated_design.ball is BallModel.DAMPER
     other = BallModel.TRACTION if is_damper else BallModel.DAMPER
-    study = replace(solution.study, cage=replace(solution.design, ball=other))
+    study = replace(solution.study, cage=replace(solution.stated_design, ball=other))
     return solve(study, solution.candidate).cage_with(friction)
 
 

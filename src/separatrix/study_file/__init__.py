@@ -6,14 +6,16 @@ import warnings
 from pathlib import Path
 
 from separatrix.errors import InputError, ValidityWarning
+from separatrix.kept_files import noting
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
 from separatrix.study_file.document import TEMPLATE, find, load, shipped_studies
+from separatrix.study_file.kept import asked_by, keep, provenance_of
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import LEFT_OUT, build_study
 from separatrix.units import printable
 
-__all__ = ["read_study", "require", "resolved", "shipped_studies", "template"]
+__all__ = ["asked_by", "provenance_of", "read_study", "require", "resolved", "shipped_studies", "template"]
 
 
 def read_study(study: str | Path) -> Study:
@@ -32,10 +34,11 @@ def read_study(study: str | Path) -> Study:
     path = find(study)
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
-    built = build_study(load(path), name)
+    with noting() as reading:
+        built = build_study(load(path), name)
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
-    return built
+    return keep(built, path, reading)
 
 
 def template() -> str:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeGuard
 
 from separatrix.errors import InputError
+from separatrix.kept_files import note
 from separatrix.regular_file import size_of, unreadable
 from separatrix.units import NUMBER, printable, shown
 from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
@@ -108,7 +109,9 @@ def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> list[S
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # on parts of the workbook that are not read
-            reader = ExcelReader(BytesIO(path.read_bytes()), True, data_only=True)
+            content = path.read_bytes()
+            note(path, content)
+            reader = ExcelReader(BytesIO(content), True, data_only=True)
             reader.read()
             parts = {sheet.name: relation.target for sheet, relation in reader.parser.find_sheets()}
             if absent := [name for name, part in parts.items() if part not in reader.valid_files]:

@@ -13,6 +13,7 @@ from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, noted, together
+from separatrix.kept_files import place
 from separatrix.library import Library, beside, library_files, with_files
 from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
 from separatrix.toml_values import folded, nearest
@@ -131,7 +132,8 @@ def load(path: Path, above: tuple[Path, ...] = ()) -> Document:
     where, base = document.locate("extends"), document.top["extends"]
     if not isinstance(base, str):
         raise InputError(where, "must be a path or the name of a shipped example", shown(base))
-    target = path.parent / base if base and isfile(path.parent / base) else shipped_studies().get(base)
+    beside_it = place(path.parent, base)
+    target = beside_it if base and isfile(beside_it) else shipped_studies().get(base)
     if target is None:
         raise InputError(where, "does not name a file beside this one", shown(base), _shipped_names(base))
     chain = (*above, path.resolve())
@@ -240,10 +242,11 @@ def library_of(document: Document) -> Library:
 def _named(folder: Path, name: Any) -> list[Path]:
     if not isinstance(name, str) or not name or not name.isprintable():
         raise InputError("library", "must be the path of a file or a folder, in quotes", shown(name))
-    if not exists(folder / name):
+    path = place(folder, name)
+    if not exists(path):
         cure = "It is taken from the folder of the study."
         raise InputError("library", "does not name a file or folder", shown(name), cure)
-    found = library_files(folder / name)
+    found = library_files(path)
     if not found:
         raise InputError("library", "names a folder without a .toml file", shown(name))
     return found

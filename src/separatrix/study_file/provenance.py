@@ -100,7 +100,7 @@ def _value(study: Study, record: object, section: str, name: str) -> dict[str, A
     value, unit, key = getattr(record, name), unit_of(type(record), name), f"{section}.{name}"
     if isinstance(value, Material):
         item = _material(value)
-        for number in ("elastic_modulus", "poisson_ratio", "density"):
+        for number in ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion"):
             one = study.distributions.get(f"{section if section == 'film' else key}.{number}")
             if one is not None:
                 item[number]["distribution"] = _distribution(one, item[number]["unit"])
@@ -133,7 +133,7 @@ def _origin(study: Study, key: str, item: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _material(material: Material) -> dict[str, Any]:
-    numbers = ("elastic_modulus", "poisson_ratio", "density", "compressive_strength")
+    numbers = ("elastic_modulus", "poisson_ratio", "density", "compressive_strength", "thermal_expansion")
     return {
         "name": material.name,
         **{key: {"value": getattr(material, key), "unit": unit_of(Material, key)} for key in numbers},

@@ -16,6 +16,7 @@ from separatrix.errors import InputError, noted, together
 from separatrix.friction.file import read_friction
 from separatrix.friction.law import StatedFriction
 from separatrix.friction.records import CONDITIONS
+from separatrix.kept_files import place
 from separatrix.library import FrictionTable
 from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import CageDesign, Candidate, Friction, RankingQuestion
@@ -61,7 +62,7 @@ def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...
     name, scatter = given["friction"], float(given.get("friction_scatter", DEFAULT_SCATTER))
     frictions: Mapping[str, Mapping[str, Friction | None]]
     if name.endswith(".toml"):
-        environments, frictions = _of_file(document.friction_folder / name, given, scatter)
+        environments, frictions = _of_file(place(document.friction_folder, name), given, scatter)
     else:
         name = values.known_name(name, "friction table", "[ranking] friction")
         found = values.current_library().friction_table(name)

@@ -14,6 +14,7 @@ from separatrix import library
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import (
     BallModel,
+    ClearanceState,
     ContactPressure,
     Guidance,
     KinematicModel,
@@ -75,6 +76,7 @@ _CHOICES: dict[str, type[Enum]] = {
     "traction.pressure": ContactPressure,
     "traction.pressure_slip": PressureSlip,
     "cage.guidance": Guidance,
+    "cage.clearances": ClearanceState,
     "cage.pocket_shape": PocketShape,
     "cage.ball": BallModel,
     "cage.motion": MotionModel,

@@ -355,6 +355,7 @@ _PROPERTIES: dict[str, Reader] = {
     "elastic_modulus": number("Pa"),
     "poisson_ratio": number("-"),
     "density": number("kg/m3"),
+    "thermal_expansion": number("m/m/K"),
     "compressive_strength": quantity("Pa"),
     "name": text,
     "source": text,

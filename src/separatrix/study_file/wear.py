@@ -9,6 +9,7 @@ from typing import Any
 
 from separatrix.errors import InputError, noted, together
 from separatrix.film_design import MOST_PLACES, Wear, Worn
+from separatrix.kept_files import place
 from separatrix.study_file import values
 from separatrix.toml_text import Kind, path_text, read_text
 from separatrix.toml_values import Reader, build, choice, list_of, quantity, table, text
@@ -39,7 +40,7 @@ def wear(value: Any, where: str) -> Any:
             rule = "and across with thicknesses exclude each other"
             raise InputError(f"{where}.profile", rule, cure="Give one of the two.")
         given["across"], given["thicknesses"] = read_profile(
-            values.current_folder() / given.pop("profile"), f"{where}.profile"
+            place(values.current_folder(), given.pop("profile")), f"{where}.profile"
         )
     made = build(Wear, given, where)
     return values.Uncertain(made, found) if found else made

@@ -66,10 +66,12 @@ function scene(pen, size, run, index, more, withForces) {
   pen.fillStyle = CAGE;
   pen.strokeStyle = INK;
   pen.lineWidth = 1;
-  const count = run.angles.length;
+  const count = run.angles.length, seat = Math.asin(run.ball), outside = run.land > 1 ? 1 : -1;
+  const walls = run.walls.map((wall) => seat + more * (wall - seat)); // clearances grow with the movements
+  const land = run.land && 1 + outside * (run.half_width + more * (Math.abs(run.land - 1) - run.half_width));
   for (let bar = 0; bar < count; bar += 1) {
     const next = (bar + 1) % count, lap = next === 0 ? 2 * Math.PI : 0;
-    const from = run.angles[bar] + run.walls[bar] + turn, to = run.angles[next] + lap - run.walls[next] + turn;
+    const from = run.angles[bar] + walls[bar] + turn, to = run.angles[next] + lap - walls[next] + turn;
     pen.beginPath();
     pen.arc(x(ox), y(oy), scale * (1 + run.half_width), -from, -to, true);
     pen.arc(x(ox), y(oy), scale * (1 - run.half_width), -to, -from, false);
@@ -77,7 +79,7 @@ function scene(pen, size, run, index, more, withForces) {
     pen.fill();
     pen.stroke();
   }
-  if (run.land) { pen.strokeStyle = PATH; pen.lineWidth = 2; circle(0, 0, run.land); pen.stroke(); }
+  if (run.land) { pen.strokeStyle = PATH; pen.lineWidth = 2; circle(0, 0, land); pen.stroke(); }
   run.angles.forEach((angle, ball) => {
     const place = angle + more * run.lead[index][ball], cx = Math.cos(place), cy = Math.sin(place);
     pen.fillStyle = BALL;

@@ -58,6 +58,60 @@ function cut(at, unit) {
   field.form.requestSubmit();
 }
 
+// Make a part of the page like another one, and keep focus, caret, scroll and what is being typed.
+function morph(old, now) {
+  if (old.nodeType !== now.nodeType || old.nodeName !== now.nodeName || old.id !== now.id) {
+    old.replaceWith(now);
+    return;
+  }
+  if (old.nodeType !== Node.ELEMENT_NODE) {
+    if (old.data !== now.data) old.data = now.data;
+    return;
+  }
+  const kept = isEdited(old);
+  for (const { name, value } of now.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
+  for (const { name } of [...old.attributes]) {
+    if (!now.hasAttribute(name) && !(name === "open" && old.nodeName === "DETAILS")) old.removeAttribute(name);
+  }
+  if (old.nodeName === "TEXTAREA") old.defaultValue = now.defaultValue;
+  else {
+    const children = [...now.childNodes];
+    children.forEach((child, i) => (old.childNodes[i] ? morph(old.childNodes[i], child) : old.append(child)));
+    while (old.childNodes.length > children.length) old.lastChild.remove();
+  }
+  if ("defaultValue" in old && !kept && old.value !== old.defaultValue && old.type !== "hidden") old.value = old.defaultValue;
+  if (old.nodeName === "SELECT" && !kept) for (const one of old.options) one.selected = one.defaultSelected;
+}
+
+const sent = new WeakMap(); // field -> its value when it was last sent
+
+function isEdited(field) {
+  const is = field.nodeName === "SELECT" ? [...field.options].some((one) => one.selected !== one.defaultSelected)
+    : "defaultValue" in field && field.type !== "hidden" && field.value !== field.defaultValue;
+  return is && sent.get(field) !== field.value;
+}
+
+function inPlace(event) {
+  const { target, xhr } = event.detail;
+  if (!event.detail.shouldSwap || !["editor", "jobs"].includes(target.id) || !target.firstElementChild) return;
+  event.detail.shouldSwap = false;
+  const now = target.cloneNode(false);
+  now.innerHTML = xhr.responseText;
+  morph(target, document.adoptNode(now));
+  htmx.process(target);
+}
+
+function sending(event) {
+  const { elt, requestConfig } = event.detail;
+  const trigger = requestConfig.triggeringEvent && requestConfig.triggeringEvent.target;
+  if (trigger && trigger.name === "unit" && !trigger.form.elements.value.value.trim()) {
+    event.preventDefault(); // a unit chosen before its number
+    return;
+  }
+  if (requestConfig.verb !== "get") message("");
+  if (elt.elements) for (const field of elt.elements) sent.set(field, field.value);
+}
+
 function showAll(root) {
   if (typeof Plotly === "undefined") return;
   for (const figure of root.querySelectorAll(".plot[data-source]:not([data-shown])")) show(figure);
@@ -103,15 +157,8 @@ document.addEventListener("DOMContentLoaded", () => {
   dark.addEventListener("change", () => {
     for (const canvas of document.querySelectorAll(".plot .canvas")) if (canvas.data) Plotly.relayout(canvas, looks());
   });
-  // A draft keeps the field that was edited in focus after the form is drawn again.
-  let focus = null;
-  document.body.addEventListener("htmx:beforeSwap", () => {
-    focus = document.activeElement && document.activeElement.id;
-    message("");
-  });
-  document.body.addEventListener("htmx:afterSettle", (event) => {
-    if (focus && document.getElementById(focus) && document.activeElement.id !== focus) document.getElementById(focus).focus();
-    showAll(event.target);
-  });
+  document.body.addEventListener("htmx:beforeRequest", sending);
+  document.body.addEventListener("htmx:beforeSwap", inPlace);
+  document.body.addEventListener("htmx:afterSettle", (event) => showAll(event.target));
   document.body.addEventListener("htmx:sendError", () => message("The server does not answer. Start it again: nothing that was finished is lost."));
 });

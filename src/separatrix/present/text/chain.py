@@ -7,6 +7,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from separatrix.present.shapes import shape
+from separatrix.present.text.clearances import running_clearances
 from separatrix.present.text.tables import (
     facts,
     number,
@@ -22,6 +23,7 @@ from separatrix.study import PressureSlip, Worn
 
 if TYPE_CHECKING:
     from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
+    from separatrix.chain.clearances import Clearances
     from separatrix.chain.contacts import BearingState
     from separatrix.chain.equilibrium import Equilibrium
     from separatrix.chain.models import ModelSlopes
@@ -83,7 +85,13 @@ def bearing(found: BearingState, study: Study) -> list[str]:  # noqa: ARG001
         section("Inner ring", facts(ring)),
         section("Balls", table(BALL_HEADERS, _balls(balls))),
         section("Contacts of the most loaded ball", contacts),
+        *_clearances(found.clearances),
     ]
+
+
+def _clearances(found: Clearances | None) -> list[str]:
+    rows = running_clearances(found)
+    return [section("Clearances of the cage", facts(rows))] if rows else []
 
 
 def _balls(found: Equilibrium) -> list[list[str]]:
@@ -173,6 +181,7 @@ def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:
         section("Restitution factor", table(("", "dampings summed (Eq. 18)", "if the ball may spin"), cells)),
         section("From the contacts of the most loaded ball", _by_race(inner, outer, DAMPING)),
         section("And the rest", facts(pocket)),
+        *_clearances(solution.clearances),
     ]
 
 
@@ -226,6 +235,7 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
         ("Restitution factor", f"{summed}; {spins}; {hertz}"),
         ("Ball/cage stiffness", f"{stated(found, 'ball_cage_stiffness')}, {solution.stiffness_source}"),
     ]
+    facts += running_clearances(solution.clearances)
     if solution.orbital_share is not None:  # of a bearing whose balls do not run alike
         lead, clearance = (quantity(one, "m") for one in (answer.cage.lead_amplitude, answer.cage.half_play))
         share = f"the harmonics used hold {100 * solution.orbital_share:.4g} % of the speed variance"

@@ -350,7 +350,21 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
         *basis(study, answer),
         *ensemble_facts(found.kicks, found.runs, found.duration),
         ("Ball on pocket", f"{slip}; mean pressure {pressure} in an impact of {force} (impact speed)"),
+        *_running_clearances(answer),
         ("Unrepeated tests", scatter),
         ("The paper's bound", found.paper_statement),
         *film,
     ]
+
+
+def _running_clearances(answer: RankingAnswer) -> list[tuple[str, str]]:
+    """Return the clearances of each candidate, where they follow from those at rest."""
+    if answer.solution.clearances is None:
+        return []
+    rows = [row for row in answer.ranking.overall if not isinstance(row, NotMeasured)]
+    each = [
+        f"{row.name} {quantity(row.pocket_clearance, 'm', 3)}"
+        + (f" and {quantity(row.land_clearance, 'm', 3)}" if row.land_clearance else "")
+        for row in rows
+    ]
+    return [("Pocket and land as they run", "; ".join(each))]

@@ -9,6 +9,7 @@ from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.present.shapes import outcome_sentence
 from separatrix.present.text.cage import clearance_fact, friction_text
 from separatrix.present.text.chain import basis
+from separatrix.present.text.clearances import running_clearances
 from separatrix.present.text.tables import facts, number, paragraph, quantity, rate, section, stated
 
 if TYPE_CHECKING:
@@ -41,11 +42,12 @@ def simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
         ended.append(("Shown", "as its mirror image, in which the balls go round forward"))
     single = "A single run is not evidence: another seed may end differently. See stability and rank."
     part = "of the whole run" if found.whole_run else "of the judged part"
+    running = running_clearances(answer.solution.clearances)
     return [
         section("The run", facts(ended)),
         section(f"Motion in space: means {part}", facts([*_motion(found), clearance_fact(cage)])),
         section("Forces and rubbing of the whole run", facts(_forces(answer))),
-        section("What it holds for", facts(basis(study, answer)[:BASIS])),
+        section("What it holds for", facts([*basis(study, answer)[:BASIS], *running])),
         paragraph(single, indent=""),
     ]
 

@@ -228,6 +228,12 @@ RANGES = {
     "max_pressure_outer": "Pressure, outer race",
     "spin_roll_ratio_inner": "Spin/roll ratio, inner",
     "ball_cage_friction": "Pocket friction",
+    "pocket_clearance": "Pocket clearance",
+    "land_clearance": "Land clearance",
+    "linear_whirl_frequency": "Whirl without clearance",
+    "orbit_frequency": "Orbit of whirling runs",
+    "restitution_threshold": "Threshold",
+    "margin": "Margin",
     "probability_stable": "P(stable)",
     "largest_offset": "Largest offset",
     "largest_contact_force": "Force at a pocket",
@@ -242,6 +248,7 @@ def sweep(found: Sweep, study: Study) -> list[str]:  # noqa: ARG001
         ("Varied", ", ".join(one.name for one in found.parameters)),
         ("Cases", f"{len(cases)}, of which {len(refused)} refused"),
     ]
+    lines += _worst_case(found)
     verdicts = Counter(case.verdict for case in cases if case.verdict)
     if verdicts:
         counted = (f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
@@ -251,19 +258,22 @@ def sweep(found: Sweep, study: Study) -> list[str]:  # noqa: ARG001
         values = [value for case in cases if (value := getattr(case, key)) is not None]
         if values:
             ends = (quantity(end, units[key]) for end in (min(values), max(values)))
-            lines.append((words, " to ".join(ends)))
+            lines.append((words, " to ".join(dict.fromkeys(ends))))
     which = []
     if (total := len(cases)) > SHOWN:
         cases = tuple(cases[round(i * (total - 1) / (SHOWN - 1))] for i in range(SHOWN))
         which = ["", paragraph(f"{SHOWN} of {total} cases; sweep.csv, sweep.xlsx and sweep.nc have all.")]
     names = [one.name.rpartition(".")[2] for one in found.parameters]
-    headers = ["case", *names, "eta", "C_mu", "pressure", *(["P(stable)", "verdict"] * found.verdicts)]
+    headers = ["case", *names, "eta", "C_mu", "pressure"]
+    headers += [*["threshold", "margin"] * found.margins, *["P(stable)", "verdict"] * found.verdicts]
     rows = []
     for case in cases:
         given = zip(found.parameters, case.values, strict=True)
         row = [str(case.case), *(quantity(value, one.unit or "-") for one, value in given)]
         row += [significant(case.restitution_factor), stated(case, "race_damping")]
         row += [stated(case, "max_pressure_inner")]
+        if found.margins:
+            row += [significant(case.restitution_threshold, 3), significant(case.margin, 3)]
         if found.verdicts:
             row += [significant(case.probability_stable, 3), case.verdict or "-"]
         rows.append(row)
@@ -271,3 +281,31 @@ def sweep(found: Sweep, study: Study) -> list[str]:  # noqa: ARG001
     if refused:
         blocks.append(paragraph(f"Case {refused[0].case}: {refused[0].reason}", first="  "))
     return blocks
+
+
+DECIDES = {
+    "margin": "lowest margin",
+    "probability_stable": "lowest P(stable)",
+    "restitution_factor": "highest restitution factor; --margins or --verdicts compare the stability",
+}
+
+
+def _worst_case(found: Sweep) -> list[tuple[str, str]]:
+    """Return the worst case with its values, and the time of a duty cycle that is spent where."""
+    lines = []
+    if (worst := found.worst) is not None:
+        values = next(case.values for case in found.cases if case.case == worst.case)
+        given = zip(found.parameters, values, strict=True)
+        at = ", ".join(f"{one.name} {quantity(value, one.unit or '-')}" for one, value in given)
+        of = f"of {worst.compared} case{'s'[: worst.compared != 1]}"
+        others = f" (and {worst.alike - 1} more that are alike)" * (worst.alike > 1)
+        lines.append(("Worst case", f"{worst.case}: {at}{others}"))
+        lines.append(("Its evidence", f"{number(worst.value, 3)}, {DECIDES[worst.quantity]} {of}"))
+    if (duty := found.duty) is not None:
+        shares = {"with a margin below 0": duty.below_margin} | {
+            name.upper(): getattr(duty, name) for name in ("stable", "unstable", "undecided")
+        }
+        known = [f"{100 * share:.3g} % {words}" for words, share in shares.items() if share is not None]
+        refused = [f"{100 * duty.refused:.3g} % without an answer"] if duty.refused else []
+        lines.append(("Time", "; ".join([*known, *refused]) or "--margins or --verdicts show where"))
+    return lines

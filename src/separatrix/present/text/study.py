@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from separatrix.cage_body import cage_inertia
 from separatrix.pocket_shape import half_play, tilt
+from separatrix.present.text.clearances import running_clearances
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -17,6 +18,7 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
+from separatrix.study import ClearanceState
 from separatrix.study_file import resolved
 from separatrix.units import format_quantity
 
@@ -43,7 +45,9 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
         guided = "guided by the balls" if kind == "ball" else f"{kind}-guided"
         mass = cage_inertia(study.cage, study.bearing).mass
         lines.append(("Cage", f"{material}{shown(mass, 'kg')}, {guided}"))
-        lines += clearances(study.cage)
+        lines += [*clearances(study.cage), *running_clearances(answer.clearances)]
+        if answer.clearances_reason:
+            lines.append(("Running clearances", f"not found: {answer.clearances_reason}"))
     if study.ranking is not None:
         names = ", ".join(candidate.name for candidate in study.ranking.candidates)
         each = f"{'; '.join(study.ranking.environments)} (from {inputs['ranking']['origin']})"
@@ -102,14 +106,16 @@ def _pressure_at_rest(answer: CheckAnswer) -> str:
 def clearances(cage: CageDesign) -> list[tuple[str, str]]:
     """Return the clearance of the cage in its pockets and on its land, and which of them it reaches first."""
     clearance, (_, sine) = half_play(cage), tilt(cage)
-    rows = [("Pocket clearance", quantity(clearance, "m") + " each way, along the circumference")]
+    stated = "" if cage.clearances is ClearanceState.RUNNING else f", {cage.clearances.value}"
+    words = f"{quantity(clearance, 'm')} each way, along the circumference{stated}"
+    rows = [("Pocket clearance", words)]
     if sine != 0.0:
         rows.append(("Lean of its contact", quantity(asin(sine), "rad") + ", towards the bearing axis"))
     if cage.land_clearance is None:
         return [*rows, ("Land clearance", "no land: the balls guide the cage")]
     gap = cage.land_clearance / 2.0 - cage.land_out_of_round
     order = "together with" if isclose(gap, clearance) else "before" if gap < clearance else "after"
-    return [*rows, ("Land clearance", f"{quantity(gap, 'm')} radial, reached {order} the pockets")]
+    return [*rows, ("Land clearance", f"{quantity(gap, 'm')} radial, reached {order} the pockets{stated}")]
 
 
 def _assumed(inputs: Entry) -> list[tuple[str, str]]:

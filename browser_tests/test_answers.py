@@ -1,0 +1,187 @@
+"""Jobs and answers: progress, cancel and resume, figures to hover over, a point of a map, the moving cage."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import PATIENCE, Server, ended, run
+from playwright.sync_api import expect
+
+
+@pytest.fixture(scope="module")
+def ranked(folder, server, browser):
+    """The small study with its ranking, its map and a run; as a person would make them."""
+    page = browser.new_context().new_page()
+    page.set_default_timeout(PATIENCE)
+    page.goto(server.link)
+    page.goto(f"{server.address}/study/small.toml")
+    run(page, "rank")
+    card = page.locator(".verb", has=page.get_by_role("heading", name="map", exact=True))
+    card.get_by_text("Options").click()
+    card.get_by_label("points").fill("4")
+    card.get_by_label("runs").fill("2")
+    run(page, "map")
+    run(page, "simulate")
+    page.context.close()
+    return folder / "small"
+
+
+def test_figures_show_numbers_under_the_pointer(view, server, ranked):
+    """The tooltips of curve and candidates have the numbers of the answer."""
+    page = view()
+    page.goto(f"{server.address}/answer/rank/small.toml")
+    answer = json.loads((ranked / "rank.json").read_text(encoding="utf-8"))
+    expect(page.locator("table")).to_contain_text(answer["overall"][0]["name"])
+    curve, candidates = page.locator(".plot .canvas").nth(0), page.locator(".plot .canvas").nth(1)
+    for figure, words in ((curve, "critical"), (candidates, "Armalon")):
+        figure.locator(".points path.point").first.wait_for(state="attached")
+        figure.scroll_into_view_if_needed()
+        figure.locator(".points path.point").last.hover(force=True)
+        expect(figure.locator(".hoverlayer")).to_contain_text(words)
+        assert any(sign.isdigit() for sign in figure.locator(".hoverlayer").inner_text())
+
+
+@pytest.mark.parametrize("axes", ["default", "keys"])
+def test_a_click_in_a_map_simulates_that_point(view, server, ranked, folder, axes):
+    """The run has the values of the cell: the restitution factor and friction, or two keys of the study."""
+    page = view()
+    if axes == "keys":
+        page.goto(f"{server.address}/study/small.toml")
+        card = page.locator(".verb", has=page.get_by_role("heading", name="map", exact=True))
+        card.get_by_text("Options").click()
+        card.get_by_label("x", exact=True).fill("cage.mass=20..40g:3")
+        card.get_by_label("y", exact=True).fill("film.race_friction=0.05..0.2:3")
+        card.get_by_label("runs").fill("2")
+        run(page, "map")
+    page.goto(f"{server.address}/answer/map/small.toml")
+    cells = page.locator(".plot .canvas .heatmaplayer image")
+    cells.wait_for()
+    box = cells.bounding_box()
+    page.mouse.click(box["x"] + 0.9 * box["width"], box["y"] + 0.1 * box["height"])
+    ended(page, "simulate")
+    page.get_by_role("link", name="Watch the cage").first.click()
+    expect(page.locator("#cage[data-ready]")).to_be_attached()
+    newest = max((ranked / "points").iterdir(), key=lambda path: path.stat().st_mtime)
+    found = xr.load_dataset(newest / "simulate.nc")
+    drawn = xr.load_dataset(ranked / "map.nc")
+    wanted = [float(drawn[axis].values[-1]) for axis in "xy"]
+    if axes == "default":
+        got = [float(found["restitution_factor"]), float(found["cage_ball_cage_friction"])]
+    else:
+        document = json.loads((newest / "simulate.json").read_text(encoding="utf-8"))["study"]
+        got = [document["cage"]["mass"]["value"], document["film"]["race_friction"]["value"]]
+    np.testing.assert_allclose(got, wanted, rtol=1e-9)
+
+
+def test_the_cage_plays_by_the_keyboard(view, server, ranked):
+    """Play, pause, move the moment, enlarge: the picture and the words beside it follow."""
+    page = view()
+    page.goto(f"{server.address}/cage/small.toml")
+    expect(page.locator("#cage[data-ready]")).to_be_attached()
+    reading, play = page.locator("#reading"), page.locator("#play")
+    before = reading.inner_text()
+    play.focus()
+    page.keyboard.press("Enter")
+    expect(play).to_have_text("Pause")
+    expect(reading).not_to_have_text(before)
+    page.keyboard.press("Enter")
+    expect(play).to_have_text("Play")
+    page.locator("#moment").focus()
+    page.keyboard.press("End")
+    last, drawn = reading.inner_text(), page.evaluate("document.querySelector('#cage canvas').toDataURL()")
+    page.locator("#enlarge").focus()
+    page.keyboard.press("Home")
+    assert reading.inner_text() != last
+    assert page.evaluate("document.querySelector('#cage canvas').toDataURL()") != drawn
+
+
+def test_sliders_redraw_at_once_and_refine_behind(view, server, ranked):
+    """New numbers and figure within 300 ms of an input; then the curve of these values is computed."""
+    page = view()
+    page.goto(f"{server.address}/explore/small.toml")
+    expect(page.locator("#state")).to_have_text("The curve belongs to these values.")
+    eta = page.locator("[data-number=eta]").inner_text()
+    times = [_moved(page, "film.thickness", value) for value in (0.2, 0.4, 0.6)]
+    assert page.locator("[data-number=eta]").inner_text() != eta
+    assert sorted(times)[1] < 300.0, times
+    _moved(page, "cage.mass", 0.5)
+    expect(page.locator("#state")).to_contain_text("in the background")
+    expect(page.locator("#state")).to_have_text("The curve belongs to these values.", timeout=PATIENCE)
+
+
+def _moved(page, key: str, value: float) -> float:
+    """Return how long numbers and figure take after a slider has moved [ms]."""
+    return page.evaluate(
+        """async ([key, value]) => {
+          const box = document.getElementById("explore"), slider = box.querySelector(`[data-key="${key}"]`);
+          const before = box.dataset.updated, from = performance.now();
+          slider.value = value;
+          slider.dispatchEvent(new Event("input", { bubbles: true }));
+          while (box.dataset.updated === before) await new Promise((done) => setTimeout(done, 5));
+          return performance.now() - from;
+        }""",
+        [key, value],
+    )
+
+
+def test_a_file_is_downloaded(view, server, ranked):
+    """A file of an answer comes as it is on the disk."""
+    page = view()
+    page.goto(f"{server.address}/answer/rank/small.toml")
+    with page.expect_download() as waiting:
+        page.get_by_role("link", name="rank.xlsx").click()
+    assert waiting.value.path().read_bytes() == (ranked / "rank.xlsx").read_bytes()
+
+
+def test_pages_answer_within_200_ms(view, server, ranked):
+    """What needs no new run is there at once; the first view within 1.5 s."""
+    page = view()
+    begin = time.monotonic()
+    page.goto(server.address)
+    assert time.monotonic() - begin < 1.5
+    places = ["/", "/study/small.toml", "/answer/rank/small.toml", "/cage/small.toml", "/explore/small.toml"]
+    places += ["/plot/rank/candidates/small.toml", "/plot/map/map/small.toml", "/motion/small.toml", "/logs"]
+    slow = {}
+    for place in places:
+        times = []
+        for _ in range(3):
+            begin = time.monotonic()
+            assert page.request.get(server.address + place).ok
+            times.append(time.monotonic() - begin)
+        if sorted(times)[1] > 0.2:
+            slow[place] = times
+    assert slow == {}
+
+
+def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder):
+    """Progress is shown; a cancel keeps what was finished; after a kill the same run goes on."""
+    place = folder / "killed"
+    place.mkdir()
+    text = (folder / "small.toml").read_text(encoding="utf-8")
+    text = text.replace("runs = 4", "runs = 600").replace('"4 ms"', '"40 ms"')
+    (place / "long.toml").write_text(text, encoding="utf-8")
+    first = Server(place)
+    page = view(link=first.link)
+    page.goto(f"{first.address}/study/long.toml")
+    page.get_by_role("button", name="Run stability", exact=True).click()
+    expect(page.locator(".job progress[value]")).to_be_attached(timeout=PATIENCE)
+    page.wait_for_function("Number(document.querySelector('.job progress').value) > 0")
+    page.get_by_role("button", name="Cancel stability").click()
+    ended(page, "stability", "cancelled")
+    page.get_by_role("button", name="Resume stability").click()
+    page.wait_for_function("Number((document.querySelector('.job progress[value]') || {}).value) > 0")
+    first.kill()
+    kept = (place / "long" / "finished-runs.sqlite").stat().st_size
+    assert kept > 0
+    second = Server(place)
+    try:
+        page = view(link=second.link)
+        page.goto(f"{second.address}/study/long.toml")
+        run(page, "stability")
+        expect(page.locator(".job .said")).to_contain_text("runs were taken from an earlier job")
+    finally:
+        second.close()

@@ -1,0 +1,261 @@
+"""The verb `reproduce`: computes saved answers again, from what they keep, and compares."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import contextlib
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from separatrix.cli.console import answer, interrupted, progress_bar
+from separatrix.cli.verbs import OPTIONS
+from separatrix.comparing.agreement import Agreement, agreement
+from separatrix.comparing.saved import Saved, read_answers
+from separatrix.errors import InputError
+from separatrix.notes import grouped, noted_warnings
+from separatrix.questions import VERBS, Verb, computed
+from separatrix.units import printable, shown
+
+HELP = "Compute a saved answer again, and report whether it is the same."
+EPILOG = (
+    "The study is read from the files that the answer keeps, in a temporary folder; the same verb runs with "
+    "the same options. RESULT is a folder, the .json of an answer, or a report (.html)."
+)
+PATH_HELP = "Folder of answers, the .json of one, or a report."
+
+MOST_TEXTS = 100
+"""Ranges of a sweep, and models."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Version:
+    """A version that is another one here; None where the answer does not state it."""
+
+    name: str
+    stored: str | None
+    here: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reproduced:
+    """One answer computed again. `changed_files` are those that do not have their checksum."""
+
+    verb: str
+    name: str
+    title: str
+    same: bool
+    result: Agreement
+    versions: tuple[Version, ...]
+    changed_files: tuple[str, ...]
+
+
+def reproduce(path: Path, *, as_json: bool, quiet: bool, jobs: int) -> int:
+    """Compute the answers of a folder or file again, and return the exit status.
+
+    Raises
+    ------
+    InputError
+        It is not an answer, or does not keep what it was made from.
+    """
+    from separatrix import __version__
+    from separatrix.present import plain
+    from separatrix.runner import Interrupted
+
+    try:
+        found = [_again(saved, quiet, jobs) for saved in read_answers(path).values()]
+    except Interrupted:
+        return interrupted("no answer is compared.")
+    same = all(one.same for one in found)
+    head = {"separatrix_version": __version__, "verb": "reproduce", "same": same}
+    if as_json:
+        answer(json.dumps({**head, "answers": plain(found)}, indent=1, allow_nan=False) + "\n")
+    else:
+        answer("\n".join(line for one in found for line in _lines(one)) + "\n")
+    return 0
+
+
+def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
+    """Compute one answer from what it keeps."""
+    from separatrix.present import document
+    from separatrix.runner import Interrupted
+    from separatrix.study import with_models
+    from separatrix.study_file import read_study, require
+
+    if saved.document is None:
+        cure = "Name the .json that was written beside it."
+        raise InputError(saved.path, "has no document to compare with", cure=cure)
+    stored, kept = saved.document, kept_of(saved)
+    if stored.get("complete") is False:
+        raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
+    verb = next(one for one in VERBS if one.name == saved.verb)
+    with noted_warnings() as notes, restored_study(kept, saved.path) as (entry, root, changed):
+        question = _question(verb, kept["command"].get("question"), root)
+        study = read_study(entry)
+        require(study, verb.name, *verb.needs)
+        models = models_of(verb, kept["command"].get("models"))
+        study = with_models(study, models) if models else study
+        with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
+            found = computed(verb, study, question, jobs=jobs, progress=progress)
+        if not found.is_complete:
+            raise Interrupted
+        made = document(verb.name, found.record, found.study, grouped(notes))
+    result = agreement(stored, json.loads(json.dumps(made)))
+    return Reproduced(
+        verb=verb.name,
+        name=study.name,
+        title=study.title,
+        same=result.same and not changed,
+        result=result,
+        versions=tuple(_versions(stored, kept)),
+        changed_files=tuple(changed),
+    )
+
+
+def kept_of(saved: Saved) -> dict[str, Any]:
+    """Provenance of an answer, with what must be there."""
+    stored = saved.document or {}
+    kept = stored.get("provenance")
+    if not isinstance(kept, dict):
+        cure = "Only answers since provenance is kept can be computed again."
+        raise InputError(saved.path, "has no provenance", cure=cure)
+    if not isinstance(kept.get("entry"), str):
+        why = kept.get("reason")
+        cure = printable(why, 200) if isinstance(why, str) else ""
+        raise InputError(saved.path, "does not keep the files of its study", cure=cure)
+    for key, kind in (("command", dict), ("files", dict), ("links", dict)):
+        if not isinstance(kept.get(key), kind):
+            raise InputError(saved.path, f"lacks {key} in its provenance")
+    if kept["command"].get("verb") != saved.verb:
+        raise InputError(saved.path, "has the command of another verb", shown(kept["command"].get("verb")))
+    return kept
+
+
+@contextlib.contextmanager
+def restored_study(kept: Mapping[str, Any], where: str) -> Iterator[tuple[Path, Path, list[str]]]:
+    """Yield the study file and its folder, restored, and the names of files that were changed."""
+    from separatrix.kept_files import restored
+    from separatrix.study_file.document import shipped_studies
+    from separatrix.study_file.kept import SHIPPED, shipped_checksums
+
+    files: dict[str, bytes] = {}
+    changed: list[str] = []
+    shipped = shipped_checksums()
+    for name, one in kept["files"].items():
+        if not isinstance(one, dict) or not isinstance(one.get("sha256"), str):
+            raise InputError(where, "must have a checksum for each file", f'"{printable(name, 80)}"')
+        if name.startswith(SHIPPED):
+            found = shipped.get(name)
+        else:
+            files[name] = _content(one, name, where)
+            found = hashlib.sha256(files[name]).hexdigest()
+        if found != one["sha256"]:
+            changed.append(printable(name, 80))
+    links = kept["links"]
+    if not all(isinstance(name, str) for name in links.values()):
+        raise InputError(where, "must have names as links")
+    entry = str(kept["entry"])
+    with restored(files, links) as root:
+        path = root / entry
+        if entry.startswith(SHIPPED):
+            known = shipped_studies().get(entry.removeprefix(SHIPPED).removesuffix(".toml"))
+            if known is None:
+                raise InputError(where, "is of a study that this version does not ship", shown(entry))
+            path = known
+        elif entry not in files:
+            raise InputError(where, "does not keep its study", shown(entry))
+        yield path, root, changed
+
+
+def _content(one: Mapping[str, Any], name: str, where: str) -> bytes:
+    if isinstance(one.get("text"), str):
+        return str(one["text"]).encode("utf-8", "surrogatepass")
+    try:
+        return base64.b64decode(one.get("base64", 0), validate=True)
+    except (TypeError, ValueError, binascii.Error):
+        raise InputError(where, "has a file without content", f'"{printable(name, 80)}"') from None
+
+
+def models_of(verb: Verb, given: object) -> dict[str, str]:
+    """Models of the command line; `with_models` judges their values."""
+    known = ("motion", "ball") if verb.moves_a_cage else ()
+    if not isinstance(given, dict) or not all(k in known and isinstance(v, str) for k, v in given.items()):
+        raise InputError("models", f"must be models that {verb.name} takes", shown(given))
+    return given
+
+
+def _question(verb: Verb, given: object, root: Path) -> dict[str, Any]:
+    """Options of the verb, each of the type that its command takes; the verb judges their values."""
+    if not isinstance(given, dict):
+        raise InputError("question", "must be the options of the verb", shown(given))
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        if name not in verb.question:
+            raise InputError(f"--{printable(name, 40)}", f"is not an option of {verb.name}")
+        if name == "animate":
+            continue
+        if not _is_right(name, value):
+            raise InputError(f"--{name}", "has a value that is not one of this option", shown(value))
+        found[name] = tuple(value) if name == "vary" else value
+        if name == "cases" and isinstance(value, str):
+            if not (root / value).is_file() or not (root / value).resolve().is_relative_to(root.resolve()):
+                raise InputError("--cases", "names a table that the answer does not keep", shown(value))
+            found[name] = root / value
+    return found
+
+
+def _is_right(name: str, value: object) -> bool:
+    default = OPTIONS[name][1]
+    if name in ("kick", "restitution_factor"):
+        return value is None or (isinstance(value, str | int | float) and not isinstance(value, bool))
+    if name == "vary":
+        return isinstance(value, list) and len(value) < MOST_TEXTS and all(isinstance(v, str) for v in value)
+    if name == "cases":
+        return (
+            value is None or isinstance(value, str) or (isinstance(value, list) and all(map(_is_case, value)))
+        )
+    return type(value) is type(default)
+
+
+def _is_case(value: object) -> bool:
+    return isinstance(value, dict) and all(type(number) in (int, float) for number in value.values())
+
+
+def _versions(stored: Mapping[str, Any], kept: Mapping[str, Any]) -> Iterator[Version]:
+    """Versions that differ here."""
+    from separatrix import __version__
+    from separatrix.study_file.kept import versions
+
+    given = kept.get("versions")
+    before = {"separatrix": stored.get("separatrix_version"), **(given if isinstance(given, dict) else {})}
+    for name, here in {"separatrix": __version__, **versions()}.items():
+        if before.get(name) != here:
+            value = before.get(name)
+            yield Version(name=name, stored=printable(str(value), 40) if value else None, here=here)
+
+
+def _lines(one: Reproduced) -> Iterator[str]:
+    """Yield the answer in words, a line each."""
+    found = one.result
+    said = "the same" if one.same else "different"
+    how = f", {found.agreement}" if found.same else f": {found.count} values differ"
+    yield f"{one.verb} {one.name}: {said}{how}."
+    if found.largest_at is not None:
+        yield f"  Largest relative difference {found.largest_difference:.2g}, of {found.largest_at}."
+    for at in found.differences[:5]:
+        yield f"  {at.key}: {_text(at.stored)} in the answer, {_text(at.computed)} now"
+    if found.count > 5:
+        yield f"  and {found.count - 5} more; --json shows the first {len(found.differences)}."
+    if one.changed_files:
+        yield f"  Not as they were when it was computed: {', '.join(one.changed_files)}."
+    if one.versions:
+        others = [f"{at.name} {at.here} (then {at.stored or 'unknown'})" for at in one.versions]
+        yield f"  Other versions here: {', '.join(others)}."
+
+
+def _text(value: object) -> str:
+    return "nothing" if value is None else printable(str(value), 60)

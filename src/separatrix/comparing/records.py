@@ -1,0 +1,107 @@
+"""What a comparison of two answers consists of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from separatrix.units import Ratio
+
+Plain = float | int | str | bool | None
+
+
+class Noise(StrEnum):
+    """What a difference is, held against the scatter of the runs."""
+
+    BEYOND = "more than counting noise"
+    WITHIN = "within counting noise"
+    EXACT = "exact"
+    UNJUDGED = "no interval"
+    CHANGED = "changed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Named:
+    """Which answer it is; `seed` is None where it does not state one."""
+
+    path: str
+    title: str
+    seed: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """An input that differs: a number with its unit, a text, or a list of them; None where it is absent."""
+
+    key: str
+    first: object
+    second: object
+    unit: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """A result in one answer, with its 95 % interval if it has one; `runs` are those it was counted in."""
+
+    value: Plain
+    low: float | None = None
+    high: float | None = None
+    runs: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """A result that differs.
+
+    Attributes
+    ----------
+    place : str
+        Where it is in the answer, for instance "liquid nitrogen, 440C / Armalon".
+    name, unit : str
+        Its JSON name; unit of its numbers, None if it has none or it is not known.
+    first, second : Value
+        In both answers.
+    change, change_low, change_high, relative : float or None
+        Second less first with its 95 % interval, and over the first.
+    noise : Noise
+        BEYOND if 0 is outside that interval, WITHIN if not; EXACT for what is not counted in runs; UNJUDGED
+        for what is, and has no interval; CHANGED for a text, or a number that one of them lacks.
+    """
+
+    place: str
+    name: str
+    unit: str | None
+    first: Value
+    second: Value
+    change: float | None = None
+    change_low: float | None = None
+    change_high: float | None = None
+    relative: Ratio | None = None
+    noise: Noise
+
+    @property
+    def is_verdict(self) -> bool:
+        """Whether it is a verdict, a decision of a map, or the outcome of a run."""
+        return self.name.endswith("verdict") or self.name in ("decision", "outcome")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """Two answers of the verb `of`.
+
+    `differences` are the inputs that differ, `verdicts` the verdicts that changed, `rows` the other results
+    that differ: more than noise first, the largest change first. `same_seed`: both draw the same runs.
+    `unchanged` results are equal, `left_out` rows were too many. `also` are verbs that both have, too.
+    `environment` is the bearing's own, where both rank in the same.
+    """
+
+    of: str
+    answers: tuple[Named, Named]
+    same_seed: bool
+    differences: tuple[Difference, ...]
+    verdicts: tuple[Row, ...]
+    rows: tuple[Row, ...]
+    unchanged: int
+    left_out: int
+    also: tuple[str, ...] = ()
+    environment: str | None = None

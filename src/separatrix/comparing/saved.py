@@ -1,0 +1,128 @@
+"""Answers from files that may come from anybody: folders, documents, datasets, reports."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from separatrix.errors import InputError
+from separatrix.regular_file import size_of, unreadable
+from separatrix.toml_text import path_text
+from separatrix.units import printable, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+VERBS = (
+    *("rank", "sensitivity", "stability", "map", "sweep", "simulate"),
+    *("mobility", "restitution", "traction", "bearing", "check"),
+)
+"""Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
+
+MOST_BYTES = 256 * 1024**2
+REPORT = re.compile(
+    rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
+)
+"""Where a report holds the documents of its answers."""
+
+_MAKE = "Make one with: separatrix rank STUDY --out DIR."
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Saved:
+    """An answer of one verb: its document, its arrays, or both; `path` is as it was named."""
+
+    path: str
+    verb: str
+    document: Mapping[str, Any] | None = None
+    data: xr.Dataset | None = None
+
+
+def read_answers(path: Path) -> dict[str, Saved]:
+    """Answers of a folder, a document (.json), a dataset (.nc) or a report (.html), by verb.
+
+    Raises
+    ------
+    InputError
+        There is none, or one that separatrix did not write.
+    """
+    where = path_text(path)
+    if path.is_dir():
+        files = [
+            file for verb in VERBS for end in ("json", "nc") if (file := path / f"{verb}.{end}").exists()
+        ]
+        if not files:
+            raise InputError(where, "does not contain an answer", cure=_MAKE)
+        found: dict[str, Saved] = {}
+        for verb in dict.fromkeys(file.stem for file in files):
+            parts = [_file(file) for file in files if file.stem == verb]
+            document = next((one.document for one in parts if one.document is not None), None)
+            data = next((one.data for one in parts if one.data is not None), None)
+            if any(one.verb != verb for one in parts):
+                raise InputError(path_text(path / verb), "must be an answer of that verb", parts[0].verb)
+            found[verb] = Saved(path=where, verb=verb, document=document, data=data)
+        return found
+    if path.suffix.casefold() in (".html", ".htm"):
+        match = REPORT.search(_bytes(path))
+        if match is None:
+            raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
+        documents = _parsed(match[1], where)
+        return {verb: _document(one, where, verb) for verb, one in documents.items()}
+    one = _file(path)
+    return {one.verb: one}
+
+
+def _file(path: Path) -> Saved:
+    where = path_text(path)
+    if path.suffix.casefold() != ".nc":
+        return _document(_parsed(_bytes(path), where), where)
+    from separatrix.present import load
+
+    data = load(path)
+    verb = _verb(data.attrs.get("verb"), where)
+    return Saved(path=where, verb=verb, data=data)
+
+
+def _document(found: object, where: str, verb: str | None = None) -> Saved:
+    if not isinstance(found, dict) or not isinstance(found.get("study"), dict):
+        raise InputError(where, "is not the document of an answer", cure=_MAKE)
+    known = _verb(found.get("verb"), where)
+    if verb not in (None, known):
+        raise InputError(where, f"must have the answer of {printable(str(verb), 40)} under that name", known)
+    return Saved(path=where, verb=known, document=found)
+
+
+def _verb(verb: object, where: str) -> str:
+    if verb not in VERBS:
+        got = shown(verb) if isinstance(verb, str) else "none"
+        raise InputError(where, f"must be an answer of {', '.join(VERBS)}", got=got)
+    return str(verb)
+
+
+def _bytes(path: Path) -> bytes:
+    where = path_text(path)
+    if size_of(path, where) > MOST_BYTES:
+        raise InputError(where, f"is larger than an answer can be, {MOST_BYTES >> 20} MB")
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise unreadable(where, error) from None
+
+
+def _parsed(raw: bytes, where: str) -> dict[str, Any]:
+    try:
+        found = json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        rule = "is not the document of an answer: no valid JSON"
+        raise InputError(where, rule, printable(str(error), 80)) from None
+    if not isinstance(found, dict):
+        raise InputError(where, "is not the document of an answer", cure=_MAKE)
+    return found
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not a number of JSON")

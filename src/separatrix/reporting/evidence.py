@@ -1,0 +1,235 @@
+"""The evidence of the verdicts, the uncertainty, and where the models leave their range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from separatrix.present.text.tables import ABSENT, grouped, interval, number, rate
+from separatrix.reporting.kept import Kept, differing
+from separatrix.reporting.pictures import picture
+from separatrix.reporting.record import Block, Paragraph, Section, Table
+from separatrix.reporting.words import (
+    Row,
+    facts,
+    margin,
+    own_rows,
+    places,
+    probability,
+    quantity,
+    threshold,
+    verdict,
+)
+
+MOST_DRIVERS, MOST_TESTS = 5, 6
+
+
+def evidence(rank: Kept) -> Section:
+    """Return what the verdicts of a ranking rest on."""
+    return Section("Evidence of the verdicts", tuple(_evidence(rank.document)))
+
+
+def _evidence(rank: Row) -> Iterator[Block]:
+    rows = own_rows(rank)
+    words = "A verdict counts the runs that settle, from each disturbance; the worst one decides."
+    yield Paragraph(words)
+    yield Table(
+        ("candidate", "friction", "threshold (95 %)", "runs that settle, from each disturbance", "verdict"),
+        tuple(
+            (
+                str(row["name"]),
+                _friction(row),
+                threshold(row),
+                ", ".join(f"{one['settles']} at {one['kick']:g} m/s" for one in row.get("by_kick") or ())
+                or ABSENT,
+                verdict(row),
+            )
+            for row in rows
+        ),
+        f"Counts in {rank['environment']}. Friction: mean and standard error.",
+    )
+    yield Table(
+        ("candidate", "motion", "growth rate [1/s] (95 %)", "whirl", "whirl ratio", "end energy", "rubbing"),
+        tuple((str(row["name"]), *_motion(row)) for row in rows),
+        "Motion from the worst disturbance. Whirl: frequency seen from the balls; ratio: speed of the cage "
+        "centre about the axis over that of the ball set; rubbing: friction power on the land.",
+        left=2,
+    )
+    if any(row.get("other_ball_verdict") for row in rows):
+        yield _other_ball(rank, rows)
+    yield facts(
+        *((", ".join(who), reason) for reason, who in grouped((r["reason"], r["name"]) for r in rows).items())
+    )
+    beyond = grouped((one, row["name"]) for row in rows for one in row.get("extrapolation") or ())
+    for sentence, who in beyond.items():
+        whose = "every candidate" if len(who) == len(rows) else ", ".join(who)
+        yield Paragraph(f"Extrapolated: {sentence} ({whose}).")
+    others = [one for one in rank["environments"] if one["name"] != rank["environment"]]
+    for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
+        if others:
+            yield _short(name, each)
+
+
+def _other_ball(rank: Row, rows: list[Row]) -> Table:
+    """Return the verdicts by the model of the ball that the study does not ask for."""
+    inertial = rank["ball_model"] == "DAMPER"
+    model = "with its inertia and traction" if inertial else "without mass, held by a damper"
+    return Table(
+        ("candidate", "verdict", "P(stable) (95 %)", "pocket force", "runs"),
+        tuple(
+            (
+                *(str(row["name"]), str(row["other_ball_verdict"]), _share(row, "other_ball")),
+                *(quantity(row["other_ball_largest_contact_force"], "N", 3), str(row["other_ball_runs"])),
+            )
+            for row in rows
+            if row.get("other_ball_verdict")
+        ),
+        f"The same with a ball {model}, from fewer runs: a check of the model above.",
+        left=2,
+    )
+
+
+def _short(name: str, rows: list[Row]) -> Table:
+    caption = f"Candidates in {name}."
+    if name == "overall":
+        caption = "Candidates overall: mean friction over the environments in which each was measured."
+    cells = (
+        (place, str(row["name"]), verdict(row), _friction(row), threshold(row), margin(row), probability(row))
+        for place, row in zip(places(rows), rows, strict=True)
+    )
+    head = ("rank", "candidate", "verdict", "friction", "threshold (95 %)", "margin", "P(stable) (95 %)")
+    return Table(head, tuple(cells), caption, left=3)
+
+
+def _friction(row: Row) -> str:
+    if row.get("friction") is None:
+        return ABSENT
+    error = row.get("friction_error")
+    return number(row["friction"]) + (f" \u00b1 {error:.2g}" if error else "")
+
+
+def _motion(row: Row) -> tuple[str, ...]:
+    if row.get("growth_rate") is None:
+        return (ABSENT,) * 6
+    return (
+        str(row["cage_motion"] or "unresolved").lower().replace("_", " "),
+        rate(row["growth_rate"], row["growth_rate_low"], row["growth_rate_high"]),
+        quantity(row["whirl_frequency"], "Hz", 3),
+        number(row["whirl_ratio"], 2),
+        quantity(row["end_energy"], "J", 3),
+        quantity(row["rubbing_power"], "W", 2),
+    )
+
+
+def _share(row: Row, kind: str) -> str:
+    """Return P(stable) with its interval, over the inputs or by the other model of the ball."""
+    low, high = row[f"{kind}_probability_low"], row[f"{kind}_probability_high"]
+    return interval(row[f"{kind}_probability_stable"], low, high)
+
+
+def _factor(row: Row) -> str:
+    """Return the median restitution factor of the drawn bearings, and the range of nine in ten."""
+    if row.get("restitution_factor") is None:
+        return ABSENT
+    return interval(row["restitution_factor"], row["restitution_factor_low"], row["restitution_factor_high"])
+
+
+def uncertainty(kept: Mapping[str, Kept]) -> Section:
+    """Return the verdicts over the uncertain inputs, and the next test; or how to get them."""
+    if "sensitivity" in kept:
+        blocks = tuple(_sensitivity(kept["sensitivity"]))
+    else:
+        blocks = tuple(_without_sensitivity(kept))
+    return Section("Uncertainty and the next test", blocks)
+
+
+def _without_sensitivity(kept: Mapping[str, Kept]) -> Iterator[Block]:
+    document = next(iter(kept.values())).document
+    uncertain = document["study"]["uncertain_inputs"]
+    if uncertain:
+        yield facts(*((one["name"], str(one["words"])) for one in uncertain))
+        yield Paragraph("These inputs are at their means in this report.")
+    else:
+        yield Paragraph("The study states no input with a distribution.")
+    if "rank" in kept:
+        rows = [row for row in own_rows(kept["rank"].document) if row.get("uncertain_verdict")]
+        for row in rows:
+            found = f"{row['uncertain_verdict']}, {_share(row, 'uncertain')}"
+            yield Paragraph(f"{row['name']} with the uncertain inputs drawn: P(stable) {found}.")
+    if document["study"].get("ranking"):
+        yield Paragraph(
+            "To see which input decides and what to measure next, run "
+            f"`separatrix sensitivity {document['name']}` into this folder, then the report again."
+        )
+
+
+def _sensitivity(kept: Kept) -> Iterator[Block]:
+    found = kept.document
+    rows = own_rows(found)
+    yield Table(
+        ("candidate", "verdict", "P(stable) (95 %)", "restitution factor, median (nine in ten)", "runs"),
+        tuple(
+            (
+                str(row["name"]),
+                verdict(row),
+                probability(row),
+                _factor(row),
+                ABSENT if row.get("runs") is None else str(row["runs"]),
+            )
+            for row in rows
+        ),
+        f"{found['bearings']} bearings drawn from the uncertain inputs, in {found['environment']}.",
+        left=2,
+    )
+    yield from picture(
+        "sensitivity",
+        kept.data,
+        "sensitivity-probabilities",
+        "P(stable) of every candidate with the uncertain inputs drawn.",
+        "Probability of a stable cage for each candidate and environment; the table has the numbers.",
+    )
+    for one in found["drivers"]:
+        if not one["shares"] or one["environment"] != found["environment"]:
+            continue
+        largest = sorted(one["shares"], key=lambda share: -share["share"])[:MOST_DRIVERS]
+        words = ", ".join(f"{share['name']} {100.0 * share['share']:.0f} %" for share in largest)
+        yield Paragraph(f"{one['name']}: the variance of its verdict comes from {words}.")
+    undecided = found["undecided"]
+    if not undecided:
+        yield Paragraph("No case is undecided: no measurement would change a verdict.")
+        return
+    yield Paragraph(f"Undecided: {'; '.join(undecided)}.")
+    for test in found["next_tests"][:MOST_TESTS]:
+        each = zip(test["cases"], test["chances"], strict=True)
+        cases = "; ".join(f"{case} ({100.0 * chance:.0f} %)" for case, chance in each)
+        settled = f"{test['settled']:.1f} of them on average"
+        yield Paragraph(f"Measuring {test['name']} would settle {settled}: {cases}.")
+    if not found["next_tests"]:
+        yield Paragraph("No single measurement would settle any of them.")
+
+
+def outside(kept: Mapping[str, Kept]) -> Section:
+    """Return every warning of every answer, each once with the verbs that gave it."""
+    pairs = [(one, verb) for verb, kept_one in kept.items() for one in kept_one.document["warnings"]]
+    if "traction" in kept:
+        pairs += [(one, "traction") for one in kept["traction"].document["outside"]]
+        models = kept["traction"].document["models"]
+        pairs += [(f"{one['model']}: {one['reason']}", "traction") for one in models if one["reason"]]
+    each = grouped(pairs)
+    blocks: list[Block] = [
+        Paragraph(f"{text} ({', '.join(dict.fromkeys(verbs))})", "caveat") for text, verbs in each.items()
+    ]
+    return Section("Outside its range", tuple(blocks or [Paragraph("No model left its range.")]))
+
+
+def about(kept: Mapping[str, Kept]) -> list[str]:
+    """Return how the answers of a folder differ in their inputs from the main one, a sentence for each."""
+    main = next(verb for verb in ("rank", "stability", *kept) if verb in kept)
+    sentences = []
+    for verb, one in kept.items():
+        names = differing(kept[main].document, one.document)
+        if names:
+            more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+            sentences.append(
+                f"`{verb}` was computed from other inputs than `{main}`: {', '.join(names[:4])}{more} differ."
+            )
+    return sentences

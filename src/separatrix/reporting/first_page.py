@@ -1,0 +1,203 @@
+"""The first page: the verdict in three sentences, the candidates, one figure, and the caveats that matter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
+from separatrix.reporting.kept import Kept
+from separatrix.reporting.pictures import own_candidates, picture
+from separatrix.reporting.record import Block, Paragraph, Section, Table
+from separatrix.reporting.words import (
+    Row,
+    margin,
+    own_rows,
+    places,
+    probability,
+    quantity,
+    threshold,
+    verdict,
+)
+
+MOST_CAVEATS = 5
+HEAD = (
+    *("rank", "candidate", "verdict", "margin", "P(stable) (95 %)", "offset", "drift [1/s]"),
+    *("pocket force", "land force", "runs x length"),
+)
+EXPLAINED = (
+    "Margin: largest stable restitution factor less the bearing's own. P(stable): share of the runs that "
+    "settle from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: "
+    "largest of all runs. Drift: median growth rate of the mean offset. Runs: from each disturbance, up to "
+    "this length."
+)
+
+
+def first_page(kept: Mapping[str, Kept], about: Sequence[str]) -> Section:
+    """Return the answer on one page; `about` are caveats on the answers themselves."""
+    if "rank" in kept:
+        blocks = [*_ranking(kept["rank"])]
+    elif "stability" in kept:
+        blocks = [*_stability(kept["stability"])]
+    else:
+        blocks = [*_without_cage(kept)]
+    main = next(kept[verb] for verb in ("rank", "stability", *kept) if verb in kept).document
+    return Section("Answer", (*blocks, *_caveats(main, about)))
+
+
+def _ranking(kept: Kept) -> Iterator[Block]:
+    rank = kept.document
+    rows = own_rows(rank)
+    for sentence in verdict_sentences(rank):
+        yield Paragraph(sentence, "lead")
+    cells = [
+        (place, row["name"], verdict(row), margin(row), probability(row), *_evidence(row))
+        for place, row in zip(places(rows), rows, strict=True)
+    ]
+    yield Table(HEAD, tuple(cells), f"Candidates in {rank['environment']}. {EXPLAINED}", left=3)
+    yield from picture(
+        "rank",
+        kept.data,
+        own_candidates(kept.data),
+        "The candidates on the stability curve of this bearing: below the curve the cage is stable.",
+        "Critical friction against restitution factor, with the friction of each candidate at the "
+        "bearing's own restitution factor; the table above has the numbers.",
+    )
+
+
+def _evidence(row: Row) -> tuple[str, ...]:
+    if row.get("largest_offset") is None:
+        return (ABSENT,) * 5
+    return (
+        quantity(row["largest_offset"], "m", 3),
+        significant(row["drift_rate"], 2),
+        quantity(row["largest_contact_force"], "N", 3),
+        quantity(row["largest_land_force"], "N", 3),
+        f"{row['runs']} x {quantity(row['longest_run'], 's', 3)}",
+    )
+
+
+def verdict_sentences(rank: Row) -> list[str]:
+    """Return the answer of a ranking in three sentences: the first, its margin, the others."""
+    rows, place = own_rows(rank), rank["environment"]
+    first = [row for row in rows if row.get("rank") == 1]
+    if not first:
+        return [f"No candidate was ranked in {place}."]
+    names, verdicts = (
+        ", ".join(dict.fromkeys(one)) for one in ([r["name"] for r in first], [verdict(r) for r in first])
+    )
+    lead = f"{names} ranks first in {place}: {verdicts}."
+    if len(first) > 1:
+        lead = f"{len(first)} materials tie for first in {place} ({names}): {verdicts}."
+    limits, etas = (
+        _span([row[key] for row in first]) for key in ("restitution_threshold", "restitution_factor")
+    )
+    if len(first) == 1:
+        limits = threshold(first[0])
+    up_to = f"remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
+    if not any(row["restitution_threshold"] for row in first):
+        up_to = f"{'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
+    by_it = (
+        f"{'The cage' if len(first) == 1 else 'Their cages'} {up_to}; this bearing and film have {etas}, "
+        f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
+    )
+    others = grouped((verdict(row), row["name"]) for row in rows if row not in first)
+    rest = "; ".join(f"{word} {', '.join(who)}" for word, who in others.items())
+    return [lead, by_it, f"The others: {rest}." if rest else "There is no other candidate."]
+
+
+def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
+    return " to ".join(dict.fromkeys(form.format(one + 0.0) for one in (min(values), max(values))))
+
+
+def _stability(kept: Kept) -> Iterator[Block]:
+    """Yield the answer for the cage of a study without candidates."""
+    found, here = kept.document, kept.document["here"] or {}
+    friction = (found["study"]["cage"]["ball_cage_friction"] or {}).get("value")
+    eta, middle = here.get("restitution_factor"), here.get("critical_friction")
+    low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
+    curve = f"At this bearing's restitution factor of {number(eta, 2)} "
+    if middle is None:
+        yield Paragraph(
+            f"{curve}no critical friction was found: {here.get('reason') or 'see below'}.", "lead"
+        )
+    else:
+        ends = here["scatter_low"], here["scatter_high"]
+        words = f"half of the runs whirl at a pocket friction of {interval(middle, *ends)}."
+        yield Paragraph(curve + words, "lead")
+    if friction is not None and middle is not None:
+        side, then = "within", "it is undecided"
+        if low is not None and friction < low:
+            side, then = "below", "the cage is stable"
+        elif high is not None and friction > high:
+            side, then = "above", "the cage is unstable"
+        band = f"the band in which the disturbance decides ({number(low, 2)} to {number(high, 2)})"
+        yield Paragraph(f"The cage's friction of {number(friction)} is {side} {band}: {then}.", "lead")
+    why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
+    yield Paragraph(f"{why}: no cage materials were compared.", "lead")
+    yield from picture(
+        "stability",
+        kept.data,
+        "stability-curve",
+        "Critical friction against restitution factor: below the curve the cage is stable.",
+        "Stability curve with its band and limits, and the bearing's own restitution factor.",
+    )
+
+
+def _without_cage(kept: Mapping[str, Kept]) -> Iterator[Block]:
+    study = next(iter(kept.values())).document["study"]
+    if study.get("cage"):
+        yield Paragraph("The folder has no verdict: neither `rank` nor `stability` was computed.", "lead")
+    else:
+        yield Paragraph("The study has no [cage]: there is no verdict on its stability.", "lead")
+    if "bearing" in kept:
+        at = kept["bearing"].document["contacts"]
+        loads = " and ".join(
+            f"{quantity(of['load'], 'N', 4)} ({quantity(of['max_pressure'], 'Pa', 3)}) on the {race} race"
+            for race, of in at.items()
+        )
+        yield Paragraph(f"The most loaded ball carries {loads}.", "lead")
+    if "traction" in kept:
+        at = kept["traction"].document
+        slopes = " and ".join(
+            f"{significant(at[race]['slope'])} at the {race}" for race in ("inner", "outer")
+        )
+        yield Paragraph(f"The slopes of its traction curves are {slopes} race.", "lead")
+
+
+def _by_the_other_ball(rank: Row) -> Iterator[str]:
+    """Yield which verdicts the other model of the ball changes."""
+    rows = [row for row in own_rows(rank) if row.get("other_ball_verdict") not in (None, row["verdict"])]
+    if rows:
+        each = grouped((row["other_ball_verdict"], row["name"]) for row in rows)
+        words = "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
+        inertial = rank["ball_model"] == "DAMPER"
+        model = "a ball with inertia and traction" if inertial else "a ball without mass, held by a damper"
+        yield f"With {model} ({rows[0]['other_ball_runs']} runs), verdicts differ: {words}."
+
+
+def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:
+    """Yield what a reader of the first page must know; the rest has a section of its own."""
+    found = [*about]
+    if main.get("complete") is False:
+        found.append("The computation was interrupted: this answer holds only what was finished.")
+    if main["verb"] == "rank":
+        found += _by_the_other_ball(main)
+    found += main["warnings"]
+    if main["verb"] == "rank":
+        rows = [row for row in own_rows(main) if row.get("friction") is not None]
+        beyond = [row["name"] for row in rows if row["extrapolation"]]
+        if beyond:
+            who = "of every candidate" if len(beyond) == len(rows) else f"of {', '.join(beyond)}"
+            found.append(
+                f"The friction {who} is extrapolated beyond its tests: see Evidence of the verdicts."
+            )
+        if any(row["friction_scatter_assumed"] for row in rows):
+            share = f"{100.0 * main['friction_scatter']:.3g} %"
+            found.append(
+                f"Tests were not repeated: their friction is assumed to scatter by {share}, a guess."
+            )
+    for sentence in found[:MOST_CAVEATS]:
+        yield Paragraph(sentence, "caveat")
+    if found[MOST_CAVEATS:]:
+        more = len(found) - MOST_CAVEATS
+        yield Paragraph(f"{more} more under Outside its range.", "caveat")

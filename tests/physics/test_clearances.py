@@ -1,0 +1,180 @@
+"""Running clearances: their limits, the rotating ring by another road, and what closes or is not known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from separatrix.bearing_design import Expansion
+from separatrix.chain.clearances import mean_expansion, ring_growth, running_clearances
+from separatrix.chain.solution import solve
+from separatrix.distribution import Uniform
+from separatrix.draws import sample
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.ranking.second import pocket_of, with_other_ball
+from separatrix.study import CageDesign, ClearanceState, Guidance, Material
+from separatrix.study_file import read_study
+from separatrix.study_numbers import with_distributions, with_values
+
+STUDY = read_study("cryogenic-turbopump")
+BEARING = STUDY.bearing
+STEEL = replace(BEARING.ring_material, expansions=(), thermal_expansion=10e-6)
+PLASTIC = Material(
+    name="plastic", elastic_modulus=5e9, poisson_ratio=0.35, density=1500.0, thermal_expansion=40e-6
+)
+RING = {"density": 1500.0, "elastic_modulus": 5e9, "poisson_ratio": 0.35, "speed": 2000.0}
+SHAPE = {"inner_diameter": 58e-3, "outer_diameter": 72e-3, "width": 14e-3}
+
+
+def running(temperature=90.0, cage_speed=0.0, material=PLASTIC, steel=STEEL, **design):
+    """Clearances of a cage of the shipped bearing, of these materials."""
+    bearing = replace(BEARING, ball_material=steel, ring_material=steel)
+    speed = 1000.0 if cage_speed else 0.0
+    operation = replace(STUDY.operation, temperature=temperature, inner_speed=speed)
+    cage = replace(STUDY.cage, clearances=ClearanceState.AT_REST, material=None, **design)
+    return running_clearances(bearing, operation, cage, material, cage_mass=0.01, cage_speed=cage_speed)
+
+
+def test_at_293_k_at_rest_nothing_changes():
+    """To the last bit, without any datum; and a cage that states its running clearances keeps them."""
+    bare = replace(PLASTIC, thermal_expansion=None)
+    found = running(293.0, material=bare, steel=replace(STEEL, thermal_expansion=None), **SHAPE)
+    assert (found.pocket, found.land) == (STUDY.cage.pocket_clearance, STUDY.cage.land_clearance)
+    assert found.pitch_radius_growth == 0.0
+    assert solve(STUDY).design is STUDY.cage
+
+
+def test_equal_materials_scale_every_clearance():
+    """Everything shrinks alike: 203 K times 10e-6."""
+    found = running(material=replace(PLASTIC, thermal_expansion=10e-6), **SHAPE)
+    for runs, rest in ((found.pocket, found.pocket_at_rest), (found.land, found.land_at_rest)):
+        assert runs == pytest.approx(rest * (1.0 - 203.0 * 10e-6), rel=1e-12)
+
+
+def test_pocket_and_land_by_hand():
+    """A cage inside its outer land and one outside its inner land move opposite ways."""
+    cage, steel, D = 203.0 * 40e-6, 203.0 * 10e-6, BEARING.ball_diameter
+    pocket = STUDY.cage.pocket_clearance
+    found = running(**SHAPE)
+    assert found.pocket == pytest.approx((D + pocket) * (1.0 - cage) - D * (1.0 - steel), rel=1e-12)
+    assert found.land == pytest.approx((72e-3 + 1e-3) * (1.0 - steel) - 72e-3 * (1.0 - cage), rel=1e-9)
+    inner = running(**SHAPE, guidance=Guidance.INNER)
+    assert inner.land == pytest.approx(58e-3 * (1.0 - cage) - (58e-3 - 1e-3) * (1.0 - steel), rel=1e-9)
+    assert found.guesses == ()
+
+
+def test_thin_ring_and_solid_limits():
+    """Rho w^2 r^3 / E of a thin ring; a hole's edge and a disc's rim as in Timoshenko's closed forms."""
+    rho, E, nu, w = 1500.0, 5e9, 0.35, 2000.0
+    thin = rho * w**2 * 0.03**3 / E
+    assert ring_growth(0.03, inner=0.03, outer=0.03, **RING) == pytest.approx(thin, rel=1e-12)
+    assert ring_growth(0.03, inner=0.03, outer=0.031, **RING) == pytest.approx(thin, rel=0.06)
+    disc = rho * w**2 * 0.03**3 * (1.0 - nu) / (4.0 * E)
+    assert ring_growth(0.03, inner=0.0, outer=0.03, **RING) == pytest.approx(disc, rel=1e-12)
+    edge = rho * w**2 * 0.02 / (4.0 * E) * ((3.0 + nu) * 0.03**2 + (1.0 - nu) * 0.02**2)
+    assert ring_growth(0.02, inner=0.02, outer=0.03, **RING) == pytest.approx(edge, rel=1e-12)
+    assert ring_growth(0.03, inner=0.02, outer=0.03, **RING | {"speed": 0.0}) == 0.0
+
+
+def test_thick_ring_solves_its_differential_equation():
+    """R u'' + u' - u/r = -(1 - nu^2) rho w^2 r^2 / E with free edges, by collocation."""
+    rho, E, nu, w, a, b = 1500.0, 5e9, 0.35, 2000.0, 0.02, 0.03
+    scale = rho * w**2 * b**3 / E
+
+    def slope(r, y):
+        return np.vstack([y[1], -(1.0 - nu**2) * rho * w**2 * r / E / scale - y[1] / r + y[0] / r**2])
+
+    def free(at_a, at_b):
+        return np.array([at_a[1] + nu * at_a[0] / a, at_b[1] + nu * at_b[0] / b])
+
+    r = np.linspace(a, b, 21)
+    solved = solve_bvp(slope, free, r, np.ones((2, r.size)), tol=1e-9)
+    found = [ring_growth(x, inner=a, outer=b, **RING) / scale for x in r]
+    assert solved.sol(r)[0] == pytest.approx(found, rel=1e-7)
+
+
+def test_rotation_opens_the_pocket_and_closes_an_outer_land():
+    """The cage grows with the square of its speed."""
+    slow, fast = (running(293.0, cage_speed=w, **SHAPE) for w in (1000.0, 2000.0))
+    assert fast.hoop_strain == pytest.approx(4.0 * slow.hoop_strain, rel=1e-12)
+    assert fast.pocket > slow.pocket > slow.pocket_at_rest
+    assert fast.land < slow.land < slow.land_at_rest
+    assert fast.land_at_rest - fast.land == pytest.approx(2.0 * fast.cage_land_growth, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("temperature", "mean", "why"),
+    [(90.0, 10e-6, "a guess"), (190.0, 15e-6, "a guess"), (300.0, 20e-6, ""), (60.0, 10e-6, "that at 80 K")],
+)
+def test_expansion_between_and_beyond_data(temperature, mean, why):
+    """Linear between data, the nearest beyond them; a guess of the library stays one."""
+    data = (Expansion(80.0, 100.0, 10e-6, "guess"), Expansion(280.0, 320.0, 20e-6, "handbook"))
+    known = replace(PLASTIC, thermal_expansion=None, expansions=data)
+    found, reason = mean_expansion(known, temperature)
+    assert found == pytest.approx(mean, rel=1e-12)
+    assert reason.startswith(why)
+    assert mean_expansion(replace(known, thermal_expansion=3e-6), temperature) == (3e-6, "")
+
+
+def test_published_contractions():
+    """440C shrinks by 0.177 % to 80 K and 0.182 % to 60 K (GNIRS design note SDN0013.02)."""
+    for temperature, contraction in ((80.0, 0.177e-2), (60.0, 0.182e-2)):
+        alpha, why = mean_expansion(BEARING.ring_material, temperature)
+        assert (alpha * (293.0 - temperature), why) == (pytest.approx(contraction, rel=2e-3), "")
+
+
+def test_what_closes_or_is_not_known_is_refused():
+    """One line with the numbers, or what is missing with its cure."""
+    with pytest.raises(
+        InputError, match=r"pocket_clearance closes to -.* at 90 K .*20 um at 293 K"
+    ) as closed:
+        running(pocket_clearance=20e-6)
+    assert "\n" not in str(closed.value)
+    with pytest.raises(InputError, match=r"thermal expansion from 293 K to 90 K.*um/m/K"):
+        running(material=replace(PLASTIC, thermal_expansion=None))
+    with pytest.raises(InputError, match="temperature is missing"):
+        running(None)
+    with pytest.raises(InputError, match="material is missing"):
+        running(material=None)
+
+
+@pytest.mark.filterwarnings("ignore:Clearances at")
+def test_draws_and_sweeps_go_through_it():
+    """Each study that is drawn has its own running clearance; the study keeps those at rest."""
+    cage = replace(STUDY.cage, clearances=ClearanceState.AT_REST)
+    study = replace(STUDY, cage=cage)
+    cold = solve(study)
+    warm = solve(with_values(study, {"operation.temperature": 200.0}))
+    fast = solve(with_values(study, {"operation.inner_speed": 2000.0}))
+    assert cold.clearances.pocket < warm.clearances.pocket < cage.pocket_clearance
+    assert fast.clearances.hoop_strain > cold.clearances.hoop_strain
+    assert cold.cage_with(0.1).pocket_clearance == cold.clearances.pocket
+    assert cold.study.cage.pocket_clearance == cage.pocket_clearance
+    assert isinstance(cold.design, CageDesign)
+    drawn = with_distributions(study, {"operation.temperature": Uniform(low=70.0, high=200.0)})
+    each = sample(drawn, 4)
+    found = [solve(each.setter()(row)).clearances.pocket for row in each.values]
+    assert len(set(found)) == 4
+
+
+def test_guesses_are_warned_of():
+    """The library's expansion of Armalon is one."""
+    study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
+    with pytest.warns(ValidityWarning, match="Clearances at 77 K rest on guesses: thermal expansion of "):
+        _ = solve(study).design
+
+
+@pytest.mark.filterwarnings("ignore:Clearances at")
+def test_each_candidate_has_its_own_pocket():
+    """With one stiffness for all; the second verdict, by the other ball, has the same clearances."""
+    study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
+    solved = [solve(study, one) for one in study.ranking.candidates]
+    pockets = {pocket_of(one) for one in solved}
+    assert len({pocket.stiffness for pocket in pockets}) == 1
+    expansions = {one.cage_material.expansions for one in solved}
+    assert len({pocket.clearance for pocket in pockets}) == len(expansions)
+    assert {one.design.clearances for one in solved} == {ClearanceState.RUNNING}
+    assert with_other_ball(solved[0], 0.1).pocket_clearance == solved[0].design.pocket_clearance

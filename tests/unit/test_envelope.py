@@ -1,0 +1,205 @@
+"""The operating envelope of a sweep: duty cycles, orders, the worst case and its picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from commands import document, refused
+
+from separatrix.chain.solution import solve
+from separatrix.cli import main
+from separatrix.errors import InputError
+from separatrix.explore.envelope import duty, orders, time_shares, worst_case
+from separatrix.explore.sweep import sweep
+from separatrix.figures import draw
+from separatrix.limits import own_threshold, restitution_threshold, threshold_points
+from separatrix.limits.curve import COARSE
+from separatrix.present import dataset, load
+from separatrix.runner import Runner
+from separatrix.study import ClearanceState
+from separatrix.study_file import read_study
+
+STUDY = read_study("momentum-wheel")
+QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
+SPEED, FRICTION = "operation.inner_speed", "ball_cage_friction"
+SMALL = 'extends = "momentum-wheel"\n[stability]\nruns = 4\nduration = "10 ms"\n'
+ROWS = "0 rpm,0.1,1 h\n3000 rpm,0.1,2 h\n6000 rpm,1.5,30 min\n9000 rpm,0.1,30 min\n"
+DUTY = f"{SPEED},{FRICTION},time_share\n{ROWS}"
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """An empty folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("small.toml").write_text(SMALL)
+    Path("duty.csv").write_text(DUTY)
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory):
+    """Folder and text of a duty cycle from the command line, with margins and verdicts."""
+    folder = tmp_path_factory.mktemp("duty")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        Path("small.toml").write_text(SMALL)
+        Path("duty.csv").write_text(DUTY)
+        asked = ["--cases", "duty.csv", "--margins", "--verdicts", "--out", "o"]
+        assert main(["sweep", "small.toml", *asked, "--quiet"]) == 0
+    return folder / "o"
+
+
+def case(**known):
+    """A swept case with some of its numbers."""
+    none = dict.fromkeys(("time_share", "restitution_factor", "margin", "probability_stable", "verdict"))
+    return SimpleNamespace(**none | known)
+
+
+def test_a_duty_cycle_names_its_worst_case_and_its_time(answered):
+    """By the lowest margin; text and dataset say the same, and the picture is drawn."""
+    data, text = load(answered / "sweep.nc"), (answered / "sweep.txt").read_text()
+    margin = data["margin"].values
+    assert int(data["worst_case"]) == 2
+    assert float(data["worst_value"]) == margin[2] == min(margin[1:])
+    assert data["time_share"].values == pytest.approx([0.25, 0.5, 0.125, 0.125], rel=1e-12)
+    assert float(data["duty_below_margin"]) == pytest.approx(0.125, rel=1e-12)
+    assert float(data["duty_refused"]) == pytest.approx(0.25, rel=1e-12)
+    below = data["restitution_threshold"].values - data["restitution_factor"].values
+    assert margin == pytest.approx(below, nan_ok=True)
+    assert "2: operation.inner_speed 6000 rpm, ball_cage_friction 1.5" in text
+    assert "12.5 % with a margin below 0" in text
+    assert {"envelope.png", "envelope.svg", "sweep.png"} <= {path.name for path in answered.iterdir()}
+    figure = dict(draw("sweep", data))["envelope"]
+    assert "case 2: lowest margin" in figure.axes[0].get_title(loc="left")
+    assert [axes.get_ylabel() for axes in figure.axes][1:] == ["P(stable) [-]", "frequency [Hz]", "time [%]"]
+
+
+def test_start_up_from_zero_is_a_row_with_its_reason(answered):
+    """At rest nothing rolls; the cases after it are answered."""
+    reason = load(answered / "sweep.nc")["reason"].values.astype(str)
+    assert "must differ from outer_speed" in reason[0]
+    assert not any("refused" in one for one in reason[1:])
+
+
+def test_shares_are_any_unit_and_sum_to_one():
+    """Hours, seconds or shares."""
+    assert time_shares([{"time_share": 3.0}, {"time_share": 1.0}]) == [0.75, 0.25]
+    assert time_shares([{"cage.mass": 3.0}]) == []
+    found = sweep(STUDY, [{SPEED: 300.0, "time_share": 2.0}, {SPEED: 400.0, "time_share": 6.0}])
+    assert [one.time_share for one in found.cases] == [0.25, 0.75]
+    assert found.parameters[0].name == SPEED
+    assert len(found.parameters) == 1
+    assert (found.duty.below_margin, found.duty.stable, found.duty.refused) == (None, None, 0.0)
+    for wrong in (-1.0, float("nan"), float("inf")):
+        with pytest.raises(InputError, match="Case 1, time_share must be a finite share or time >= 0"):
+            time_shares([{"time_share": 3.0}, {"time_share": wrong}])
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ((f"{SPEED},time_share", "100 rpm,-1", "200 rpm,2"), "row 2, time_share must be >= 0"),
+        ((f"{SPEED},time_share", "100 rpm,-1 h", "200 rpm,2 h"), "row 2, time_share must be >= 0"),
+        ((f"{SPEED},time_share", "100 rpm,0", "200 rpm,0"), "time_share must be above 0 in some case"),
+        ((f"{SPEED},time_share", "100 rpm,1", "200 rpm,2 h"), "must be shares, or times with their unit"),
+        ((f"{SPEED},time_share", "100 rpm,1 kg", "200 rpm,2 h"), "row 2, time_share needs a unit of time"),
+        (("time_share", "1", "2"), "needs a parameter beside time_share"),
+    ],
+)
+@pytest.mark.usefixtures("elsewhere")
+def test_wrong_shares_are_refused_in_one_line(rows, said, capsys):
+    """Status 2, nothing written."""
+    Path("c.csv").write_text("\n".join(rows))
+    assert said in refused(capsys, "sweep", "momentum-wheel", "--cases", "c.csv")
+
+
+def test_what_decides_the_worst_case():
+    """Margin before P(stable) before the restitution factor; those that are alike are counted."""
+    assert worst_case([case(case=0)]) is None
+    plain = [case(case=i, restitution_factor=eta) for i, eta in enumerate((0.2, 0.8, 0.8, None))]
+    found = worst_case(plain)
+    assert (found.case, found.quantity, found.value, found.compared, found.alike) == (
+        *(1, "restitution_factor", 0.8),
+        *(3, 2),
+    )
+    run = [case(case=i, restitution_factor=0.5, probability_stable=p) for i, p in enumerate((0.9, 0.1))]
+    assert (worst_case(run).case, worst_case(run).quantity) == (1, "probability_stable")
+    margins = [case(case=i, probability_stable=0.5, margin=m) for i, m in enumerate((-0.1, 0.1))]
+    assert (worst_case(margins).case, worst_case(margins).value) == (0, -0.1)
+
+
+def test_time_in_each_verdict():
+    """Shares of the cases with it; what was refused is in none."""
+    cases = [
+        case(case=i, time_share=0.25, verdict=word)
+        for i, word in enumerate(("STABLE", "UNSTABLE", None, "STABLE"))
+    ]
+    found = duty(cases)
+    assert (found.stable, found.unstable, found.undecided, found.refused) == (0.5, 0.25, 0.0, 0.25)
+    assert duty([case(case=0)]) is None
+
+
+def test_orders_of_a_bearing():
+    """Balls past both rings are Z times the shaft together; rings and cage that turn alike pass nothing."""
+    at = replace(STUDY.operation, inner_speed=2.0 * pi * 100.0, outer_speed=0.0)
+    found = orders(at, 12, 2.0 * pi * 40.0)
+    assert found["shaft_frequency"] == pytest.approx(100.0)
+    assert found["cage_frequency"] == pytest.approx(40.0)
+    assert found["outer_pass_frequency"] == pytest.approx(12 * 40.0)
+    assert found["outer_pass_frequency"] + found["inner_pass_frequency"] == pytest.approx(12 * 100.0)
+    assert orders(replace(at, outer_speed=at.inner_speed), 12, at.inner_speed)["inner_pass_frequency"] == 0.0
+
+
+def test_a_threshold_of_one_friction_is_that_of_the_curve():
+    """Followed where it bends beside this friction, as the whole curve is."""
+    solution = solve(QUICK)
+    cage = solution.cage_with(0.0)
+    own = own_threshold(cage, solution.stability, 0.2, Runner())
+    points = threshold_points(cage, solution.stability)
+    coarse = [one for one in points if one.restitution_factor in COARSE]
+    assert own.value == restitution_threshold(points, 0.2).value
+    assert own.value < restitution_threshold(coarse, 0.2).value - 0.1
+    (one,) = sweep(QUICK, [{FRICTION: 0.2}], margins=True).cases
+    assert (one.restitution_threshold, one.margin) == (own.value, own.value - one.restitution_factor)
+
+
+def test_running_clearances_of_each_case():
+    """From those at 293 K; a pocket that closes is a row."""
+    plastic = replace(STUDY.cage.material, thermal_expansion=50e-6)
+    study = replace(
+        STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST, material=plastic), ranking=None
+    )
+    warm, cold, closed = sweep(
+        study,
+        [
+            {"operation.temperature": t, "cage.pocket_clearance": c}
+            for t, c in ((293.0, 3e-4), (80.0, 3e-4), (80.0, 1e-5))
+        ],
+    ).cases
+    assert (warm.pocket_clearance > 3e-4, cold.pocket_clearance < 3e-4) == (True, True)
+    assert warm.pocket_clearance == pytest.approx(3e-4, rel=1e-2)
+    assert "pocket_clearance closes to" in closed.reason
+
+
+@pytest.mark.usefixtures("elsewhere")
+def test_the_worst_case_is_in_the_document(capsys):
+    """Without margins and verdicts the highest restitution factor decides; no duty is null."""
+    found = document(capsys, "sweep", "momentum-wheel", "--vary", f"{SPEED}=3000..9000rpm:3")
+    etas = [one["restitution_factor"] for one in found["cases"]]
+    expected = {"case": 0, "quantity": "restitution_factor", "value": max(etas), "compared": 3, "alike": 1}
+    assert (found["worst"], found["duty"], found["margins"]) == (expected, None, False)
+
+
+def test_alike_and_refused_cases_have_their_pictures():
+    """No worst case where all are alike; no envelope where no case has an answer."""
+
+    def pictures(cases):
+        data = dataset("sweep", sweep(STUDY, cases), STUDY, [])
+        return dict(draw("sweep", data))
+
+    alike = pictures([{"operation.temperature": t} for t in (280.0, 290.0, 300.0)])["envelope"]
+    assert alike.axes[0].get_title(loc="left").startswith("no worst case: all 3 have the highest")
+    assert "envelope" not in pictures([{"bearing.ball_diameter": d} for d in (0.5, 0.6)])
