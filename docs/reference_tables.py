@@ -14,15 +14,17 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 from separatrix import answers, study
 from separatrix.cage import PlanarCage
 from separatrix.cage.space_body import SpaceBody
+from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction.exact.contact import ContactProblem
+from separatrix.comparing.records import Comparison
+from separatrix.explore.envelope import Duty, WorstCase
 from separatrix.explore.sweep import Sweep
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
 from separatrix.present.contact import GIVEN, NUMBERS
-from separatrix.present.text.compare import ComparedRankings, ComparedRuns
 from separatrix.present.walk import field_axes, field_units
 from separatrix.study_file import document
 from separatrix.study_file.sections import READERS, required_fields
@@ -43,7 +45,7 @@ meaning. The page is written from the records of the program. All numbers are in
 a document are for, and the files beside it: [results](../reference/results.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
-`warnings` (sentences) and `study` (every resolved input with `value`, `unit` and `origin`).
+`warnings` (sentences), `provenance` (what `reproduce` needs) and `study` (every resolved input with `value`, `unit` and `origin`).
 """
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
@@ -65,13 +67,14 @@ class Verb(NamedTuple):
     own: tuple[Line, ...] = ()
 
 
-CHAIN_RECORDS = (Restitution, RaceContact)
+CHAIN_RECORDS = (Restitution, RaceContact, Clearances)
 RACES = (
     Line("inner", meaning="the contact of the most loaded ball with the inner race"),
     Line("outer", meaning="the same with the outer race"),
 )
 CONTACTS = (
     *RACES,
+    Line("clearances", meaning="clearances as the cage runs; null for a study that states them"),
     Line("creep_spin", "1/m", meaning="creep across the contact by spin"),
     Line("creep_curvature", "1/m2", meaning="creep across the contact by its curvature"),
 )
@@ -201,7 +204,7 @@ FILMS = (
 )
 VERBS = {
     "check": Verb((answers.CheckAnswer,), CONTACTS),
-    "bearing": Verb((BearingState,), OF_BEARING),
+    "bearing": Verb((BearingState, Clearances), OF_BEARING),
     "traction": Verb((answers.TractionAnswer,), TRACTION),
     "restitution": Verb((*CHAIN_RECORDS, answers.RestitutionAnswer), FILMS),
     "mobility": Verb((answers.MobilityAnswer,)),
@@ -210,8 +213,15 @@ VERBS = {
     "simulate": Verb((answers.SimulationAnswer, answers.SpaceSimulationAnswer, *CHAIN_RECORDS), RUN),
     "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
     "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
-    "sweep": Verb((Sweep,), (Line("case", meaning="number of the case"),)),
-    "compare": Verb((ComparedRuns, ComparedRankings), (Line("of", meaning="verb of the two answers"),)),
+    "sweep": Verb(
+        (Sweep, WorstCase, Duty),
+        (
+            Line("worst", meaning="the worst case"),
+            Line("duty", meaning="shares of the time"),
+            Line("case", meaning="number of the case"),
+        ),
+    ),
+    "compare": Verb((Comparison,), (Line("of", meaning="verb of the two answers"),)),
     "tribometer": Verb((RawLog, ColumnRead, TestFriction), TRIBOMETER),
     "contact": Verb((ContactProblem,), CONTACT),
 }

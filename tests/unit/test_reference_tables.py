@@ -11,7 +11,7 @@ from reference_tables import VERBS, json_page, keys_without_line, lines_of, name
 import separatrix
 from separatrix.ranking import Ranked
 
-BY_NAME = {"study", "metadata", "slopes", "tested"}
+BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
 
 FULL = separatrix.read_study("momentum-wheel")
@@ -67,7 +67,7 @@ def names_in(value):
             yield from names_in(inside)
 
 
-COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warnings"}
+COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warnings", "provenance"}
 
 
 def missing(verb, found):
