@@ -45,7 +45,8 @@ meaning. The page is written from the records of the program. All numbers are in
 a document are for, and the files beside it: [results](../reference/results.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
-`warnings` (sentences), `provenance` (what `reproduce` needs) and `study` (every resolved input with `value`, `unit` and `origin`).
+`warnings` (sentences), `provenance` (what `reproduce` needs) and `study` (every resolved input with
+`value`, `unit` and `origin`).
 """
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
