@@ -54,7 +54,8 @@ class Server:
 
     def kill(self) -> None:
         """End it and its process as a power cut does."""
-        os.killpg(self.process.pid, signal.SIGKILL)
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         self.process.stdout.close()
 

@@ -162,7 +162,7 @@ def test_pages_answer_within_200_ms(view, server, ranked):
     assert slow == {}
 
 
-def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder):
+def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder, request):
     """Progress is shown; a cancel keeps what was finished; after a kill the same run goes on."""
     place = folder / "killed"
     place.mkdir()
@@ -170,6 +170,7 @@ def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder):
     text = text.replace("runs = 4", "runs = 600").replace('"4 ms"', '"40 ms"')
     (place / "long.toml").write_text(text, encoding="utf-8")
     first = Server(place)
+    request.addfinalizer(first.kill)
     page = view(link=first.link)
     page.goto(f"{first.address}/study/long.toml")
     page.get_by_role("button", name="Run stability", exact=True).click()
@@ -181,6 +182,7 @@ def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder):
     bar = page.locator(".job.running progress[value]")
     expect(bar).to_be_attached(timeout=PATIENCE)
     expect(bar).not_to_have_attribute("value", "0.000", timeout=PATIENCE)
+    page.close()
     first.kill()
     kept = (place / "long" / "finished-runs.sqlite").stat().st_size
     assert kept > 0
