@@ -6,7 +6,9 @@ SMALL := --points 2 --runs 1 --jobs 1 --json --quiet
 PLANE := $(BIN)/separatrix map cryogenic-turbopump $(SMALL)
 SPACE := $(BIN)/separatrix map cryogenic-turbopump --motion space $(SMALL)
 
-.PHONY: demo test check bench docs clean kernels
+BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
+
+.PHONY: demo test browser-test check bench docs clean kernels
 
 demo: .venv/ready ## rank the paper's seven cage materials
 	$(BIN)/separatrix rank cryogenic-turbopump --out demo
@@ -24,6 +26,12 @@ check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/mypy --config-file benchmarks/mypy.ini benchmarks
 	$(BIN)/lint-imports
 	$(TESTS)
+
+browser-test: kernels ## the local page in Chromium, which the system has
+	@command -v chromium > /dev/null || { echo 'Chromium is missing: apt-get install chromium'; exit 1; }
+	@$(BIN)/python -c 'import axe_playwright_python, playwright' 2> /dev/null || \
+	  $(BIN)/pip install --quiet --constraint constraints.txt --editable '.[browser]'
+	$(BROWSER_TESTS)
 
 bench: .venv/ready ## speeds; numbers go in benchmarks/README.md
 	$(BIN)/pytest benchmarks --benchmark-only -p no:xdist

@@ -54,14 +54,17 @@ class Server:
 
     def kill(self) -> None:
         """End it and its process as a power cut does."""
-        os.killpg(self.process.pid, signal.SIGKILL)
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
+        self.process.stdout.close()
 
     def close(self) -> None:
         """End it as Ctrl-C does."""
         self.process.send_signal(signal.SIGINT)
         try:
             self.process.wait(20)
+            self.process.stdout.close()
         except subprocess.TimeoutExpired:
             self.kill()
 

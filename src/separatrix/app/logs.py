@@ -16,6 +16,7 @@ from separatrix.app.page import Page, form_of
 from separatrix.errors import InputError
 from separatrix.figures.style import BLUE, GREY, VERMILION
 from separatrix.friction.file import friction_text
+from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
 from separatrix.notes import noted_warnings
@@ -27,7 +28,8 @@ Form = Annotated[dict[str, str], Depends(form_of)]
 UNITS = {"time": "s", "distance": "m", "cycles": ""}
 """Axis along which running-in is cut -> its unit."""
 
-FRICTION_FILE = "friction.toml"
+STATED = ("material", "counterface", "medium")
+"""What the form may state of all logs that go into a friction file."""
 
 
 def routes(page: Page) -> APIRouter:
@@ -66,9 +68,12 @@ def routes(page: Page) -> APIRouter:
     @router.post("/logs-friction", response_class=HTMLResponse)
     def friction(sent: Form) -> Response:
         path = page.folder.new(f"{sent.get('name', '').strip().removesuffix('.toml')}.toml")
-        found = reduced([uploads().inside(name) for name in names_of(place)], "", complete=True)
+        stated = {key: words for key in STATED if (words := sent.get(key, "").strip())}
+        given = ColumnMap(test=stated)
+        files = [uploads().inside(name) for name in names_of(place)]
+        found = reduced(files, "", complete=True, column_map=given)
         if found.friction_tests is None:
-            cure = "Name what slid on what in a column map, and use the command line."
+            cure = "State material, counterface and medium beside the name."
             raise InputError("The logs", "do not all state their materials", cure=cure)
         path.write_text(friction_text(found.friction_tests), encoding="utf-8")
         return page.html("written.html", name=path.name)
@@ -92,10 +97,12 @@ def _keep(folder: Folder, name: str, content: bytes) -> None:
     folder.new(name).write_bytes(content)
 
 
-def reduced(paths: Path | list[Path], run_in: str, *, complete: bool = False) -> ReducedLogs:
+def reduced(
+    paths: Path | list[Path], run_in: str, *, complete: bool = False, column_map: ColumnMap | None = None
+) -> ReducedLogs:
     """Return what logs show; `run_in` is where running-in ends, or empty to find it."""
     with draft.ONE_AT_A_TIME, noted_warnings():
-        return tribometer(paths, run_in=run_in or None, complete=complete)
+        return tribometer(paths, run_in=run_in or None, complete=complete, column_map=column_map)
 
 
 def test(one: Reduction) -> dict[str, Any]:

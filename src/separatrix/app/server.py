@@ -7,6 +7,7 @@ import itertools
 import secrets
 import socket
 import threading
+import warnings
 from collections.abc import AsyncIterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,14 +17,13 @@ from fastapi import FastAPI, Request
 from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 
-from separatrix.app import draft, editing, exploring, handing, logs, results
+from separatrix.app import editing, exploring, handing, logs, results
 from separatrix.app.files import Folder
 from separatrix.app.guard import Guard
 from separatrix.app.jobs import Jobs
 from separatrix.app.page import Page
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError, SeparatrixError
-from separatrix.notes import noted_warnings
+from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.study_file import read_study
 
 HOST = "127.0.0.1"
@@ -76,8 +76,8 @@ def application(root: Path) -> FastAPI:
 
 def made_ready(page: Page) -> None:
     """Load what solves studies and reads answers, before the first view that needs it."""
-    with draft.ONE_AT_A_TIME, noted_warnings():
-        solve(read_study("cryogenic-turbopump"))
+    warnings.simplefilter("ignore", ValidityWarning)  # shown in the page, where an answer has some
+    solve(read_study("cryogenic-turbopump"))
     names = ((name, verb) for name in page.folder.studies() for verb in page.answered(name))
     for name, verb in itertools.islice(names, 1):
         page.dataset(page.folder.answers(name) / f"{verb}.nc")

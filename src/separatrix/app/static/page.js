@@ -98,7 +98,7 @@ function inPlace(event) {
   const now = target.cloneNode(false);
   now.innerHTML = xhr.responseText;
   morph(target, document.adoptNode(now));
-  htmx.process(target);
+  for (const one of target.children) htmx.process(one); // the target itself keeps its queue of requests
 }
 
 function sending(event) {
