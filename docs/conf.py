@@ -5,15 +5,20 @@ from __future__ import annotations
 import ast
 import contextlib
 import io
-import os
 import runpy
+import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import matplotlib
+
 import separatrix
 
-os.environ["MPLBACKEND"] = "agg"
+sys.path.insert(0, str(Path(__file__).parent))
+from reference_tables import json_page, study_page
+
+matplotlib.use("agg")  # not in the environment: the notebooks draw in their own way
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -24,11 +29,18 @@ project_copyright = "2026, the separatrix founders"
 release = installed_version("separatrix")
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx-mathjax-offline", "numpydoc"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx-mathjax-offline", "numpydoc"]
+nb_execution_mode = "force"  # the notebooks are stored without outputs
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 4
-source_suffix = {".md": "markdown", ".rst": "restructuredtext"}  # numpydoc looks for the second
-exclude_patterns = ["_build"]
+source_suffix = {
+    ".md": "myst-nb",
+    ".ipynb": "myst-nb",
+    ".rst": "restructuredtext",
+}  # numpydoc looks for the second
+exclude_patterns = ["_build", "jupyter_execute"]
 html_theme = "furo"
 html_title = "separatrix"
 math_number_all = False
@@ -92,7 +104,15 @@ def write_reference(app: Sphinx) -> None:
     (Path(app.srcdir) / "generated" / "python.md").write_text(page, encoding="utf-8")
 
 
+def write_tables(app: Sphinx) -> None:
+    """Write the pages of the keys of a study and of the names in the documents."""
+    folder = Path(app.srcdir) / "generated"
+    (folder / "study-keys.md").write_text(study_page(), encoding="utf-8")
+    (folder / "json-names.md").write_text(json_page(), encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
     """Write the generated pages before the pages are read."""
     app.connect("builder-inited", write_gallery)
     app.connect("builder-inited", write_reference)
+    app.connect("builder-inited", write_tables)

@@ -20,9 +20,8 @@ from commands import document, refused
 
 from separatrix import api, present, saving, verbs
 from separatrix.cli import main
-from separatrix.cli.report import answers
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.reporting.kept import Kept, read_document
+from separatrix.reporting.kept import Kept, answers, read_document
 from separatrix.study_file import read_study
 
 HOSTILE = "<script>alert(1)</script> $x$ #strong[x]"
@@ -351,3 +350,36 @@ def test_a_pdf_needs_its_extra_and_a_folder(monkeypatch, capsys):
     assert "needs a folder with --json" in refused(capsys, "report", "le7", "--pdf", "--json")
     monkeypatch.setitem(sys.modules, "typst", None)
     assert 'pip install "separatrix[pdf]"' in refused(capsys, "report", "le7", "--pdf")
+
+
+def test_two_designs_are_reported_side_by_side(folder, tmp_path, capsys):
+    """The input and the verdict that were changed come first; HTML and PDF are written, names are text."""
+    other = tmp_path / "other"
+    shutil.copytree(folder, other)
+    changed = json.loads((other / "rank.json").read_text())
+    changed["study"]["cage"]["mass"]["value"] *= 2.0
+    changed["overall"][0]["verdict"] = "CHANGED"
+    (other / "rank.json").write_text(json.dumps(changed))
+    found = document(capsys, "report", str(folder), str(other))
+    assert found["summary"][:2] == ["1 input differs.", "1 verdict changed."]
+    tables = {
+        block["table"]: block["rows"]
+        for one in found["report"]["sections"]
+        for block in one["blocks"]
+        if "table" in block
+    }
+    assert tables["Keys of the study, then options."] == [["cage.mass", "2 g", "4 g"]]
+    assert main(["report", str(folder), str(other), "--pdf", "--out", "two", "--quiet"]) == 0
+    assert {path.name for path in Path("two").iterdir()} == {"report.html", "report.pdf"}
+    page = Page(Path("two/report.html").read_text())
+    assert not [one for one in page.of("img") if (one["src"] or "").startswith("http")]
+    assert any(CANDIDATE in text for text in page.text_of("td", "th"))
+
+
+def test_answers_of_different_verbs_are_not_reported_together(folder, tmp_path, capsys):
+    """Nothing is written."""
+    shutil.copy(folder / "bearing.json", tmp_path / "bearing.json")
+    shutil.copy(folder / "rank.json", tmp_path / "rank.json")
+    assert "must be an answer of" in refused(
+        capsys, "report", str(tmp_path / "bearing.json"), str(tmp_path / "rank.json")
+    )

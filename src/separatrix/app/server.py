@@ -17,7 +17,7 @@ from fastapi import FastAPI, Request
 from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 
-from separatrix.app import editing, exploring, logs, results
+from separatrix.app import editing, exploring, handing, logs, results
 from separatrix.app.files import Folder
 from separatrix.app.guard import Guard
 from separatrix.app.jobs import Jobs
@@ -57,7 +57,7 @@ def application(root: Path) -> FastAPI:
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
-    for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
+    for routes in (editing.routes, results.routes, handing.routes, exploring.routes, logs.routes):
         app.include_router(routes(page))
 
     @app.exception_handler(SeparatrixError)

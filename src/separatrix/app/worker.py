@@ -8,13 +8,21 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.errors import InputError, SeparatrixError
 from separatrix.units import Second
+
+if TYPE_CHECKING:
+    from separatrix.questions import Verb
+    from separatrix.study import Study
+
+REPORT = "report"
+"""In the place of a verb: the report of a study."""
 
 CANCEL, END = "cancel", "end"
 """What the page may send besides a task."""
@@ -132,36 +140,86 @@ def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) 
 
 
 def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
-    """Compute and write one answer; return how it ended, and a message."""
+    """Compute and write one answer, or a report; return how it ended, and a message."""
     from separatrix.limits.map_parameters import varied
-    from separatrix.notes import grouped, noted_warnings
-    from separatrix.present import document
-    from separatrix.questions import VERBS, computed
+    from separatrix.notes import noted_warnings
+    from separatrix.questions import VERBS
     from separatrix.regular_file import reading_only_in
-    from separatrix.saving import save_answer
     from separatrix.study import with_models
     from separatrix.study_file import read_study, require
 
-    verb = next(one for one in VERBS if one.name == task.verb)
     question = dict(task.question)
     models = {name: question.pop(name) for name in ("motion", "ball") if question.get(name)}
     with noted_warnings() as notes, reading_only_in(task.root):
         study = read_study(task.study)
+        if task.verb == REPORT:
+            return _reported(task, study, notes, send)
+        verb = next(one for one in VERBS if one.name == task.verb)
         require(study, verb.name, *verb.needs)
         study = with_models(study, models) if models else study
         study = varied(study, task.values) if task.values else study
-        task.folder.mkdir(parents=True, exist_ok=True)
-        reporter = Reporter(task.number, send)
-        found = computed(
-            verb, study, question, jobs=_threads(), folder=task.folder, cluster=None, progress=reporter
-        )
-        send(Report(number=task.number, message="Drawing the figures and writing the files."))
-        answer = document(verb.name, found.record, found.study, grouped(notes))
-        save_answer(task.folder, found.record, found.study, answer)
+        return _written(verb, study, question, notes, task, send)
+
+
+def _written(
+    verb: Verb,
+    study: Study,
+    question: Mapping[str, Any],
+    notes: list[str],
+    task: Task,
+    send: Callable[[Report], None],
+) -> tuple[str, str]:
+    """Compute and write the answer of a verb."""
+    from separatrix.notes import grouped
+    from separatrix.present import document
+    from separatrix.questions import computed
+    from separatrix.saving import save_answer
+
+    task.folder.mkdir(parents=True, exist_ok=True)
+    progress = Reporter(task.number, send)
+    found = computed(verb, study, question, jobs=_threads(), folder=task.folder, progress=progress)
+    send(Report(number=task.number, message="Drawing the figures and writing the files."))
+    answer = document(verb.name, found.record, found.study, grouped(notes))
+    save_answer(task.folder, found.record, found.study, answer)
     if found.is_complete:
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
     return "cancelled", "The answer has what was finished. Resume to go on."
+
+
+def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report], None]) -> tuple[str, str]:
+    """Write the report of a study; answers that it lacks are computed first, as the command does."""
+    from separatrix.questions import VERBS
+    from separatrix.reporting.content import report_of
+    from separatrix.reporting.html import html
+    from separatrix.reporting.kept import NEEDED, answers, read_folder, verbs_of
+    from separatrix.reporting.pdf import pdf
+    from separatrix.staged import staged
+
+    task.folder.mkdir(parents=True, exist_ok=True)
+    known = read_folder(task.folder, needed=False)
+    missing = []
+    for verb in (one for one in VERBS if one.name in [*verbs_of(study)]):
+        if verb.name in known and answers(known[verb.name], study):
+            continue
+        send(Report(number=task.number, message=f"Computing {verb.name} for the report."))
+        try:
+            state, message = _written(verb, study, {}, [*notes], task, send)
+        except InputError as error:
+            missing.append(f"`{verb.name}` was not computed: {error}")
+            continue
+        if state != "finished":
+            return state, message
+    send(Report(number=task.number, message="Writing the report."))
+    found = {verb: one for verb, one in read_folder(task.folder).items() if answers(one, study)}
+    made = report_of({verb: found[verb] for verb in NEEDED if verb in found}, missing)
+    contents = {"report.html": html(made).encode()}
+    if find_spec("typst") is not None:
+        contents["report.pdf"] = pdf(made)
+    with staged(task.folder) as stage:
+        for name, content in contents.items():
+            (stage / name).write_bytes(content)
+    return "finished", ""
 
 
 def _threads() -> int:

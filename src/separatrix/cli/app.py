@@ -106,6 +106,9 @@ def _reproduce(
 
 def _report(
     asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=reporting.ASKED_HELP)],
+    second: Annotated[
+        Path | None, typer.Argument(metavar="[FOLDER]", help=reporting.SECOND_HELP, show_default=False)
+    ] = None,
     pdf: Annotated[bool, typer.Option("--pdf", help=reporting.PDF_HELP)] = False,
     json: Json = False,
     out: Annotated[str | None, typer.Option(metavar="DIR", help=reporting.OUT_HELP)] = None,
@@ -113,7 +116,7 @@ def _report(
     jobs: Jobs = None,
 ) -> int:
     options = reporting.ReportOptions(out=folder(out), pdf=pdf, json=json, quiet=quiet, jobs=threads(jobs))
-    return _interruptible(lambda: reporting.report(asked, options), "no report was written.")
+    return _interruptible(lambda: reporting.report(asked, second, options), "no report was written.")
 
 
 def _contact(

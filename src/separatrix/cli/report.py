@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,10 +26,14 @@ HELP = "Everything on one study as a document: HTML, and PDF with --pdf."
 EPILOG = (
     "Of a folder: from the answers that it holds; nothing long is computed. Of a study: bearing, traction, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
-    "same inputs that are there already are taken. The HTML needs no other file and no network."
+    "same inputs that are there already are taken. Of two folders, STUDY is the first: what changed, by more "
+    "than counting noise or not. The HTML needs no other file and no network."
 )
 ASKED_HELP = "A study, or a folder of answers."
-OUT_HELP = "Folder of the report [default: the folder of the answers; none with --json]."
+SECOND_HELP = "Another folder of answers: the report is on what differs."
+OUT_HELP = "Folder of the report [default: that of the answers; report for two; none with --json]."
+TWO = "report"
+"""Default folder of the report of two answers."""
 PDF_HELP = "Also write report.pdf; needs the extra pdf."
 CHAIN = ("bearing", "traction", "restitution")
 """Verbs that take seconds: computed for the report of a folder that lacks them."""
@@ -51,8 +55,8 @@ class ReportOptions:
     jobs: int
 
 
-def report(asked: str, options: ReportOptions) -> int:
-    """Write the report of a study or of a folder, and return the exit status.
+def report(asked: str, second: Path | None, options: ReportOptions) -> int:
+    """Write the report of a study, of a folder, or of two answers, and return the exit status.
 
     Raises
     ------
@@ -68,6 +72,9 @@ def report(asked: str, options: ReportOptions) -> int:
             raise InputError("--pdf", "needs a folder with --json", cure="Give --out DIR.")
         typesetter()
     writes = options.out is not None or not options.json
+    if second is not None:
+        _report_of_two(Path(asked), second, options, writes=writes)
+        return ANSWERED
     with contextlib.ExitStack() as stack:
         if Path(asked).is_dir() and asked not in shipped_studies():
             folder = (options.out or Path(asked)) if writes else None
@@ -101,6 +108,15 @@ def _report_of_folder(folder: Path, options: ReportOptions) -> Report:
         raise InputError(str(folder), "holds an answer that is not complete", repr(error), cure) from error
 
 
+def _report_of_two(first: Path, second: Path, options: ReportOptions, *, writes: bool) -> None:
+    from separatrix.reporting.two import report_of_two
+
+    made = report_of_two(first, second)
+    folder = (options.out or Path(TWO)) if writes else None
+    with contextlib.nullcontext() if folder is None else writable_folder(folder):
+        _deliver(made, folder, options)
+
+
 def _read(asked: str) -> tuple[Study, list[str]]:
     """Return a study with what was noted when it was read."""
     from separatrix.study_file import read_study
@@ -111,7 +127,7 @@ def _read(asked: str) -> tuple[Study, list[str]]:
 
 def _of_folder(folder: Path, options: ReportOptions) -> tuple[dict[str, Kept], list[str]]:
     """Return the answers of a folder, and of the chain those that it lacks, if its study can be read back."""
-    from separatrix.reporting.kept import NEEDED, read_folder
+    from separatrix.reporting.kept import NEEDED, read_folder, verbs_of
 
     found, missing = read_folder(folder), list[str]()
     study = _read_back(next(iter(found.values())).document, str(folder))
@@ -142,19 +158,11 @@ def _read_back(document: Mapping[str, Any], where: str) -> Study | None:
     return study if plain(resolved(study), "study") == document["study"] else None
 
 
-def verbs_of(study: Study) -> Iterator[str]:
-    """Yield the verbs that a report of a study needs, in the order of the chain."""
-    yield from ("bearing", "traction")
-    if study.cage is not None:
-        yield "restitution"
-        yield "stability" if study.ranking is None else "rank"
-
-
 def _of_study(
     study: Study, notes: list[str], folder: Path | None, options: ReportOptions
 ) -> tuple[dict[str, Kept], list[str], bool]:
     """Return the answers to a study, what could not be computed, and whether no answer was interrupted."""
-    from separatrix.reporting.kept import NEEDED, read_folder
+    from separatrix.reporting.kept import NEEDED, answers, read_folder, verbs_of
 
     known = read_folder(folder, needed=False) if folder is not None else {}
     found = {verb: one for verb, one in known.items() if answers(one, study)}
@@ -186,18 +194,6 @@ def _add(
         if found[verb].document.get("complete") is False:
             break
     return missing
-
-
-def answers(kept: Kept, study: Study) -> bool:
-    """Whether an answer is complete, from this version, and to this study."""
-    from separatrix import __version__
-    from separatrix.present import plain
-    from separatrix.study_file import resolved
-
-    document = kept.document
-    asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
-    same = all(document[key] == value for key, value in asked.items())
-    return same and document["separatrix_version"] == __version__ and document.get("complete", True) is True
 
 
 def _computed(verb: str, study: Study, notes: list[str], folder: Path | None, options: ReportOptions) -> Kept:
@@ -243,18 +239,19 @@ def _document(found: Report, files: list[Path]) -> dict[str, Any]:
     from separatrix.reporting.record import as_data
     from separatrix.reporting.words import own_rows
 
+    head = {"separatrix_version": __version__, "verb": "report", "title": found.title}
+    tail = {"files": [str(path) for path in files], "report": as_data(found)}
+    if not found.documents:  # of two answers
+        return {**head, "summary": list(found.lead), **tail}
     rank: Mapping[str, Any] | None = found.documents.get("rank")
     first = next(iter(found.documents.values()))
     rows = [] if rank is None else own_rows(rank)
     return {
-        "separatrix_version": __version__,
-        "verb": "report",
+        **head,
         "name": first["name"],
-        "title": found.title,
         "answers": [*found.documents],
         "summary": list(found.lead),
         "environment": None if rank is None else rank["environment"],
         "materials": [{key: row.get(key) for key in KEYS} for row in rows],
-        "files": [str(path) for path in files],
-        "report": as_data(found),
+        **tail,
     }

@@ -58,20 +58,22 @@ def in_words(found: Comparison, *, full: bool = False) -> str:
     ]
     blocks = [heading(f"Two answers of {found.of}"), facts(named)]
     if found.verdicts:
-        rows = [[row.place, row.name, *_pair(row)] for row in found.verdicts]
+        rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
         blocks.append(
             _part("Verdicts that changed", ("", "", "first", "second"), rows, "verdicts", full, left=2)
         )
     else:
         blocks.append(section("Verdicts that changed", paragraph("None.")))
-    changed, own = list(_shown(found, full=full)), "" if full else found.environment or ""
-    rows = [_result(row, own) for row in changed]
+    changed, own = list(shown_rows(found, full=full)), "" if full else found.environment or ""
+    rows = [result_words(row, own) for row in changed]
     heads = ("", "", "first\n(95 %)", "second\n(95 %)", "change", "noise")
     title = f"Results that differ{own and ' in '}{own}, the largest changes first"
     blocks.append(_part(title, heads, rows, "rows", full, left=2))
-    differ = [[at.key, _input(at.first, at.unit), _input(at.second, at.unit)] for at in found.differences]
+    differ = [
+        [at.key, input_words(at.first, at.unit), input_words(at.second, at.unit)] for at in found.differences
+    ]
     blocks.append(_part("Inputs that differ", ("", "first", "second"), differ, "inputs", full))
-    blocks.append("\n".join(paragraph(line) for line in _notes(found, len(changed))))
+    blocks.append("\n".join(paragraph(line) for line in notes_of(found, len(changed))))
     return "\n\n".join(blocks) + "\n"
 
 
@@ -90,7 +92,7 @@ def _part(
     return section(title, table(heads, rows[:most], left=left), *more)
 
 
-def _shown(found: Comparison, *, full: bool) -> Iterable[Row]:
+def shown_rows(found: Comparison, *, full: bool = False) -> Iterable[Row]:
     """Return the rows that a reader looks at first; all of them if that is none."""
     wanted, own = HEADLINES.get(found.of, ()), found.environment
     heads = [row for row in found.rows if row.name == "restitution_factor" and not row.place]
@@ -102,7 +104,8 @@ def _shown(found: Comparison, *, full: bool) -> Iterable[Row]:
     return [*heads, *chosen] if chosen else rest
 
 
-def _notes(found: Comparison, shown: int) -> Iterable[str]:
+def notes_of(found: Comparison, shown: int) -> Iterable[str]:
+    """Yield what a reader of `shown` results should know of them and of the others."""
     if found.of in UNCOUNTED_VERBS:
         yield EXACT
     elif found.of == "simulate":
@@ -118,14 +121,16 @@ def _notes(found: Comparison, shown: int) -> Iterable[str]:
         yield f"Both also have answers of {', '.join(found.also)}: name those files to compare them."
 
 
-def _result(row: Row, own: str) -> list[str]:
+def result_words(row: Row, own: str) -> list[str]:
+    """Return place, name, both values, change and noise of a result; `own` is a place that is left out."""
     place = row.place.removeprefix(f"{own} / ")
     place = place if len(place) <= LONGEST_PLACE else f"...{place[3 - LONGEST_PLACE :]}"
     change = ABSENT if row.change is None else _number(row.change, row.unit, sign=True)
-    return [place, NAMES.get(row.name, row.name), *_pair(row), change, SHORT[row.noise]]
+    return [place, NAMES.get(row.name, row.name), *pair_words(row), change, SHORT[row.noise]]
 
 
-def _pair(row: Row) -> list[str]:
+def pair_words(row: Row) -> list[str]:
+    """Return both values of a result with their intervals."""
     return [_value(one, row.unit) for one in (row.first, row.second)]
 
 
@@ -150,9 +155,10 @@ def _number(value: float, unit: str | None, *, sign: bool = False) -> str:
     return f"+{text}" if sign and value > 0.0 else text
 
 
-def _input(value: object, unit: str | None) -> str:
+def input_words(value: object, unit: str | None) -> str:
+    """Return the value of an input in one of the answers."""
     if isinstance(value, list):
-        given = [_input(one, unit or "-") if isinstance(one, float) else str(one) for one in value]
+        given = [input_words(one, unit or "-") if isinstance(one, float) else str(one) for one in value]
         return printable(", ".join(given), 120) or ABSENT
     if isinstance(value, float):
         return quantity(value, unit) if unit else significant(value)

@@ -1,4 +1,4 @@
-"""Friction files: tests as a person or the verb `tribometer` writes them (docs/tutorials/tribometer.md).
+"""Friction files: tests as a person or the verb `tribometer` writes them (docs/reference/friction-file.md).
 
 TOML, one [[test]] for each test, every dimensional value as text with its unit.
 """

@@ -65,6 +65,11 @@ def field_units(record: type) -> dict[str, str]:
     return {name: kind.unit for name, kind in _kinds(record).items() if kind.unit is not None}
 
 
+def field_axes(record: type) -> dict[str, tuple[str, ...]]:
+    """Return the names of the dimensions of each field of a record class that states them."""
+    return {name: kind.axes for name, kind in _kinds(record).items() if kind.axes}
+
+
 class _Kind(NamedTuple):
     """What the type of a field states."""
 

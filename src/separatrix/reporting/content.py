@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from separatrix.reporting.envelope import envelope
 from separatrix.reporting.evidence import about, evidence, outside, uncertainty
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.inputs import inputs, provenance
@@ -40,6 +41,8 @@ def _sections(kept: Mapping[str, Kept]) -> Iterator[Section]:
         yield evidence(kept["rank"])
     if "map" in kept:
         yield _map(kept["map"])
+    if "sweep" in kept:
+        yield envelope(kept["sweep"])
     yield uncertainty(kept)
     yield outside(kept)
     yield inputs(kept)

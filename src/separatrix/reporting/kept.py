@@ -15,6 +15,8 @@ from separatrix.regular_file import size_of
 if TYPE_CHECKING:
     import xarray as xr
 
+    from separatrix.study import Study
+
 MOST_BYTES = 256 * 1024**2
 """Size of a document; the longest simulations have some 30 MB."""
 
@@ -26,6 +28,7 @@ NEEDED = {
     "rank": ("environment", "environments", "stability", "chain", "pocket"),
     "sensitivity": ("environment", "environments", "drivers", "next_tests", "undecided"),
     "map": (),
+    "sweep": ("parameters", "cases", "worst", "duty"),
 }
 """Verbs that a report shows, in the order of the chain, and the keys that each document must have."""
 
@@ -107,3 +110,23 @@ def _inputs(entry: object, path: str = "") -> Iterator[tuple[str, Any]]:
         if key in ("origin", "name", "title", "record", "source", "confidence", "table", "other_tests"):
             continue
         yield from _inputs(item, path if key == "value" else f"{path}.{key}".lstrip("."))
+
+
+def verbs_of(study: Study) -> Iterator[str]:
+    """Yield the verbs that a report of a study needs, in the order of the chain."""
+    yield from ("bearing", "traction")
+    if study.cage is not None:
+        yield "restitution"
+        yield "stability" if study.ranking is None else "rank"
+
+
+def answers(kept: Kept, study: Study) -> bool:
+    """Whether an answer is complete, from this version, and to this study."""
+    from separatrix import __version__
+    from separatrix.present import plain
+    from separatrix.study_file import resolved
+
+    document = kept.document
+    asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
+    same = all(document[key] == value for key, value in asked.items())
+    return same and document["separatrix_version"] == __version__ and document.get("complete", True) is True

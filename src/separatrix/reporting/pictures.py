@@ -31,11 +31,12 @@ def picture(verb: str, data: xr.Dataset | None, name: str, caption: str, alt: st
     if data is None:
         return
     for _, figure in draw(verb, data, only=name):
-        yield _picture(figure, name, caption, alt, tuple(_targets(name, figure, data)))
+        yield picture_of(figure, name, caption, alt, tuple(_targets(name, figure, data)))
         return
 
 
-def _picture(figure: Figure, name: str, caption: str, alt: str, hover: tuple[Target, ...] = ()) -> Picture:
+def picture_of(figure: Figure, name: str, caption: str, alt: str, hover: tuple[Target, ...] = ()) -> Picture:
+    """Return a figure as a picture of a report."""
     svg, width, height = svg_of(figure)
     return Picture(name, caption, alt, svg=svg, width=width, height=height, hover=hover)
 
@@ -77,7 +78,7 @@ def drawing(study: Mapping[str, Any], bearing: Mapping[str, Any] | None) -> Pict
     with journal():
         figure = settled(bearing_drawing(study, angle))
     cage = " and its cage" if study.get("cage") else ""
-    return _picture(
+    return picture_of(
         figure,
         "bearing-drawing",
         f"The bearing{cage} to scale. Red: line of contact under load; blue: clearances. {guesses(study)}"

@@ -79,9 +79,7 @@ def significant(value: float | None, digits: int = 4) -> str:
 
 def quantity(value: float | None, unit: str, digits: int | None = None) -> str:
     """Return a value in a unit a reader likes, rounded to significant digits; a dash if it is absent."""
-    if value is not None and digits is not None:
-        value = float(f"{value:.{digits}g}")
-    return ABSENT if value is None else format_quantity(value, unit)
+    return ABSENT if value is None else format_quantity(value, unit, digits or 4)
 
 
 def stated(record: object, name: str) -> str:

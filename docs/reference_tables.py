@@ -1,0 +1,384 @@
+"""Tables of the reference, written from the records: keys of a study, names of the JSON documents."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from typing import Any, NamedTuple, get_args, get_type_hints
+
+from separatrix import answers, study
+from separatrix.cage import PlanarCage
+from separatrix.cage.space_body import SpaceBody
+from separatrix.chain.clearances import Clearances
+from separatrix.chain.contacts import BearingState, RaceContact
+from separatrix.chain.restitution import Restitution
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction.exact.contact import ContactProblem
+from separatrix.comparing.records import Comparison
+from separatrix.explore.envelope import Duty, WorstCase
+from separatrix.explore.sweep import Sweep
+from separatrix.friction.logs.log import ColumnRead, RawLog
+from separatrix.friction.reduction import TestFriction
+from separatrix.present.contact import GIVEN, NUMBERS
+from separatrix.present.walk import field_axes, field_units
+from separatrix.study_file import document
+from separatrix.study_file.sections import READERS, required_fields
+from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
+from separatrix.units import format_quantity, unit_of
+
+KEYS = """# Keys of a study
+
+After this page you can look up each key of a study file: its unit, its default and its meaning. The page is
+written from the program. Rules that connect several keys: [study file](../reference/study-file.md). The unit
+is that of the results; the file may state
+[another of the same kind](../reference/study-file.md#how-values-are-written).
+"""
+NAMES = """# Names in the JSON documents
+
+After this page you can look up each name in the document that `--json` prints: its unit, its shape and its
+meaning. The page is written from the records of the program. All numbers are in SI units. What the parts of
+a document are for, and the files beside it: [results](../reference/results.md).
+
+Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
+`warnings` (sentences), `provenance` (what `reproduce` needs) and `study` (every resolved input with
+`value`, `unit` and `origin`).
+"""
+LEFT_OUT = frozenset({study.Study, Solution})
+"""Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
+
+
+class Line(NamedTuple):
+    """One name of a table, with the unit, the dimensions and the meaning of its value."""
+
+    name: str
+    unit: str = ""
+    shape: str = ""
+    meaning: str = ""
+
+
+class Verb(NamedTuple):
+    """What a document is made of: records, and names that no record has."""
+
+    records: tuple[type, ...]
+    own: tuple[Line, ...] = ()
+
+
+CHAIN_RECORDS = (Restitution, RaceContact, Clearances)
+RACES = (
+    Line("inner", meaning="the contact of the most loaded ball with the inner race"),
+    Line("outer", meaning="the same with the outer race"),
+)
+CONTACTS = (
+    *RACES,
+    Line("clearances", meaning="clearances as the cage runs; null for a study that states them"),
+    Line("creep_spin", "1/m", meaning="creep across the contact by spin"),
+    Line("creep_curvature", "1/m2", meaning="creep across the contact by its curvature"),
+)
+OF_BEARING = (
+    *CONTACTS,
+    Line("balls", meaning="a row for each ball; quantities with the dimension `ball` are in it"),
+    Line("ball", meaning="number of the ball, from 0"),
+    Line("contacts", meaning="contacts of the most loaded ball, `inner` and `outer`"),
+    Line("most_loaded", meaning="number of the most loaded ball"),
+)
+SLOPE = (
+    Line("slope", "-", meaning="alpha, increase of the traction coefficient with the creep increment at 0"),
+    Line("slope_error", "-", meaning="estimated error of the slope"),
+    Line("free_rolling_offset", "-", meaning="creep increment at which the traction is zero"),
+)
+CHAIN = (
+    *CONTACTS,
+    *SLOPE,
+    Line("stiffness_source", meaning="where the stiffness of ball and pocket comes from"),
+)
+OF_CAGE = (
+    *CHAIN,
+    Line("chain", meaning="the chain before the cage: restitution, contacts and slopes"),
+    Line("half_play", "m", meaning="half the clearance of a ball in its pocket"),
+    Line("lead_amplitude", "m", meaning="largest lead of a ball by uneven orbital speed"),
+    Line("orbital_share", "-", meaning="share of the balls' uneven speed that the cage model uses"),
+)
+RUN = (
+    *OF_CAGE,
+    Line("outcome_sentence", meaning="where the motion ends, in words"),
+    Line("rubbing_power", "W", meaning="power that rubbing on the land turns to heat, in the judged part"),
+    Line("drift_rate_law", "1/s", meaning="growth rate of the offset by the linear law"),
+    *(
+        Line(name, "J", "time", f"in `work`: done on the cage by {what}")
+        for name, what in (
+            ("pocket_friction", "the friction of the pockets"),
+            ("race_dampers", "the race dampers; in the plane"),
+            ("races", "the races; in space"),
+            ("grooves", "the grooves; in space"),
+            ("ball_drive", "the drive of the ball set"),
+            ("land_friction", "the friction of the land"),
+            ("land_damping", "the damping of the land"),
+            ("gravity", "gravity"),
+            ("moving_frame", "the turning of the frame"),
+            ("unbalance", "the unbalance"),
+        )
+    ),
+)
+COUNTS = tuple(
+    Line(name, meaning=f"in `counts`: points {what}")
+    for name, what in (
+        ("STABLE", "with this decision"),
+        ("UNSTABLE", "with this decision"),
+        ("UNDECIDED", "with this decision"),
+        ("refused", "that are not a bearing"),
+        ("inferred", "whose decision is that of their neighbours"),
+        ("not_run", "that an interrupt left out"),
+    )
+)
+ROWS = (
+    *OF_CAGE,
+    *(
+        Line(f"{start}_{name}", meaning=f"`{name}` {what}")
+        for start, what in (
+            ("uncertain", "where every run draws its own bearing; null without uncertain inputs"),
+            ("other_ball", "by the other model of a ball; null where it does not apply"),
+        )
+        for name in ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
+    ),
+    Line(
+        "other_ball_largest_contact_force", "N", meaning="largest pocket force by the other model of a ball"
+    ),
+)
+TRIBOMETER = (
+    Line("files", meaning="a row for each log"),
+    Line("rows", meaning="rows that were read"),
+    Line("described", meaning="what was read, in words"),
+    Line("tests", meaning="a row for each test; in `fits` the number of tests"),
+    Line("friction_low", "-", meaning="lower end of the 95 % interval of the friction"),
+    Line("friction_high", "-", meaning="upper end of it"),
+    Line("fits", meaning="a row for each material in each environment; empty where a test lacks conditions"),
+    Line("environment", meaning="medium and counterface"),
+    Line("scatter_source", meaning="where the scatter comes from"),
+    Line("slopes", meaning="change of the logarithm of friction with that of a condition, by its name"),
+    Line("tested", meaning="range of each condition in the tests, by its name"),
+    Line("components", meaning="scatter between samples and between tests; null where nothing was repeated"),
+    Line("between_samples", "-", meaning="standard deviation between samples, as a share"),
+    Line("between_tests", "-", meaning="standard deviation between tests of one sample, as a share"),
+    Line("default_scatter", "-", meaning="assumed for an unrepeated test, as a share of the mean"),
+    Line("friction_file", meaning="path of the friction file, null if none was written"),
+)
+CONTACT = (
+    Line("contacts", meaning="a row for each contact: bodies, film and grid"),
+    Line("columns", meaning="cells along the contact"),
+    Line("rows", meaning="cells across it"),
+    Line("on_gap", meaning="whether the contact is given by its gap"),
+    *SLOPE,
+    Line("reason", meaning="why there is no answer"),
+    Line("cases", meaning="a row for each case"),
+    Line("case", meaning="number of the case"),
+    Line("contact", meaning="its contact, from 0"),
+    Line("motion", meaning="rolling, shift or transient"),
+    *(Line(name, unit, meaning="given, or found from a wanted force") for name, unit in GIVEN.items()),
+    *(Line(name, unit, meaning="of the solution") for name, unit in NUMBERS.items()),
+    Line("force_share", "-", meaning="force along, over that of sliding"),
+    Line("lateral_force_share", "-", meaning="force across, over that of sliding"),
+    Line("stick_cells", meaning="cells that stick"),
+    Line("slip_cells", meaning="cells that slip"),
+    Line("iterations", meaning="of the solver"),
+    Line("residual", "-", meaning="what the solver left"),
+)
+TRACTION = (
+    *CONTACTS,
+    Line("free_rolling", meaning="the exact contact in free rolling"),
+    Line("strips_traction_coefficient", "-", "increment", "the curve by strips"),
+    Line("exact_traction_coefficient", "-", "increment", "the curve by the exact contact"),
+    Line("by_spin_roll_ratio", meaning="curves by strips at other pivoting-to-rolling ratios"),
+    Line("shear", meaning="shear of a few strips in free rolling"),
+    Line("models", meaning="a row for each model of the contact"),
+    Line("outside", meaning="where the strips leave their range, a sentence each"),
+)
+FILMS = (
+    *CHAIN,
+    Line("film_thickness_here", "m", meaning="the study's own film"),
+    Line("lubrication_reason", meaning="why there is no `lubrication`"),
+    Line("here", "-", meaning="the study's own share of the band over the contact"),
+)
+VERBS = {
+    "check": Verb((answers.CheckAnswer,), CONTACTS),
+    "bearing": Verb((BearingState, Clearances), OF_BEARING),
+    "traction": Verb((answers.TractionAnswer,), TRACTION),
+    "restitution": Verb((*CHAIN_RECORDS, answers.RestitutionAnswer), FILMS),
+    "mobility": Verb((answers.MobilityAnswer,)),
+    "stability": Verb((answers.StabilityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "map": Verb((answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
+    "simulate": Verb((answers.SimulationAnswer, answers.SpaceSimulationAnswer, *CHAIN_RECORDS), RUN),
+    "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
+    "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "sweep": Verb(
+        (Sweep, WorstCase, Duty),
+        (
+            Line("worst", meaning="the worst case"),
+            Line("duty", meaning="shares of the time"),
+            Line("case", meaning="number of the case"),
+        ),
+    ),
+    "compare": Verb((Comparison,), (Line("of", meaning="verb of the two answers"),)),
+    "tribometer": Verb((RawLog, ColumnRead, TestFriction), TRIBOMETER),
+    "contact": Verb((ContactProblem,), CONTACT),
+}
+
+
+def records_of(*roots: type) -> tuple[type, ...]:
+    """Return record classes and those that their fields hold, each once and after what holds it."""
+    found: dict[type, None] = {}
+    for root in roots:
+        _collect(root, found)
+    return tuple(found)
+
+
+def _collect(record: type, found: dict[type, None]) -> None:
+    if record in found or record in LEFT_OUT:
+        return
+    found[record] = None
+    for hint in get_type_hints(record).values():
+        for inside in _records_in(hint):
+            _collect(inside, found)
+
+
+def _records_in(hint: Any) -> Iterator[type]:
+    if isinstance(hint, type) and is_dataclass(hint):
+        yield hint
+    for argument in get_args(hint):
+        yield from _records_in(argument)
+
+
+def lines_of(record: type) -> list[Line]:
+    """Return a line for each field of a record."""
+    units, axes, meanings = field_units(record), field_axes(record), meanings_of(record)
+    return [
+        Line(one.name, units.get(one.name, ""), ", ".join(axes.get(one.name, ())), meanings.get(one.name, ""))
+        for one in fields(record)
+    ]
+
+
+def meanings_of(record: type) -> dict[str, str]:
+    """Return what docstrings and comments state of each field of a record and of those it extends."""
+    found = {one.key: one.meaning for one in template_keys()} if record in (PlanarCage, SpaceBody) else {}
+    for one in reversed([base for base in record.__mro__ if is_dataclass(base)]):
+        found |= _of_source(one) | _of_docstring(one)
+    return found
+
+
+def _of_docstring(record: type) -> dict[str, str]:
+    """Entries of the section Attributes."""
+    _, _, section = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n----------\n")
+    found: dict[str, str] = {}
+    for entry in re.split(r"\n(?=\S)", section):
+        head, _, text = entry.partition("\n")
+        names = head.partition(" : ")[0].split(", ")
+        found |= dict.fromkeys(names, " ".join(text.split()))
+    return found
+
+
+def _of_source(record: type) -> dict[str, str]:
+    """Text below a field, or the comment beside it."""
+    source = textwrap.dedent(inspect.getsource(record))
+    lines, (body,) = source.splitlines(), ast.parse(source).body
+    found: dict[str, str] = {}
+    last = ""
+    for node in body.body if isinstance(body, ast.ClassDef) else ():
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            last, comment = node.target.id, lines[(node.end_lineno or 1) - 1].partition("  # ")[2]
+            found |= {last: comment} if comment else {}
+        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and last:
+            found[last] = " ".join(str(node.value.value).split())
+    return found
+
+
+def names_of(verb: str) -> set[str]:
+    """Return every name that the tables of a verb have a line for."""
+    made_of = VERBS[verb]
+    return {line.name for record in records_of(*made_of.records) for line in lines_of(record)} | {
+        line.name for line in made_of.own
+    }
+
+
+def json_page() -> str:
+    """Return the page of the names in the documents: what a verb is made of, then each record once."""
+    page, shown = [NAMES], dict[type, None]()
+    for verb, made_of in VERBS.items():
+        records = records_of(*made_of.records)
+        shown |= dict.fromkeys(records)
+        links = ", ".join(f"[{one.__name__}](#{_anchor(one)})" for one in records)
+        page += [f"## {verb}\n", f"Records: {links}.\n", *_table(made_of.own)]
+    page += ["## Records\n"]
+    for record in shown:
+        text, _, _ = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n")
+        name = record.__name__
+        page += [f"({_anchor(record)})=\n### {name}\n", _markdown(text).strip() + "\n"]
+        page += _table(lines_of(record))
+    return "\n".join(page)
+
+
+def _anchor(record: type) -> str:
+    return f"{record.__module__}-{record.__name__}".removeprefix("separatrix.").replace(".", "-").lower()
+
+
+def _table(lines: Iterable[Line]) -> list[str]:
+    rows = [f"| `{one.name}` | {one.unit} | {one.shape} | {_cell(one.meaning)} |" for one in lines]
+    return ["| name | unit | dimensions | meaning |\n|---|---|---|---|", *rows, ""] if rows else []
+
+
+def _markdown(text: str) -> str:
+    text = re.sub(r":(?:\w+):`(\\?[^`]*)`", r"$\1$", text)
+    return re.sub(r"(?<!`)``?([^`]+)``?(?!`)", r"`\1`", text)
+
+
+def _cell(text: str) -> str:
+    return _markdown(text).replace("|", "\\|").replace("*", "\\*")
+
+
+def study_page() -> str:
+    """Return the page of the keys of a study, section by section."""
+    page = [KEYS]
+    for section in ("", *document.SECTIONS, "ranking.candidates"):
+        page.append(f"## {f'[{section}]' if section else 'Above the first section'}\n")
+        if remark := section_remarks().get(section):
+            page.append(f"{remark[0].upper()}{remark[1:]}.\n")
+        page.append("| key | unit | default | meaning |\n|---|---|---|---|")
+        for one in (one for one in template_keys() if one.section == section):
+            unit, default = _unit(section, one.key, one.example), _default(section, one.key)
+            page.append(f"| `{one.key}` | {unit} | {default} | {_cell(one.meaning)} |")
+        page.append("")
+    return "\n".join(page)
+
+
+def _unit(section: str, key: str, example: Any) -> str:
+    record = study.SECTIONS.get(section)
+    if record and key in {one.name for one in fields(record)} and (unit := unit_of(record, key)):
+        return unit
+    first = example[0] if isinstance(example, list) else example
+    spelled = units_like(quantity_of(first)[1])
+    return spelled[0] if spelled else ""
+
+
+def _default(section: str, key: str) -> str:
+    record = study.SECTIONS.get(section)
+    field = {one.name: one for one in fields(record)}.get(key) if record else None
+    if record is None or field is None:
+        return ""
+    if key in required_fields(record):
+        return "required"
+    value = field.default
+    if isinstance(value, Enum):
+        return f'`"{value.value}"`'
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return ""
+    unit = unit_of(record, key)
+    return f"`{format_quantity(value, unit)}`" if unit else f"`{value}`"
+
+
+def keys_without_line() -> set[tuple[str, str]]:
+    """Return keys that a study may have and the template does not show."""
+    shown = {(one.section, one.key) for one in template_keys()}
+    return {(section, key) for section, keys in READERS.items() for key in keys} - shown

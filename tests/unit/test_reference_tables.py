@@ -1,0 +1,130 @@
+"""The generated reference: each key of a study, and each name in a real document of every verb."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from commands import document
+from reference_tables import VERBS, json_page, keys_without_line, lines_of, names_of, study_page
+
+import separatrix
+from separatrix.ranking import Ranked
+
+BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
+"""Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
+
+FULL = separatrix.read_study("momentum-wheel")
+SMALL = replace(
+    FULL,
+    stability=replace(FULL.stability, runs=1, duration=0.01, kicks=(0.5,), restitution_factors=(0.3, 0.6)),
+    ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[:2]),
+)
+IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.MotionModel.SPACE))
+WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.Wear(friction=0.3, share=0.2)))
+
+CONTACT = """
+[contact]
+load = "300 N"
+semi_axis_rolling = "0.15 mm"
+semi_axis_lateral = "0.45 mm"
+[body_1]
+material = "440C"
+[body_2]
+material = "440C"
+[friction]
+coefficient = 0.1
+[motion]
+longitudinal = 0.001
+[grid]
+columns = 6
+rows = 8
+"""
+ASKED = {
+    "check": lambda: separatrix.check(SMALL),
+    "bearing": lambda: separatrix.bearing(SMALL),
+    "traction": lambda: separatrix.traction(SMALL),
+    "restitution": lambda: separatrix.restitution(WORN),
+    "mobility": lambda: separatrix.mobility(SMALL),
+    "stability": lambda: separatrix.stability(SMALL, jobs=1),
+    "map": lambda: separatrix.map(SMALL, points=2, runs=1, adaptive=True, jobs=1),
+    "simulate": lambda: separatrix.simulate(SMALL),
+    "rank": lambda: separatrix.rank(SMALL, jobs=1),
+    "sensitivity": lambda: separatrix.sensitivity(SMALL, samples=64, jobs=1),
+    "sweep": lambda: separatrix.sweep(SMALL, "film.thickness=0.2..1um:2", jobs=1),
+}
+
+
+def names_in(value):
+    """Yield each key of a document, those of parts with names of their own left out."""
+    if isinstance(value, dict):
+        for key, inside in value.items():
+            yield key
+            if key not in BY_NAME:
+                yield from names_in(inside)
+    elif isinstance(value, list):
+        for inside in value:
+            yield from names_in(inside)
+
+
+COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warnings", "provenance"}
+
+
+def missing(verb, found):
+    """Names of a document without a line; the key of a study that a sweep varies is not one."""
+    return {name for name in names_in(found) if "." not in name} - names_of(verb) - COMMON
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+@pytest.mark.parametrize("verb", ASKED)
+def test_every_name_of_a_document_has_a_line(verb):
+    """A document of each verb that takes a study, small but complete."""
+    found = ASKED[verb]().document()
+    assert found["verb"] == verb
+    assert missing(verb, found) == set()
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+def test_every_name_of_a_run_in_space_has_a_line():
+    """The other kind of simulation, with its analysis."""
+    assert missing("simulate", separatrix.simulate(IN_SPACE).document()) == set()
+
+
+def test_every_name_of_the_verbs_without_a_study_has_a_line(tmp_path, monkeypatch, capsys):
+    """Logs of a tribometer with what slid on what; two saved runs."""
+    monkeypatch.chdir(tmp_path)
+    rows = (f"{t},{0.1 + 0.003 * np.sin(t):.4f}" for t in range(600))
+    (tmp_path / "a.csv").write_text("time (s),friction coefficient\n" + "\n".join(rows) + "\n")
+    what = 'material = "PEEK"\ncounterface = "440C"\nmedium = "air"\nslip_speed = "1 m/s"\n'
+    (tmp_path / "map.toml").write_text("[test]\n" + what)
+    found = document(capsys, "tribometer", "a.csv", "--map", "map.toml")
+    assert found["fits"]
+    assert missing("tribometer", found) == set()
+
+
+def test_every_name_of_a_contact_has_a_line(tmp_path, monkeypatch, capsys):
+    """A case on a coarse grid."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ball.toml").write_text(CONTACT)
+    found = document(capsys, "contact", "ball.toml")
+    assert len(found["cases"]) == 1
+    assert missing("contact", found) == set()
+
+
+def test_every_key_of_a_study_has_a_line():
+    """The keys that are read are those of the template; candidates have a section of their own."""
+    assert keys_without_line() == {("ranking", "candidates")}
+    page = study_page()
+    assert "| `mass` | kg |" in page
+    assert "| `ball_count` |  | required |" in page
+
+
+def test_a_line_states_unit_dimensions_and_meaning():
+    """From the type of a field, the text below it or in the docstring, or the comment beside it."""
+    margin = next(one for one in lines_of(Ranked) if one.name == "margin")
+    assert (margin.unit, margin.meaning) == ("-", "Threshold less the chain's restitution factor [-].")
+    page = json_page()
+    assert all(f"\n## {verb}\n" in page for verb in VERBS)
+    assert page.count("(cage-verdict-judgement)=") == 1
+    anchors = re.findall(r"^\((.*)\)=$", page, flags=re.MULTILINE)
+    assert len(set(anchors)) == len(anchors)
