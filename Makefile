@@ -5,6 +5,8 @@ TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 SMALL := --points 2 --runs 1 --jobs 1 --json --quiet
 PLANE := $(BIN)/separatrix map cryogenic-turbopump $(SMALL)
 SPACE := $(BIN)/separatrix map cryogenic-turbopump --motion space $(SMALL)
+ONE := $(BIN)/separatrix simulate cryogenic-turbopump --json --quiet
+ONE_IN_SPACE := $(ONE) --motion space
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
@@ -17,7 +19,7 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(PLANE) > /dev/null & $(SPACE) > /dev/null && wait $$!
+	@($(PLANE) && $(ONE)) > /dev/null & ($(SPACE) && $(ONE_IN_SPACE)) > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .

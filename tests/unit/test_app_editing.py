@@ -98,7 +98,7 @@ def test_a_wrong_unit_is_refused_beside_its_field(page):
     field = re.search(r'<form class="field wrong".*?</form>', found.text, re.DOTALL)[0]
     assert 'value="cage.mass"' in field
     assert "needs a unit of mass" in field
-    assert "1 fault to mend" in found.text
+    assert "1 value is refused" in found.text
     assert read_study(_folder(page) / "small.toml")
     mended = edit(page, field="cage.mass", value="26", unit="g").text
     assert "Every value is accepted" in mended
