@@ -19,8 +19,8 @@ playwright_api = pytest.importorskip("playwright.sync_api", reason='needs the ex
 CHROMIUM = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
 QUIET = ("background-networking", "component-update", "gpu", "quic", "sync")
 ARGUMENTS = ["--no-sandbox", "--no-first-run", *(f"--disable-{name}" for name in QUIET)]
-PATIENCE = 60_000
-"""For what computes [ms]: a loaded machine is slow."""
+PATIENCE = 200_000
+"""For what computes [ms]: a loaded machine is slow, and a new one may have to compile a kernel first."""
 
 STUDY = """\
 extends = "cryogenic-turbopump"

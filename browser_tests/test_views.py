@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from conftest import run
+from conftest import PATIENCE, run
 from playwright.sync_api import expect
 
 SIZES = {
@@ -22,18 +22,30 @@ def views(folder, server, browser) -> list[str]:
         "uncertain": 'extends = "small.toml"\ntitle = "<b>film</b>"\n[film]\nthickness = "0.5 um +- 20 %"\n',
         "refused": 'extends = "small.toml"\n[film]\nthickness = "0.5 kg"\n',
         "bare": "[bearing]\n",
+        "other": 'extends = "small.toml"\n[film]\nthickness = "1 um"\n',
     }
     for name, text in studies.items():
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     page = browser.new_context().new_page()
-    page.set_default_timeout(60_000)
+    page.set_default_timeout(PATIENCE)
     page.goto(server.link)
     page.goto(f"{server.address}/study/small.toml")
     run(page, "rank")
     run(page, "simulate")
+    page.goto(f"{server.address}/study/other.toml")
+    run(page, "bearing")
+    page.goto(f"{server.address}/study/small.toml")
+    run(page, "bearing")
     page.context.close()
     own = ("study", "answer/rank", "answer/simulate", "cage", "explore")
-    views = ["", "logs", *(f"{one}/small.toml" for one in own), *(f"study/{one}.toml" for one in studies)]
+    views = [
+        "",
+        "logs",
+        "compare",
+        "compare?first=small.toml&second=other.toml",
+        *(f"{one}/small.toml" for one in own),
+        *(f"study/{one}.toml" for one in studies),
+    ]
     return [*views, "explore/bare.toml", "study/none.toml"]
 
 
