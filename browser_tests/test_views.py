@@ -33,9 +33,9 @@ def views(folder, server, browser) -> list[str]:
     run(page, "rank")
     run(page, "simulate")
     page.goto(f"{server.address}/study/other.toml")
-    run(page, "bearing")
+    run(page, "stability")
     page.goto(f"{server.address}/study/small.toml")
-    run(page, "bearing")
+    run(page, "stability")
     page.context.close()
     own = ("study", "answer/rank", "answer/simulate", "cage", "explore")
     views = [
