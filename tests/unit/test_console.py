@@ -26,7 +26,7 @@ COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
     *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare"),
-    *("reproduce", "app", "materials"),
+    *("reproduce", "report", "app", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),

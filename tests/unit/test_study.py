@@ -514,17 +514,15 @@ def test_a_study_crosses_a_process_border():
     assert again.origins == example.origins
 
 
-def test_the_page_on_study_files_names_every_key_and_every_unit():
-    """The documentation of the contract is complete."""
+def test_the_page_on_study_files_names_every_section_and_every_unit():
+    """The documentation of the contract is complete; the generated page has the keys."""
     from pathlib import Path
 
     from separatrix.study_file.sections import READERS
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
-    for section, readers in READERS.items():
+    for section in READERS:
         assert f"## [{section}]" in page
-        for key in readers:
-            assert f"`{key}`" in page, key
     table = (
         page.partition("| quantity |")[2].partition("Both micro signs")[0].replace("|", ",").replace("(", ",")
     )

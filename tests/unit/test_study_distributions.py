@@ -5,11 +5,11 @@ import math
 import re
 import tempfile
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from scipy.stats import lognorm
 
+from separatrix.answers import CheckAnswer
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
@@ -225,7 +225,7 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = report("check", SimpleNamespace(static=None, static_reason=""), study, [])
+    shown = report("check", CheckAnswer(static=None), study, [])
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
     from separatrix.chain.solution import solve
 
