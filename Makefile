@@ -1,12 +1,11 @@
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
-# What compiles all kernels once, before the tests: else each worker would compile the same.
-SMALL := --points 2 --runs 1 --jobs 1 --json --quiet
-PLANE := $(BIN)/separatrix map cryogenic-turbopump $(SMALL)
-SPACE := $(BIN)/separatrix map cryogenic-turbopump --motion space $(SMALL)
-ONE := $(BIN)/separatrix simulate cryogenic-turbopump --json --quiet
-ONE_IN_SPACE := $(ONE) --motion space
+# Compiles all kernels once, before the tests: else each worker would compile the same. One process for the
+# plane and one for space, because what a process compiled already it does not compile again.
+COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
+MAP := map cryogenic-turbopump --points 2 --runs 1 --jobs 1 --json --quiet
+RUN := simulate cryogenic-turbopump --json --quiet
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
@@ -19,7 +18,8 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@($(PLANE) && $(ONE)) > /dev/null & ($(SPACE) && $(ONE_IN_SPACE)) > /dev/null && wait $$!
+	@$(COMPILE) "$(MAP)" "$(RUN)" > /dev/null & \
+	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .

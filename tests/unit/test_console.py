@@ -102,7 +102,7 @@ def test_closed_streams_do_not_crash(arguments):
     assert done.returncode == (2 if "nothing" in arguments else 0)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8", "cp1252"])
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_any_encoding_of_the_terminal_will_do(encoding, tmp_path):
     """A title outside the terminal's alphabet is spelled out, not a crash."""
     study = tmp_path / "study.toml"

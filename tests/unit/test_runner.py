@@ -228,9 +228,7 @@ friction_scatter = 0.2
 """
 LONG_VERBS = {
     "rank": [],
-    "stability": [],
     "map": ["--points", "8"],
-    "sensitivity": ["--samples", "64"],
     "sweep": ["--vary", "ball_cage_friction=0.1..0.4:6", "--verdicts"],
 }
 
