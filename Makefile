@@ -1,6 +1,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
-TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
+# A file of tests is one worker's, so that what its tests share is made once.
+TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile
 # Compiles all kernels once, before the tests: else each worker would compile the same. One process for the
 # plane and one for space, because what a process compiled already it does not compile again.
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
