@@ -63,7 +63,7 @@ def places(axes: Axes, plot: Plot, most: int, *names: str) -> Iterator[Place]:
     plot : Plot
         Its series with text; all of them, or those of these names.
     most : int
-        Points of a series: of more of them only every so many are yielded.
+        Points of a series that has more than this are thinned evenly to at most this number.
     """
     figure = axes.figure.get_figure(root=True)
     if figure is None:
