@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from separatrix.errors import InputError
+from separatrix.units import shown
+
 if TYPE_CHECKING:
     from separatrix.runner import Progress
     from separatrix.study import Study
@@ -114,6 +117,14 @@ VERBS: tuple[Verb, ...] = (
         keeps_runs=True,
     ),
 )
+
+
+def verb_named(name: str) -> Verb:
+    """Return a verb of the table; another name is refused."""
+    found = next((verb for verb in VERBS if verb.name == name), None)
+    if found is None:
+        raise InputError("verb", "is not known", got=shown(name))
+    return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from separatrix.app import draft
 from separatrix.app.form import form
 from separatrix.app.page import Page, form_of
 from separatrix.errors import InputError
-from separatrix.questions import VERBS, Verb
+from separatrix.questions import VERBS, Verb, verb_named
 from separatrix.study import BallModel, MotionModel, Study
 from separatrix.study_file import shipped_studies, template
 from separatrix.units import printable
@@ -176,14 +176,6 @@ def running(page: Page, name: str, found: Study | None) -> dict[str, Any]:
         "motions": [one.value for one in MotionModel],
         "balls": [one.value for one in BallModel],
     }
-
-
-def verb_named(name: str) -> Verb:
-    """Return a verb of the table."""
-    found = next((verb for verb in VERBS if verb.name == name), None)
-    if found is None:
-        raise InputError("verb", "is not known", got=f'"{printable(name)}"')
-    return found
 
 
 def question_of(verb: Verb, sent: dict[str, str]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from separatrix.errors import InputError
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
 from separatrix.limits.map_parameters import KICK, RESTITUTION
-from separatrix.questions import VERBS
+from separatrix.questions import verb_named
 from separatrix.units import format_number, printable, shown
 
 Form = Annotated[dict[str, str], Depends(form_of)]
@@ -55,7 +55,7 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/answer/{verb}/{name:path}", response_class=HTMLResponse)
     def answer(verb: str, name: str, environment: int = 0) -> Response:
-        found = page.document(name, known_verb(verb))
+        found = page.document(name, verb_named(verb).name)
         if found is None:
             raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
         place = page.folder.answers(name)
@@ -77,7 +77,7 @@ def routes(page: Page) -> APIRouter:
     @router.get("/plot/{verb}/{figure}/{name:path}")
     def plot(verb: str, figure: str, name: str, environment: int | None = None) -> Response:
         draw = PLOTS.get(verb, {}).get(figure)
-        data = page.dataset(page.folder.answers(name) / f"{known_verb(verb)}.nc")
+        data = page.dataset(page.folder.answers(name) / f"{verb_named(verb).name}.nc")
         if draw is None or data is None:
             raise InputError(f"{name}: {verb}", "has no such figure")
         if environment is not None and "environment" in data.dims and figure == "curve":
@@ -134,13 +134,6 @@ def routes(page: Page) -> APIRouter:
         return page.html("jobs.html", jobs=page.jobs.all())
 
     return router
-
-
-def known_verb(name: str) -> str:
-    """Return the name of a verb; another one is refused."""
-    if name not in [verb.name for verb in VERBS]:
-        raise InputError("verb", "is not known", got=f'"{printable(name)}"')
-    return name
 
 
 def _text(path: Path) -> str:

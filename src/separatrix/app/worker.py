@@ -143,7 +143,7 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
     from separatrix.limits.map_parameters import varied
     from separatrix.notes import noted_warnings
-    from separatrix.questions import VERBS
+    from separatrix.questions import verb_named
     from separatrix.regular_file import reading_only_in
     from separatrix.study import with_models
     from separatrix.study_file import read_study, require
@@ -154,7 +154,7 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
         study = read_study(task.study)
         if task.verb == REPORT:
             return _reported(task, study, notes, send)
-        verb = next(one for one in VERBS if one.name == task.verb)
+        verb = verb_named(task.verb)
         require(study, verb.name, *verb.needs)
         study = with_models(study, models) if models else study
         study = varied(study, task.values) if task.values else study
@@ -189,7 +189,7 @@ def _written(
 
 def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report], None]) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.questions import VERBS
+    from separatrix.questions import verb_named
     from separatrix.reporting.content import report_of
     from separatrix.reporting.html import html
     from separatrix.reporting.kept import NEEDED, answers, read_folder, verbs_of
@@ -199,7 +199,7 @@ def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report
     task.folder.mkdir(parents=True, exist_ok=True)
     known = read_folder(task.folder, needed=False)
     missing = []
-    for verb in (one for one in VERBS if one.name in [*verbs_of(study)]):
+    for verb in map(verb_named, verbs_of(study)):
         if verb.name in known and answers(known[verb.name], study):
             continue
         send(Report(number=task.number, message=f"Computing {verb.name} for the report."))

@@ -14,7 +14,7 @@ from separatrix.cli.run import ANSWERED, Options, computed_with_progress
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
 from separatrix.plain_text import harmless
-from separatrix.questions import VERBS
+from separatrix.questions import verb_named
 from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ def _read_back(document: Mapping[str, Any], where: str) -> Study | None:
     from separatrix.study_file import read_study, resolved
 
     saved = Saved(path=where, verb=str(document["verb"]), document=document)
-    verb = next(one for one in VERBS if one.name == saved.verb)
+    verb = verb_named(saved.verb)
     try:
         kept = kept_of(saved)
         with noted_warnings(), restored_study(kept, where) as (entry, _, _):
@@ -202,7 +202,7 @@ def _computed(verb: str, study: Study, notes: list[str], folder: Path | None, op
     from separatrix.reporting.kept import Kept
     from separatrix.saving import save_answer
 
-    entry = next(one for one in VERBS if one.name == verb)
+    entry = verb_named(verb)
     asked = Options(json=options.json, out=folder, quiet=options.quiet, jobs=options.jobs)
     with noted_warnings() as own:
         made = computed_with_progress(entry, study, asked, folder)

@@ -18,7 +18,7 @@ from separatrix.comparing.agreement import Agreement, agreement
 from separatrix.comparing.saved import Saved, read_answers
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
-from separatrix.questions import VERBS, Verb, computed
+from separatrix.questions import Verb, computed, verb_named
 from separatrix.units import printable, shown
 
 HELP = "Compute a saved answer again, and report whether it is the same."
@@ -92,7 +92,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     stored, kept = saved.document, kept_of(saved)
     if stored.get("complete") is False:
         raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
-    verb = next(one for one in VERBS if one.name == saved.verb)
+    verb = verb_named(saved.verb)
     with noted_warnings() as notes, restored_study(kept, saved.path) as (entry, root, changed):
         question = _question(verb, kept["command"].get("question"), root)
         study = read_study(entry)

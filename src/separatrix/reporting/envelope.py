@@ -5,19 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from separatrix.present.text.stability import DECIDES
 from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Block, Facts, Paragraph, Section, Table
 from separatrix.reporting.words import margin, probability, quantity, verdict
 
 MOST_CASES = 40
-DECIDES = {
-    "margin": "the lowest margin",
-    "probability_stable": "the lowest P(stable)",
-    "restitution_factor": "the highest restitution factor",
-}
-"""What names the worst case."""
-
 TIMES = {
     "below_margin": "with a margin below 0",
     "stable": "STABLE",
@@ -40,7 +34,7 @@ def _envelope(kept: Kept) -> Iterator[Block]:
         case = next(row for row in cases if row["case"] == worst["case"])
         at = ", ".join(f"{name} {_value(case, one)}" for name, one in _parameters(found).items())
         words = f"Of {worst['compared']} cases the worst is number {worst['case']}: {at}. "
-        yield Paragraph(f"{words}It has {DECIDES[worst['quantity']]}, {worst['value']:.3g}.")
+        yield Paragraph(f"{words}It has the {DECIDES[worst['quantity']]}: {worst['value']:.3g}.")
     if (duty := found["duty"]) is not None:
         known = {words: duty[key] for key, words in TIMES.items() if duty[key] is not None}
         yield Facts(tuple((f"Time {words}", f"{100 * share:.3g} %") for words, share in known.items()))
