@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, JSONResponse, Response
@@ -21,6 +21,9 @@ from separatrix.errors import InputError
 from separatrix.figures.hover import Series, stability_plot
 from separatrix.figures.style import VERMILION
 from separatrix.limits.map_parameters import parameters, value_in, varied
+from separatrix.limits.point import CriticalFriction
+from separatrix.limits.response import Side
+from separatrix.limits.threshold import restitution_threshold
 from separatrix.notes import noted_warnings
 from separatrix.regular_file import reading_only_in
 from separatrix.study import Study
@@ -138,19 +141,22 @@ def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) 
     """Return eta, the margins on the finished curve that fits best, and the figure."""
     eta, damping = solution.restitution.restitution_factor, solution.restitution.race_damping
     of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
-    refined = page.dataset(_place(page, name, of_curve) / "stability.nc") if of_curve else None
-    saved = [page.dataset(page.folder.answers(name) / f"{verb}.nc") for verb in ("stability", "rank")]
-    data = refined if refined is not None else next((one for one in saved if one is not None), None)
-    friction = _friction(solution)
-    threshold = None if data is None or friction is None else threshold_on(data, friction)
+    own, other = page.folder.answers(name), _place(page, name, of_curve)
+    is_refined = bool(of_curve) and (other / "stability.nc").is_file()
+    places = [*([(other, "stability")] if is_refined else []), (own, "stability"), (own, "rank")]
+    curves = ((page.dataset(at / f"{verb}.nc"), page.document_in(at, verb)) for at, verb in places)
+    data, document = next(((a, b) for a, b in curves if a is not None and b is not None), (None, None))
+    friction, threshold = _friction(solution), None
+    if document is not None and friction is not None:
+        threshold = restitution_threshold(_points(document), friction).value
     return {
         "values": {one.key: one.text for one in sliders(solution.study)},
         "eta": f"{eta:.3f}",
         "damping": format_quantity(damping, "N s/m", 3),
         "friction": "not known" if friction is None else f"{friction:.3g}",
-        "threshold": "not known" if threshold is None else f"{threshold:.2f}",
+        "threshold": _threshold(threshold),
         "margin": "not known" if threshold is None else f"{threshold - eta:+.2f}",
-        "is_refined": not of_curve or refined is not None,
+        "is_refined": not of_curve or is_refined,
         "has_curve": data is not None,
         "whose": _whose(solution.study),
         "figure": None if data is None else _figure(data, eta, friction),
@@ -163,19 +169,16 @@ def _whose(study: Study) -> str:
     return ", ".join(one for one in (made_of.name if made_of else "", place or "") if one)
 
 
-def threshold_on(data: xr.Dataset, friction: float) -> float:
-    """Return the restitution factor at which a saved curve falls below a friction; 1 where it never does."""
-    eta, critical = (data[name].values.astype(float) for name in ("restitution_factor", "critical_friction"))
-    known = np.isfinite(critical)
-    eta, critical = eta[known], critical[known]
-    below = np.flatnonzero(critical < friction)
-    if not below.size:
-        return 1.0
-    first = int(below[0])
-    if first == 0:
-        return float(eta[0])
-    (x0, x1), (y0, y1) = eta[first - 1 : first + 1], critical[first - 1 : first + 1]
-    return float(x0 + (x1 - x0) * (y0 - friction) / (y0 - y1))
+def _points(document: Mapping[str, Any]) -> list[CriticalFriction]:
+    """Return the points of the curve of a saved answer to `stability` or `rank`."""
+    rows = document.get("stability", document)["curve"]
+    return [CriticalFriction(**{**row, "side": row["side"] and Side[row["side"]]}) for row in rows]
+
+
+def _threshold(value: float | None) -> str:
+    if value is None:
+        return "not known"
+    return "1 (not reached)" if value >= 1.0 else f"{value:.2f}"
 
 
 def _figure(data: xr.Dataset, eta: float, friction: float | None) -> dict[str, Any]:

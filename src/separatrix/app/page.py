@@ -60,7 +60,11 @@ class Page:
 
     def document(self, study: str, verb: str) -> Mapping[str, Any] | None:
         """Return the saved answer of a verb as its document; None if there is none, or it is damaged."""
-        path = self.folder.answers(study) / f"{verb}.json"
+        return self.document_in(self.folder.answers(study), verb)
+
+    def document_in(self, place: Path, verb: str) -> Mapping[str, Any] | None:
+        """Return the document of a verb in a folder of answers, as `document` does."""
+        path = place / f"{verb}.json"
         found: Mapping[str, Any] | None
         found = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
         return found
