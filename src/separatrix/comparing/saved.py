@@ -59,7 +59,7 @@ def read_answers(path: Path) -> dict[str, Saved]:
             raise InputError(where, "does not contain an answer", cure=_MAKE)
         found: dict[str, Saved] = {}
         for verb in dict.fromkeys(file.stem for file in files):
-            parts = [_file(file) for file in files if file.stem == verb]
+            parts = [read_file(file) for file in files if file.stem == verb]
             document = next((one.document for one in parts if one.document is not None), None)
             data = next((one.data for one in parts if one.data is not None), None)
             if any(one.verb != verb for one in parts):
@@ -72,11 +72,12 @@ def read_answers(path: Path) -> dict[str, Saved]:
             raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
         documents = _parsed(match[1], where)
         return {verb: _document(one, where, verb) for verb, one in documents.items()}
-    one = _file(path)
+    one = read_file(path)
     return {one.verb: one}
 
 
-def _file(path: Path) -> Saved:
+def read_file(path: Path) -> Saved:
+    """Answer of a document (.json) or of a dataset (.nc); refused as by `read_answers`."""
     where = path_text(path)
     if path.suffix.casefold() != ".nc":
         return _document(_parsed(_bytes(path), where), where)

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from separatrix.comparing.saved import read_file
 from separatrix.errors import InputError
 from separatrix.present import load
-from separatrix.regular_file import size_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from separatrix.study import Study
-
-MOST_BYTES = 256 * 1024**2
-"""Size of a document; the longest simulations have some 30 MB."""
 
 NEEDED = {
     "bearing": ("balls", "contacts"),
@@ -71,25 +67,17 @@ def read_folder(folder: Path, *, needed: bool = True) -> dict[str, Kept]:
     return found
 
 
-def read_document(path: Path, verb: str) -> dict[str, Any]:
+def read_document(path: Path, verb: str) -> Mapping[str, Any]:
     """Return a saved document; one that is not of this verb, or lacks what a report needs, is refused."""
     where, cure = str(path), "Compute this answer again, or remove the file."
-    if size_of(path, where) > MOST_BYTES:
-        raise InputError(where, f"is larger than {MOST_BYTES // 1024**2} MB", cure=cure)
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refused)
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(where, "is not a JSON document of separatrix", cure=cure) from error
-    if not isinstance(found, dict) or found.get("verb") != verb:
+    saved = read_file(path)
+    if saved.verb != verb or saved.document is None:
         raise InputError(where, f"is not a document of `{verb}`", cure=cure)
+    found = saved.document
     missing = [key for key in (*ALWAYS, *NEEDED[verb]) if key not in found]
-    if missing or not isinstance(found["study"], dict) or not isinstance(found["study"].get("bearing"), dict):
+    if missing or not isinstance(found["study"].get("bearing"), dict):
         raise InputError(where, f"lacks {', '.join(missing) or 'its study'}", cure=cure)
     return found
-
-
-def _refused(constant: str) -> float:
-    raise ValueError(f"{constant} is not JSON")
 
 
 def differing(first: Mapping[str, Any], second: Mapping[str, Any]) -> list[str]:

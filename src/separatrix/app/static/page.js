@@ -83,12 +83,16 @@ function morph(old, now) {
   if (old.nodeName === "SELECT" && !kept) for (const one of old.options) one.selected = one.defaultSelected;
 }
 
-const sent = new WeakMap(); // field -> its value when it was last sent
+const sent = new Map(); // field -> its value in the request that is under way
+
+function given(field) { // the value that the server gave
+  if (field.nodeName !== "SELECT") return field.defaultValue;
+  return ([...field.options].find((one) => one.defaultSelected) || field.options[0]).value;
+}
 
 function isEdited(field) {
-  const is = field.nodeName === "SELECT" ? [...field.options].some((one) => one.selected !== one.defaultSelected)
-    : "defaultValue" in field && field.type !== "hidden" && field.value !== field.defaultValue;
-  return is && sent.get(field) !== field.value;
+  const is = field.nodeName === "SELECT" || ("defaultValue" in field && field.type !== "hidden");
+  return is && field.value !== (sent.has(field) ? sent.get(field) : given(field));
 }
 
 function inPlace(event) {
@@ -108,8 +112,16 @@ function sending(event) {
     event.preventDefault(); // a unit chosen before its number
     return;
   }
+  if (elt.matches(".field, .text") && ![...elt.elements].some(isEdited)) {
+    event.preventDefault(); // Enter both changes and submits: sent again, it would wipe out what the server said
+    return;
+  }
   if (requestConfig.verb !== "get") message("");
-  if (elt.elements) for (const field of elt.elements) sent.set(field, field.value);
+  if (elt.matches(".field, .text")) for (const field of elt.elements) sent.set(field, field.value);
+}
+
+function ended(event) {
+  if (event.detail.requestConfig.path.startsWith("/edit/")) sent.clear();
 }
 
 function showAll(root) {
@@ -159,6 +171,7 @@ document.addEventListener("DOMContentLoaded", () => {
   });
   document.body.addEventListener("htmx:beforeRequest", sending);
   document.body.addEventListener("htmx:beforeSwap", inPlace);
+  document.body.addEventListener("htmx:afterRequest", ended);
   document.body.addEventListener("htmx:afterSettle", (event) => showAll(event.target));
   document.body.addEventListener("htmx:sendError", () => message("The server does not answer. Start it again: nothing that was finished is lost."));
 });
