@@ -80,7 +80,9 @@ def test_the_second_of_two_tabs_learns_of_the_first(view, server):
     two.keyboard.press("Enter")
     refused = two.get_by_role("alert").filter(has_text="Another tab changed this study")
     expect(refused).to_be_visible()
-    two.wait_for_load_state("networkidle")  # Enter changes and submits: the second must not wipe out the words
+    two.wait_for_load_state(
+        "networkidle"
+    )  # Enter changes and submits: the second must not wipe out the words
     expect(refused).to_be_visible()
     expect(two.locator(THICKNESS)).to_have_value("0.6")
     two.get_by_role("button", name="Discard the edits").click()

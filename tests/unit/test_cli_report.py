@@ -327,9 +327,9 @@ def test_a_study_without_a_cage_has_what_could_be_computed(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("rank.json", "{", "is not a JSON document of separatrix"),
-        ("rank.json", '{"verb": "bearing"}', "is not a document of `rank`"),
-        ("rank.json", '{"verb": "rank"}', "lacks separatrix_version"),
+        ("rank.json", "{", "is not the document of an answer: no valid JSON"),
+        ("rank.json", '{"verb": "bearing", "study": {}}', "is not a document of `rank`"),
+        ("rank.json", '{"verb": "rank", "study": {"bearing": {}}}', "lacks separatrix_version"),
         ("notes.txt", "", "holds no answer of separatrix"),
     ],
 )

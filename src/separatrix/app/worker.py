@@ -27,6 +27,8 @@ REPORT = "report"
 CANCEL, END = "cancel", "end"
 """What the page may send besides a task."""
 
+INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
+
 EVERY = 0.2
 """Least time between two reports of progress [s]."""
 
@@ -184,35 +186,34 @@ def _written(
     if found.is_complete:
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
-    return "cancelled", "The answer has what was finished. Resume to go on."
+    return INTERRUPTED
 
 
 def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report], None]) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.questions import verb_named
+    from separatrix.notes import grouped, noted_warnings
+    from separatrix.questions import computed, verb_named
     from separatrix.reporting.content import report_of
     from separatrix.reporting.html import html
-    from separatrix.reporting.kept import NEEDED, answers, read_folder, verbs_of
+    from separatrix.reporting.kept import Kept, answers_of, keep
     from separatrix.reporting.pdf import pdf
     from separatrix.staged import staged
 
+    def compute(verb: str) -> Kept:
+        send(Report(number=task.number, message=f"Computing {verb} for the report."))
+        progress = Reporter(task.number, send)
+        with noted_warnings() as own:
+            made = computed(
+                verb_named(verb), study, {}, jobs=_threads(), folder=task.folder, progress=progress
+            )
+        return keep(verb, made, [*notes, *grouped(own)], task.folder)
+
     task.folder.mkdir(parents=True, exist_ok=True)
-    known = read_folder(task.folder, needed=False)
-    missing = []
-    for verb in map(verb_named, verbs_of(study)):
-        if verb.name in known and answers(known[verb.name], study):
-            continue
-        send(Report(number=task.number, message=f"Computing {verb.name} for the report."))
-        try:
-            state, message = _written(verb, study, {}, [*notes], task, send)
-        except InputError as error:
-            missing.append(f"`{verb.name}` was not computed: {error}")
-            continue
-        if state != "finished":
-            return state, message
+    found, missing, complete = answers_of(study, task.folder, compute)
+    if not complete:
+        return INTERRUPTED
     send(Report(number=task.number, message="Writing the report."))
-    found = {verb: one for verb, one in read_folder(task.folder).items() if answers(one, study)}
-    made = report_of({verb: found[verb] for verb in NEEDED if verb in found}, missing)
+    made = report_of(found, missing)
     contents = {"report.html": html(made).encode()}
     if find_spec("typst") is not None:
         contents["report.pdf"] = pdf(made)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -64,6 +64,7 @@ def report(asked: str, second: Path | None, options: ReportOptions) -> int:
         Neither, or what is there cannot be read or written; nothing was written then.
     """
     from separatrix.reporting.content import report_of
+    from separatrix.reporting.kept import answers_of
     from separatrix.reporting.pdf import typesetter
     from separatrix.study_file import shipped_studies
 
@@ -86,7 +87,7 @@ def report(asked: str, second: Path | None, options: ReportOptions) -> int:
             folder = (options.out or Path(study.name)) if writes else None
             if folder is not None:
                 stack.enter_context(writable_folder(folder))
-            kept, missing, complete = _of_study(study, notes, folder, options)
+            kept, missing, complete = answers_of(study, folder, _computing(study, notes, folder, options))
             if not complete:
                 return interrupted("no report was written. Run the same command to resume.")
             made = report_of(kept, missing)
@@ -127,13 +128,13 @@ def _read(asked: str) -> tuple[Study, list[str]]:
 
 def _of_folder(folder: Path, options: ReportOptions) -> tuple[dict[str, Kept], list[str]]:
     """Return the answers of a folder, and of the chain those that it lacks, if its study can be read back."""
-    from separatrix.reporting.kept import NEEDED, read_folder, verbs_of
+    from separatrix.reporting.kept import NEEDED, add_missing, read_folder, verbs_of
 
     found, missing = read_folder(folder), list[str]()
     study = _read_back(next(iter(found.values())).document, str(folder))
     if study is not None:
         wanted = [verb for verb in verbs_of(study) if verb in CHAIN]
-        missing = _add(found, wanted, study, [], None, options)
+        missing = add_missing(found, wanted, _computing(study, [], None, options))
     return {verb: found[verb] for verb in NEEDED if verb in found}, missing
 
 
@@ -158,58 +159,20 @@ def _read_back(document: Mapping[str, Any], where: str) -> Study | None:
     return study if plain(resolved(study), "study") == document["study"] else None
 
 
-def _of_study(
+def _computing(
     study: Study, notes: list[str], folder: Path | None, options: ReportOptions
-) -> tuple[dict[str, Kept], list[str], bool]:
-    """Return the answers to a study, what could not be computed, and whether no answer was interrupted."""
-    from separatrix.reporting.kept import NEEDED, answers, read_folder, verbs_of
+) -> Callable[[str], Kept]:
+    """Return what computes one answer and writes its files if there is a folder."""
+    from separatrix.reporting.kept import keep
 
-    known = read_folder(folder, needed=False) if folder is not None else {}
-    found = {verb: one for verb, one in known.items() if answers(one, study)}
-    missing = _add(found, verbs_of(study), study, notes, folder, options)
-    complete = all(one.document.get("complete", True) for one in found.values())
-    return {verb: found[verb] for verb in NEEDED if verb in found}, missing, complete
-
-
-def _add(
-    found: dict[str, Kept],
-    wanted: Iterable[str],
-    study: Study,
-    notes: list[str],
-    folder: Path | None,
-    options: ReportOptions,
-) -> list[str]:
-    """Compute the wanted answers that are not there; return what was refused, a sentence each."""
-    missing = []
-    for verb in wanted:
-        if verb in found:
-            continue
-        try:
-            found[verb] = _computed(verb, study, notes, folder, options)
-        except InputError as error:
-            if not found:
-                raise
-            missing.append(f"`{verb}` was not computed: {error}")
-            continue
-        if found[verb].document.get("complete") is False:
-            break
-    return missing
-
-
-def _computed(verb: str, study: Study, notes: list[str], folder: Path | None, options: ReportOptions) -> Kept:
-    """Compute one answer, write its files if there is a folder, and return it."""
-    from separatrix.present import dataset, document
-    from separatrix.reporting.kept import Kept
-    from separatrix.saving import save_answer
-
-    entry = verb_named(verb)
     asked = Options(json=options.json, out=folder, quiet=options.quiet, jobs=options.jobs)
-    with noted_warnings() as own:
-        made = computed_with_progress(entry, study, asked, folder)
-    found = document(verb, made.record, made.study, [*notes, *grouped(own)])
-    if folder is not None:
-        save_answer(folder, made.record, made.study, found)
-    return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
+
+    def compute(verb: str) -> Kept:
+        with noted_warnings() as own:
+            made = computed_with_progress(verb_named(verb), study, asked, folder)
+        return keep(verb, made, [*notes, *grouped(own)], folder)
+
+    return compute
 
 
 def _deliver(found: Report, folder: Path | None, options: ReportOptions) -> None:

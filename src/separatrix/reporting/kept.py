@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from separatrix.comparing.inputs import differences, of_study
 from separatrix.comparing.saved import read_file
 from separatrix.errors import InputError
 from separatrix.present import load
@@ -14,6 +15,7 @@ from separatrix.present import load
 if TYPE_CHECKING:
     import xarray as xr
 
+    from separatrix.questions import Computed
     from separatrix.study import Study
 
 NEEDED = {
@@ -82,22 +84,11 @@ def read_document(path: Path, verb: str) -> Mapping[str, Any]:
 
 def differing(first: Mapping[str, Any], second: Mapping[str, Any]) -> list[str]:
     """Return the names of the inputs that differ between two documents, and the version if that does."""
-    ours, theirs = (dict(_inputs(one["study"])) for one in (first, second))
-    names = [name for name in {**ours, **theirs} if ours.get(name) != theirs.get(name)]
+    ours, theirs = (dict(of_study(one["study"])) for one in (first, second))
     versions = {one["separatrix_version"] for one in (first, second)}
     seeds = {one["seed"] for one in (first, second)}
+    names = [at.key for at in differences(ours, theirs)]
     return names + ["version of separatrix"] * (len(versions) > 1) + ["seed"] * (len(seeds) > 1)
-
-
-def _inputs(entry: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every input of a resolved study with its value; not where it was written."""
-    if not isinstance(entry, dict):
-        yield path, entry
-        return
-    for key, item in entry.items():
-        if key in ("origin", "name", "title", "record", "source", "confidence", "table", "other_tests"):
-            continue
-        yield from _inputs(item, path if key == "value" else f"{path}.{key}".lstrip("."))
 
 
 def verbs_of(study: Study) -> Iterator[str]:
@@ -118,3 +109,46 @@ def answers(kept: Kept, study: Study) -> bool:
     asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
     same = all(document[key] == value for key, value in asked.items())
     return same and document["separatrix_version"] == __version__ and document.get("complete", True) is True
+
+
+def keep(verb: str, made: Computed, notes: list[str], folder: Path | None) -> Kept:
+    """Return a computed answer; its files are written if there is a folder."""
+    from separatrix.present import dataset, document
+    from separatrix.saving import save_answer
+
+    found = document(verb, made.record, made.study, notes)
+    if folder is not None:
+        save_answer(folder, made.record, made.study, found)
+    return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
+
+
+def answers_of(
+    study: Study, folder: Path | None, compute: Callable[[str], Kept]
+) -> tuple[dict[str, Kept], list[str], bool]:
+    """Return the answers to a study, what was refused, and whether no answer was interrupted.
+
+    Those that the folder holds already are taken; the others that a report needs are computed.
+    """
+    known = read_folder(folder, needed=False) if folder is not None else {}
+    found = {verb: one for verb, one in known.items() if answers(one, study)}
+    missing = add_missing(found, verbs_of(study), compute)
+    complete = all(one.document.get("complete", True) for one in found.values())
+    return {verb: found[verb] for verb in NEEDED if verb in found}, missing, complete
+
+
+def add_missing(found: dict[str, Kept], wanted: Iterable[str], compute: Callable[[str], Kept]) -> list[str]:
+    """Compute the wanted answers that are not there; return what was refused, a sentence each."""
+    missing = []
+    for verb in wanted:
+        if verb in found:
+            continue
+        try:
+            found[verb] = compute(verb)
+        except InputError as error:
+            if not found:
+                raise
+            missing.append(f"`{verb}` was not computed: {error}")
+            continue
+        if found[verb].document.get("complete") is False:
+            break
+    return missing
