@@ -126,9 +126,17 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
         CONFIG["CACHE_DIR"] = usual
 
 
+_UNSEEN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel that only kernels call."""
-    return _compiled(function)
+    return _compiled(function, **_UNSEEN)
+
+
+def unfolded(function: Callable[P, R]) -> Callable[P, R]:
+    """Write a part out in its only caller: large parts that are compiled one by one are optimized one by one."""
+    return _compiled(function, inline="always")
 
 
 def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -136,15 +144,15 @@ def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
     Called from a loop of a microsecond, the counting took a third of the time.
     """
-    return _compiled(function, _nrt=False)
+    return _compiled(function, _nrt=False, **_UNSEEN)
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile an inner kernel into those that call it."""
-    return _compiled(function, _nrt=False, forceinline=True)
+    return _compiled(function, _nrt=False, forceinline=True, **_UNSEEN)
 
 
-def _compiled(function: Callable[P, R], **options: bool) -> Callable[P, R]:
+def _compiled(function: Callable[P, R], **options: bool | str) -> Callable[P, R]:
     """Compile with numba; the signature stays visible to the type checker."""
     jit = numba.njit(nogil=True, error_model="numpy", **options)  # type: ignore[call-overload]  # _nrt
     compiled: Callable[P, R] = jit(function)

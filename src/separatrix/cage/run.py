@@ -43,7 +43,7 @@ from separatrix.cage.records import (
     series,
 )
 from separatrix.cage.traction import ball_energy
-from separatrix.compiled import kernel, part
+from separatrix.compiled import kernel, part, unfolded
 from separatrix.units import Array
 
 DRIFTS = int(RunOutcome.DRIFTS)
@@ -96,7 +96,7 @@ def held_energy(p: Coefficients, balls: Balls, state: State) -> float:
     return held
 
 
-@part
+@unfolded
 def watch(
     p: Coefficients,
     balls: Balls,
@@ -198,7 +198,7 @@ def imbalance(
     return abs(unexplained) / (ledger.gross + start)
 
 
-@part
+@unfolded
 def run_one(
     p: Coefficients,
     balls: Balls,

@@ -36,7 +36,7 @@ from separatrix.cage.space.records import (
 )
 from separatrix.cage.space.tally import held_energy, kinetic, total
 from separatrix.cage.step import LONGEST
-from separatrix.compiled import kernel, part
+from separatrix.compiled import kernel, part, unfolded
 from separatrix.units import Array
 
 DIRECTION, TILT_WAY, AXIAL_WAY, FIRST_LEAD = range(4)
@@ -71,7 +71,7 @@ def begin(p: Numbers, parts: Parts, start: Array, kicks: Array, state: Motion, a
         parts.moving[:] = 1
 
 
-@part
+@unfolded
 def watch(
     p: Numbers, parts: Parts, state: Motion, books: Books, hits: Whole, heat: Array, limits: Limits
 ) -> tuple[int, int, int]:
@@ -108,7 +108,7 @@ def watch(
     return with_cause(looks, outcome, judged, touched, limits)
 
 
-@part
+@unfolded
 def run_one(
     p: Numbers,
     parts: Parts,

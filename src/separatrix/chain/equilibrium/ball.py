@@ -21,7 +21,7 @@ from separatrix.chain.equilibrium.balance import (
 )
 from separatrix.chain.equilibrium.groove import static_split, touch
 from separatrix.chain.equilibrium.problem import Method, Problem, Work, solve_linear, work
-from separatrix.compiled import part
+from separatrix.compiled import part, unfolded
 from separatrix.units import Array
 
 TOLERANCE = 1e-11
@@ -34,7 +34,6 @@ def evaluate(
     A: Array,
     state: Array,
     smoothing: float,
-    fine: bool,
     method: Method,
     residual: Array,
     out: Work,
@@ -43,8 +42,7 @@ def evaluate(
     if state.shape[0] == 2:
         controlled_ball(p, A, state, residual, out)
         return
-    cells, nodes = (method.cells, method.nodes) if fine else (method.coarse_cells, method.coarse_nodes)
-    free_ball(p, A, state, (smoothing, smoothing), cells, nodes, residual, out)
+    free_ball(p, A, state, (smoothing, smoothing), method.cells, method.nodes, residual, out)
 
 
 @part
@@ -86,25 +84,28 @@ def newton_ball(
     A: Array,
     state: Array,
     smoothing: float,
-    fine: bool,
     method: Method,
     out: Work,
-    limit: int,
+    limit: float,
     tolerance: float,
 ) -> float:
-    """Newton with step halving from `state`; returns the scaled unbalance reached (good if <= tolerance)."""
+    """Newton with step halving from `state`; returns the scaled unbalance reached (good if <= tolerance).
+
+    `limit` is a number of steps, as a float: for every whole number or truth value that is written in a call
+    numba compiles a copy, which takes seconds.
+    """
     n = state.shape[0]
     residual, scales, step, trial = np.empty(n), np.empty(n), np.zeros((n, 1)), state.copy()
     reach = 0.3 * (min(p.inner_conformity, p.outer_conformity) - 0.5) * p.ball_diameter
     norm, stride, steps = math.inf, 1.0, 0
     row_scales(p, A, state, method.force, scales)
     while True:  # one call of `evaluate`, for each copy of it takes seconds to compile
-        evaluate(p, A, trial, smoothing, fine, method, residual, out)
+        evaluate(p, A, trial, smoothing, method, residual, out)
         if scaled_norm(residual, scales) <= (1.0 - 0.1 * stride) * norm or steps == 0:
             state[:] = trial
             row_scales(p, A, state, method.force, scales)
             norm = scaled_norm(residual, scales)
-            if norm <= tolerance or steps == limit or not newton_step(out.by_state, residual, scales, step):
+            if norm <= tolerance or steps >= limit or not newton_step(out.by_state, residual, scales, step):
                 break
             steps += 1
             stride = min(1.0, reach / max(math.hypot(step[0, 0], step[1, 0]), 1e-300))
@@ -179,13 +180,13 @@ def controlled_start(p: Problem, A: Array, state: Array) -> None:
         rest(p, A, pull, state)
 
 
-@part
+@unfolded
 def solve_controlled(p: Problem, A: Array, state: Array, method: Method, out: Work) -> bool:
     """Ball under race control: from `state`, then from where it rests."""
-    if newton_ball(p, A, state, 0.0, True, method, out, 15, TOLERANCE) <= TOLERANCE:
+    if newton_ball(p, A, state, 0.0, method, out, 15.0, TOLERANCE) <= TOLERANCE:
         return True
     controlled_start(p, A, state)
-    return bool(newton_ball(p, A, state, 0.0, True, method, out, 40, TOLERANCE) <= TOLERANCE)
+    return bool(newton_ball(p, A, state, 0.0, method, out, 40.0, TOLERANCE) <= TOLERANCE)
 
 
 @part
@@ -204,14 +205,12 @@ SMOOTHING = 1e-4
 
 
 @part
-def lower_smoothing(
-    p: Problem, A: Array, state: Array, start: float, fine: bool, method: Method, out: Work
-) -> float:
+def lower_smoothing(p: Problem, A: Array, state: Array, start: float, method: Method, out: Work) -> float:
     """Follow the ball from `start` down to `SMOOTHING` in adaptive ratios; returns the smoothing reached."""
     good, ratio, unit = state.copy(), 0.25, 0.25 * p.pitch_diameter
     smoothing, reached = start, math.inf
     while True:
-        if newton_ball(p, A, state, smoothing * unit, fine, method, out, 25, 1e-7) <= 1e-7:
+        if newton_ball(p, A, state, smoothing * unit, method, out, 25.0, 1e-7) <= 1e-7:
             reached = smoothing
             good[:] = state
             ratio = max(ratio * ratio, 0.1)
@@ -224,6 +223,13 @@ def lower_smoothing(
 
 
 @part
+def coarse(method: Method) -> Method:
+    """The same with the coarse quadrature."""
+    cells, nodes = method.coarse_cells, method.coarse_nodes
+    return Method(method.force, cells, nodes, cells, nodes)
+
+
+@unfolded
 def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) -> float:
     """Ball without race control; returns the smoothing reached, `SMOOTHING` if all went well.
 
@@ -238,10 +244,10 @@ def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) ->
             state[:2] = place
             kinematic_start(p, A, state)
             start = 0.03 if attempt < 2 else 3.0
-            reached = lower_smoothing(p, A, state, start, attempt % 2 == 1, method, out)
+            reached = lower_smoothing(p, A, state, start, method if attempt % 2 == 1 else coarse(method), out)
         if reached <= SMOOTHING:
-            limit = 8 if attempt < 0 else 30
-            if newton_ball(p, A, state, aim, True, method, out, limit, TOLERANCE) <= TOLERANCE:
+            limit = 8.0 if attempt < 0 else 30.0
+            if newton_ball(p, A, state, aim, method, out, limit, TOLERANCE) <= TOLERANCE:
                 return SMOOTHING
             reached = 2.0 * SMOOTHING
         if attempt >= 0:
@@ -256,7 +262,7 @@ def _turn_until_balanced(p: Problem, A: Array, state: Array, smoothing: float, m
     step, norm, stride = np.zeros((4, 1)), math.inf, 1.0
     row_scales(p, A, state, 0.0, scales)
     for _ in range(200):
-        evaluate(p, A, trial, smoothing, True, method, residual, out)
+        evaluate(p, A, trial, smoothing, method, residual, out)
         now = scaled_norm(residual[2:], scales[2:])
         if now <= (1.0 - 0.1 * stride) * norm:
             state[:], norm, stride = trial, now, 1.0

@@ -25,7 +25,7 @@ from separatrix.chain.equilibrium.ball import (
 from separatrix.chain.equilibrium.groove import Touch, static_split, touch
 from separatrix.chain.equilibrium.problem import Method, Problem, Work, solve_linear, work
 from separatrix.chain.hertz import elliptic_integrals
-from separatrix.compiled import kernel, part
+from separatrix.compiled import kernel, part, unfolded
 from separatrix.units import Array
 
 STATIC, CONTROLLED, FREE = 3, 2, 6
@@ -80,7 +80,7 @@ def static_ball(p: Problem, A: Array, state: Array, push: Array, by_ring: Array)
     by_ring[1, 1] = slope * c * c + side * s * s
 
 
-@part
+@unfolded
 def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, by_ring: Array) -> float:
     """Ball with inertia, solved; returns 0, or how far the smoothing of friction came (inf: nowhere)."""
     if state.shape[0] == CONTROLLED:
