@@ -7,6 +7,7 @@ TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
 MAP := map cryogenic-turbopump --points 2 --runs 1 --jobs 1 --json --quiet
 RUN := simulate cryogenic-turbopump --json --quiet
+OTHERS := mobility cryogenic-turbopump --json --quiet
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
@@ -20,7 +21,7 @@ test: kernels ## every test
 
 kernels: .venv/ready
 	@$(COMPILE) "$(MAP)" "$(RUN)" > /dev/null & \
-	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" > /dev/null && wait $$!
+	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(OTHERS)" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .

@@ -126,16 +126,20 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
         CONFIG["CACHE_DIR"] = usual
 
 
-_UNSEEN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of what only kernels can call: the wrappers for Python took a tenth of the time to compile."""
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel that only kernels call."""
-    return _compiled(function, **_UNSEEN)
+    return _compiled(function)
 
 
 def unfolded(function: Callable[P, R]) -> Callable[P, R]:
-    """Write a part out in its only caller: large parts that are compiled one by one are optimized one by one."""
+    """Write a large part out in its only caller.
+
+    Compiled by itself, all that it calls would be optimized for it and once more for its caller.
+    """
     return _compiled(function, inline="always")
 
 
@@ -144,12 +148,12 @@ def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
     Called from a loop of a microsecond, the counting took a third of the time.
     """
-    return _compiled(function, _nrt=False, **_UNSEEN)
+    return _compiled(function, **_INNER)
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile an inner kernel into those that call it."""
-    return _compiled(function, _nrt=False, forceinline=True, **_UNSEEN)
+    return _compiled(function, forceinline=True, **_INNER)
 
 
 def _compiled(function: Callable[P, R], **options: bool | str) -> Callable[P, R]:
