@@ -115,7 +115,7 @@ def removed(text: str, number: int) -> str:
             return found
     del items[number]
     if not items:
-        del document[SECTION][KEY]  # type: ignore[union-attr]
+        del document[SECTION][KEY]
     return tomlkit.dumps(document)
 
 

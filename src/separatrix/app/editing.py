@@ -8,7 +8,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
-from separatrix.app import draft
+from separatrix.app import candidates, draft
+from separatrix.app.fields import as_typed
 from separatrix.app.form import form
 from separatrix.app.page import Page, form_of
 from separatrix.errors import InputError
@@ -61,9 +62,7 @@ def routes(page: Page) -> APIRouter:
             draft.keep(path, sent["text"].replace("\r\n", "\n"))
         else:
             try:
-                section, _, key = sent.get("field", "").rpartition(".")
-                value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
-                draft.keep(path, draft.edited(text, section, key, value))
+                draft.keep(path, edited_by(text, sent))
             except InputError as error:
                 problem = str(error)
         return page.html("editor.html", **editor(page, name, path, problem))
@@ -122,6 +121,27 @@ def routes(page: Page) -> APIRouter:
         return page.html("jobs.html", jobs=page.jobs.all())
 
     return router
+
+
+def edited_by(text: str, sent: dict[str, str]) -> str:
+    """Return the text of a study with what one part of the form changes in it."""
+    if "add" in sent:
+        return candidates.added(text, sent["add"])
+    number = _number(sent.get("candidate", sent.get("remove", "")))
+    if "remove" in sent:
+        return candidates.removed(text, number)
+    ticked = [value for name, value in sent.items() if name.startswith("box-")]
+    value = as_typed(ticked) if ticked else draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
+    if "candidate" in sent:
+        first, *inside = sent.get("part", "").split(".")
+        environment = [sent["environment"].strip()] if "environment" in sent else []
+        return candidates.changed(text, number, (first, *environment, *inside), value)
+    section, _, key = sent.get("field", "").rpartition(".")
+    return draft.edited(text, section, key, value)
+
+
+def _number(text: str) -> int:
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 9 else -1
 
 
 def _to(place: str) -> Response:

@@ -1,4 +1,4 @@
-"""Names that a study may use, for the pick-lists of a form: those of its library and of its friction tests."""
+"""Names that a study may use, for the pick-lists of a form: of its library and of its friction tests."""
 
 from __future__ import annotations
 

@@ -175,6 +175,16 @@ def _candidate(document: Document, item: Any, at: str) -> Candidate:
     return replace(candidate, material=replace(candidate.material, name=candidate.name))
 
 
+def place_of_candidate(document: Document, name: str) -> str:
+    """Return the path of an uncertain number, named by its candidate and its environment or property."""
+    for i, item in enumerate(document.sections["ranking"]["candidates"], 1):
+        inside = name.removeprefix(f"{item['name']}.")
+        if inside != name:
+            is_property = inside.startswith("material.")
+            return f"[ranking] candidates[{i}]." + (inside if is_property else f'friction."{inside[:60]}"')
+    raise KeyError(name)
+
+
 def _frictions(value: Any, at: str) -> Uncertain:
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
