@@ -22,9 +22,9 @@ PROPERTIES: dict[str, tuple[Any, str]] = {
 """Of a material that is given in place: an example, and the meaning."""
 
 SCATTER: dict[str, tuple[Any, str]] = {
-    "standard_deviation": (0.02, "of single tests or samples; or like 15 %"),
-    "count": (8, "number of tests"),
-    "source": ("our test 7", "where the number comes from"),
+    "standard_deviation": (0.02, "of single tests"),
+    "count": (8, "of tests"),
+    "source": ("our test 7", ""),
 }
 """Beside the mean of a friction."""
 

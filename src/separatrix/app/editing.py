@@ -125,18 +125,21 @@ def routes(page: Page) -> APIRouter:
 
 def edited_by(text: str, sent: dict[str, str]) -> str:
     """Return the text of a study with what one part of the form changes in it."""
-    if "add" in sent:
-        return candidates.added(text, sent["add"])
-    number = _number(sent.get("candidate", sent.get("remove", "")))
-    if "remove" in sent:
+    if "added" in sent:
+        return candidates.added(text, sent["added"])
+    number = _number(sent.get("candidate", sent.get("removed", "")))
+    if "removed" in sent:
         return candidates.removed(text, number)
-    ticked = [value for name, value in sent.items() if name.startswith("box-")]
-    value = as_typed(ticked) if ticked else draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
+    value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
     if "candidate" in sent:
         first, *inside = sent.get("part", "").split(".")
         environment = [sent["environment"].strip()] if "environment" in sent else []
         return candidates.changed(text, number, (first, *environment, *inside), value)
     section, _, key = sent.get("field", "").rpartition(".")
+    if ticked := [value for name, value in sent.items() if name.startswith("box-")]:
+        given = draft.parsed(text).unwrap().get(section, {}).get(key, [])  # its order is that of the answer
+        kept = [one for one in given if one in ticked]
+        value = as_typed([*kept, *(one for one in ticked if one not in kept)])
     return draft.edited(text, section, key, value)
 
 

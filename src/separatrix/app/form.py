@@ -82,9 +82,13 @@ def _field(key: TemplateKey, value: Any, inherited: Any, checked: Checked) -> Fi
 
 
 def _boxes(value: Any, names: tuple[str, ...]) -> tuple[tuple[str, bool], ...]:
-    """Return names with whether a list has them, those of the list first; none for what is not a list."""
+    """Return names with whether a list has them, as it spells them; none for what is not a list of names."""
     given = [] if value is None else value
     if not names or not isinstance(given, list) or not all(isinstance(one, str) for one in given):
         return ()
-    known = {folded(one) for one in given}
-    return (*((one, True) for one in given), *((one, False) for one in names if folded(one) not in known))
+    spelled = {folded(one): one for one in given}
+    others = [one for one in given if folded(one) not in map(folded, names)]
+    return (
+        *((spelled.get(folded(one), one), folded(one) in spelled) for one in names),
+        *((one, True) for one in others),
+    )
