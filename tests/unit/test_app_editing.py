@@ -85,7 +85,7 @@ def test_a_form_sent_back_unchanged_changes_no_value(study):
 
 
 def test_the_form_has_every_key_of_the_records():
-    """What a study file may hold can be typed in; wholes tables are left to the text."""
+    """What a study file may hold can be typed in; candidates have a form of their own."""
     shown = {(one.section, one.key) for one in template_keys()}
     lacking = {(section, key) for section, readers in READERS.items() for key in readers} - shown
     assert lacking == {("ranking", "candidates")}

@@ -178,10 +178,11 @@ def _candidate(document: Document, item: Any, at: str) -> Candidate:
 def place_of_candidate(document: Document, name: str) -> str:
     """Return the path of an uncertain number, named by its candidate and its environment or property."""
     for i, item in enumerate(document.sections["ranking"]["candidates"], 1):
-        inside = name.removeprefix(f"{item['name']}.")
-        if inside != name:
-            is_property = inside.startswith("material.")
-            return f"[ranking] candidates[{i}]." + (inside if is_property else f'friction."{inside[:60]}"')
+        places = {environment: f'friction."{environment[:60]}"' for environment in item["friction"]}
+        if isinstance(item.get("material"), dict):
+            places |= {place: place for place in (f"material.{key}" for key in item["material"])}
+        if found := [place for inside, place in places.items() if name == f"{item['name']}.{inside}"]:
+            return f"[ranking] candidates[{i}].{found[0]}"
     raise KeyError(name)
 
 
