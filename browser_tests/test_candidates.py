@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
 OWN = """\
@@ -112,6 +113,15 @@ def test_an_environment_is_added_to_every_candidate(page):
     page.fill("#new-candidate", "Second")
     page.get_by_role("button", name="Add it").click()
     expect(page.locator(f"{SECOND}-friction-2-mean")).to_have_value("")
+
+
+def test_a_candidate_has_no_accessibility_fault(page):
+    """With a refused friction, and the properties of its material open."""
+    page.get_by_text("Properties of a material").click()
+    page.fill("#f-candidates-0-friction-0-mean", "7")
+    page.keyboard.press("Enter")
+    expect(page.locator("#f-candidates-0-friction-0-mean-more .bad")).to_have_count(1)
+    assert Axe().run(page).response["violations"] == []
 
 
 def test_the_second_of_two_tabs_does_not_add(page, view, server):

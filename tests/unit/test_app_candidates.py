@@ -270,6 +270,17 @@ def test_candidates_are_added_and_removed_in_the_page(page):
     assert "is not in the text" in edit(page, removed="x")
 
 
+def test_a_text_that_the_form_cannot_change_stays(page):
+    """One whose end it takes for a comment, and one with a table of a candidate behind another section."""
+    with pytest.raises(InputError, match="Mend it in the text first"):
+        candidates.added('[[ranking.candidates]]\nname = """One\n# two"""\n', "New")
+    text = OWN.replace("[ranking.candidates.friction]", "[cage]\n[ranking.candidates.friction]")
+    edit(page, text=text)
+    for sent in ({"added": "New"}, {"removed": "0"}, {"candidate": "0", "part": "name", "value": "New"}):
+        assert "Mend it in the text first" in edit(page, **sent)
+    assert text_of(page) == text
+
+
 def test_an_older_tab_neither_adds_nor_removes(page):
     """Numbers of candidates may be others meanwhile."""
     old = draft.version_of(OWN)
@@ -302,8 +313,12 @@ def test_the_materials_of_a_friction_file_are_ticked(page):
     test = '[[test]]\nmaterial = "Ours"\ncounterface = "440C"\nmedium = "air"\nfriction = 0.2\n'
     (page.app.state.root / "tests.toml").write_text(test)
     own = SMALL.partition("[ranking]")[0] + '[ranking]\nfriction = "NAME"\n'
-    assert 'type="checkbox" name="box-1" value="Ours"' in edit(page, text=own.replace("NAME", "tests.toml"))
-    assert '<input id="f-ranking-materials"' in edit(page, text=own.replace("NAME", "../tests.toml"))
+    assert 'type="checkbox" name="box-1" value="Ours"' in edit(
+        page, "small.toml", text=own.replace("NAME", "tests.toml")
+    )
+    typed = edit(page, "small.toml", text=own.replace("NAME", "../tests.toml"))
+    assert '<input id="f-ranking-materials"' in typed
+    assert "Inherited: 11.1125 mm" in typed
 
 
 def test_a_list_keeps_its_comments():

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from tomlkit.exceptions import TOMLKitError
 
 from separatrix.app import candidates, draft
 from separatrix.app.fields import as_typed
@@ -65,6 +66,8 @@ def routes(page: Page) -> APIRouter:
                 draft.keep(path, edited_by(text, sent))
             except InputError as error:
                 problem = str(error)
+            except TOMLKitError as error:  # TOML in an order that tomlkit does not take
+                problem = f"The form cannot change this text: {error} {draft.MEND}"
         return page.html("editor.html", **editor(page, name, path, problem))
 
     @router.post("/save/{name:path}")
