@@ -22,6 +22,8 @@ def views(folder, server, browser) -> list[str]:
         "uncertain": 'extends = "small.toml"\ntitle = "<b>film</b>"\n[film]\nthickness = "0.5 um +- 20 %"\n',
         "refused": 'extends = "small.toml"\n[film]\nthickness = "0.5 kg"\n',
         "bare": "[bearing]\n",
+        "own": 'extends = "cryogenic-turbopump"\n[[ranking.candidates]]\nname = "<b>mine</b>"\n'
+        'material = { elastic_modulus = "5 GPa" }\nfriction = { air = 7, "lox, 440C" = 0.1 }\n',
         "other": 'extends = "small.toml"\n[film]\nthickness = "1 um"\n',
     }
     for name, text in studies.items():

@@ -8,6 +8,7 @@ from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
 from separatrix.app import draft
+from separatrix.app.editing import edited_by
 from separatrix.app.form import form
 from separatrix.app.server import application
 from separatrix.errors import InputError
@@ -79,14 +80,12 @@ def test_a_form_sent_back_unchanged_changes_no_value(study):
     for section in form(checked):
         for field in section.fields:
             if field.value:
-                again = draft.edited(
-                    again, field.section, field.key, draft.with_unit(field.value, field.unit)
-                )
+                again = edited_by(again, {**field.sent, "value": field.value, "unit": field.unit})
     assert tomllib.loads(again) == tomllib.loads(text)
 
 
 def test_the_form_has_every_key_of_the_records():
-    """What a study file may hold can be typed in; wholes tables are left to the text."""
+    """What a study file may hold can be typed in; candidates have a form of their own."""
     shown = {(one.section, one.key) for one in template_keys()}
     lacking = {(section, key) for section, readers in READERS.items() for key in readers} - shown
     assert lacking == {("ranking", "candidates")}

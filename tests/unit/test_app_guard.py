@@ -18,6 +18,22 @@ from separatrix.app.server import Server
 
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 HOSTILE = f'title = "{SCRIPT}"\n'
+OWN = f"""extends = "cryogenic-turbopump"
+[[ranking.candidates]]
+name = "{SCRIPT}"
+friction = {{ "{SCRIPT}" = {{ mean = 7, source = "{SCRIPT}" }} }}
+material = {{ "{SCRIPT}" = 1, source = "{SCRIPT}" }}
+[[ranking.candidates]]
+name = ["{SCRIPT}"]
+material = "{SCRIPT}"
+"""
+TESTED = '[ranking]\nfriction = "tests.toml"\n'
+TESTS = f"""[[test]]
+material = "{SCRIPT}"
+counterface = "440C"
+medium = "air"
+friction = 0.2
+"""
 
 
 class Client:
@@ -48,6 +64,10 @@ def folder(tmp_path_factory):
     root.mkdir()
     (root / "hostile.toml").write_text(HOSTILE + SMALL.replace("title =", "# title ="))
     (root / "<b>bold.toml").write_text(SMALL)
+    (root / "own.toml").write_text(OWN)
+    (root / "tested.toml").write_text(SMALL.partition("[ranking]")[0] + TESTED)
+    (root / "tests.toml").write_text(TESTS)
+    (root / "variant.toml").write_text('extends = "own.toml"\n')
     (root / "link.toml").symlink_to(outside / "secret.toml")
     (root / "linked").symlink_to(outside)
     return root
@@ -140,10 +160,11 @@ def test_a_study_cannot_name_a_file_outside(client):
 
 
 def test_scripts_in_texts_are_text(client, folder):
-    """A title, a file name and a log's header that are scripts are shown, not run; inline scripts may not."""
+    """Titles, names and a log's header that are scripts are shown, not run; inline scripts may not."""
     log = f"Sample name : {SCRIPT}\ntime [s];friction\n" + "".join(f"{i};0.1\n" for i in range(400))
     assert client.ask("/logs/a-log.csv", "PUT", log)[0] == 200
-    for place in ("/", "/study/hostile.toml", "/study/%3Cb%3Ebold.toml", "/logs", "/log/a-log.csv"):
+    studies = ("hostile.toml", "%3Cb%3Ebold.toml", "own.toml", "tested.toml", "variant.toml")
+    for place in ("/", *(f"/study/{name}" for name in studies), "/logs", "/log/a-log.csv"):
         _, headers, text = client.ask(place)
         assert "<script>alert" not in text
         assert "<img src=x" not in text
@@ -151,7 +172,8 @@ def test_scripts_in_texts_are_text(client, folder):
         policy = headers["content-security-policy"]
         assert "script-src 'self';" in policy
         assert "default-src 'none'" in policy
-    assert "&lt;script&gt;alert" in client.ask("/study/hostile.toml")[2]
+    for name, count in {"hostile.toml": 1, "own.toml": 8, "tested.toml": 2, "variant.toml": 1}.items():
+        assert client.ask(f"/study/{name}")[2].count("&lt;script&gt;alert") >= count
     assert client.ask(f"/logs/{quote('<b>.csv')}", "PUT", log)[0] == 422
 
 

@@ -129,7 +129,16 @@ WRONG = {
         '"7800 kg/m3" }\n',
         ("[bearing] ball_material.poisson_ratio leaves", "must be >= 0 and < 0.5"),
     ),
-    "a friction below zero": (friction("{ between = [-0.1, 0.1] }"), ("One.air, leaves", "-0.1")),
+    "a friction below zero": (
+        friction("{ between = [-0.1, 0.1] }"),
+        ('line 5: [ranking] candidates[1].friction."air" leaves', "-0.1"),
+    ),
+    "a property of the second candidate": (
+        friction("0.1")
+        + '[[ranking.candidates]]\nname = "One.air"\nfriction = { "lox" = 0.1 }\n'
+        + 'material = { elastic_modulus = "5 GPa", poisson_ratio = { between = [0.2, 0.7] } }\n',
+        ("line 9: [ranking] candidates[2].material.poisson_ratio leaves", "at the upper end, 0.7"),
+    ),
     "a friction around zero": (
         friction('"0 +- 0.1"'),
         ('friction."air".mean must be >= 1e-05 where there is a standard deviation [-]; got 0.',),

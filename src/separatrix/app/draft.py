@@ -12,15 +12,17 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import Item
+from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.errors import InputError
 from separatrix.notes import grouped, noted_warnings
 from separatrix.regular_file import reading_only_in
 from separatrix.study import Study
 from separatrix.study_file import read_study
-from separatrix.study_file.document import load
+from separatrix.study_file.document import Document, load
+from separatrix.study_file.offered import NOTHING, Offered, offered_by
 from separatrix.study_file.templates import is_name
 from separatrix.toml_text import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
@@ -31,17 +33,23 @@ DRAFT = ".{}.draft"
 ONE_AT_A_TIME = threading.Lock()
 """What studies note on the way is collected by one thread."""
 
+MEND = "Mend it in the text first."
+
 _KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
 _NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message."""
+    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message.
+
+    `inside` is the rest of its path, for a key that holds tables: ``[2].friction."air, 440C".mean``.
+    """
 
     section: str
     key: str
     message: str
+    inside: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,6 +62,9 @@ class Checked:
     notes: tuple[str, ...] = ()
     inherited: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Values by section and key, those of the file that it extends among them."""
+
+    offered: Offered = NOTHING
+    """Names that it may use."""
 
     @property
     def version(self) -> str:
@@ -106,23 +117,29 @@ def check(study: Path, root: Path) -> Checked:
         text = read_text(path)
     except InputError as error:
         return Checked(text="", study=None, faults=tuple(_faults(error, path, study)))
+    inherited, offered = _around(path, root)
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
             found = read_study(path)
     except InputError as error:
         faults = tuple(_faults(error, path, study))
-        return Checked(text=text, study=None, faults=faults, inherited=_given(path, root))
-    given = _given(path, root)
-    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(notes)), inherited=given)
+        return Checked(text=text, study=None, faults=faults, inherited=inherited, offered=offered)
+    told = tuple(grouped(notes))
+    return Checked(text=text, study=found, faults=(), notes=told, inherited=inherited, offered=offered)
 
 
-def _given(path: Path, root: Path) -> dict[str, dict[str, Any]]:
-    """Return the values of a study that extends another, with those of the other, by section and key."""
+def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, Any]], Offered]:
+    """Return what a study has from the one that it extends, and the names that it may use."""
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
             found = load(path)
+            return _given(found), offered_by(found)
     except InputError:  # shown among the faults
-        return {}
+        return {}, NOTHING
+
+
+def _given(found: Document) -> dict[str, dict[str, Any]]:
+    """Return the values of a study that extends another, with those of the other, by section and key."""
     if "extends" not in found.top:
         return {}
     sections = {"": found.top, **found.sections}
@@ -139,7 +156,8 @@ def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
         message = str(one).replace(path.name, study.name)
         at = _KEY.search(one.path)
         section, key = (at["section"], at["key"] or "") if at else ("", "")
-        faults.append(Fault(section=section, key=key, message=message))
+        inside = one.path[at.end() :] if at else ""
+        faults.append(Fault(section=section, key=key, message=message, inside=inside))
     return faults
 
 
@@ -160,33 +178,58 @@ def edited(text: str, section: str, key: str, value: str) -> str:
     InputError
         The text is not valid TOML, so that it has to be mended as text first.
     """
-    try:
-        document = tomlkit.parse(text)
-    except (TOMLKitError, RecursionError) as error:
-        cure = "Mend it in the text first."
-        raise InputError("The text", f"is not valid TOML: {error}", cure=cure) from None
+    document = parsed(text)
     table: Any = document
     if section:
         if section not in document:
             document.add(section, tomlkit.table())
         table = document[section]
         if not isinstance(table, Mapping):
-            raise InputError(f"[{section}]", "is not a section", cure="Mend it in the text first.")
+            raise InputError(f"[{section}]", "is not a section", cure=MEND)
     if not value.strip():
         if key in table:
             del table[key]
     else:
-        _put(table, key, typed(value, is_name=is_name(section, key)))
+        put(table, key, typed(value, is_name=is_name(section, key)))
     return tomlkit.dumps(document)
 
 
-def _put(table: Any, key: str, value: Any) -> None:
-    """Set a key; the comment behind its old value stays."""
+def parsed(text: str) -> TOMLDocument:
+    """Return the document of a text, with its comments; what is not TOML is refused."""
+    try:
+        return tomlkit.parse(text)
+    except (TOMLKitError, RecursionError) as error:
+        raise InputError("The text", f"is not valid TOML: {error}", cure=MEND) from None
+
+
+def put(table: Any, key: str, value: Any) -> None:
+    """Set a key; comments behind its old value and in its old list stay."""
     old = table.get(key)
+    if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
+        return
     new = tomlkit.item(value)
-    if isinstance(old, Item) and old.trivia.comment and not isinstance(value, dict):
+    if isinstance(value, dict) and not isinstance(old, Table):
+        new = tomlkit.inline_table()
+        new.update(value)
+    if isinstance(old, Item) and old.trivia.comment and not isinstance(new, Table):
         new.trivia.comment_ws, new.trivia.comment = old.trivia.comment_ws, old.trivia.comment
-    table[key] = new
+    if key in table or not isinstance(table, Table | InlineTable):
+        table[key] = new
+        return
+    body, behind = table.value.body, []
+    while body and body[-1][0] is None:  # comments at the end are about what follows
+        behind.append(body.pop())
+    table.append(key, new)
+    body.extend(reversed(behind))
+
+
+def _same_list(old: Array, value: list[Any]) -> bool:
+    """Make a list another one by removing and adding items; return whether that was enough."""
+    for item in [item for item in old.unwrap() if item not in value]:
+        old.remove(item)
+    for item in value[len(old) :]:
+        old.append(item)
+    return bool(old.unwrap() == value)
 
 
 def with_unit(value: str, unit: str) -> str:

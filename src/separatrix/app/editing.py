@@ -7,8 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from tomlkit.exceptions import TOMLKitError
 
-from separatrix.app import draft
+from separatrix.app import candidates, draft
+from separatrix.app.fields import as_typed
 from separatrix.app.form import form
 from separatrix.app.page import Page, form_of
 from separatrix.errors import InputError
@@ -61,11 +63,11 @@ def routes(page: Page) -> APIRouter:
             draft.keep(path, sent["text"].replace("\r\n", "\n"))
         else:
             try:
-                section, _, key = sent.get("field", "").rpartition(".")
-                value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
-                draft.keep(path, draft.edited(text, section, key, value))
+                draft.keep(path, edited_by(text, sent))
             except InputError as error:
                 problem = str(error)
+            except TOMLKitError as error:  # TOML in an order that tomlkit does not take
+                problem = f"The form cannot change this text: {error} {draft.MEND}"
         return page.html("editor.html", **editor(page, name, path, problem))
 
     @router.post("/save/{name:path}")
@@ -122,6 +124,30 @@ def routes(page: Page) -> APIRouter:
         return page.html("jobs.html", jobs=page.jobs.all())
 
     return router
+
+
+def edited_by(text: str, sent: dict[str, str]) -> str:
+    """Return the text of a study with what one part of the form changes in it."""
+    if "added" in sent:
+        return candidates.added(text, sent["added"])
+    number = _number(sent.get("candidate", sent.get("removed", "")))
+    if "removed" in sent:
+        return candidates.removed(text, number)
+    value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
+    if "candidate" in sent:
+        first, *inside = sent.get("part", "").split(".")
+        environment = [sent["environment"].strip()] if "environment" in sent else []
+        return candidates.changed(text, number, (first, *environment, *inside), value)
+    section, _, key = sent.get("field", "").rpartition(".")
+    if ticked := [value for name, value in sent.items() if name.startswith("box-")]:
+        given = draft.parsed(text).unwrap().get(section, {}).get(key, [])  # its order is that of the answer
+        kept = [one for one in given if one in ticked]
+        value = as_typed([*kept, *(one for one in ticked if one not in kept)])
+    return draft.edited(text, section, key, value)
+
+
+def _number(text: str) -> int:
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 9 else -1
 
 
 def _to(place: str) -> Response:

@@ -175,6 +175,17 @@ def _candidate(document: Document, item: Any, at: str) -> Candidate:
     return replace(candidate, material=replace(candidate.material, name=candidate.name))
 
 
+def place_of_candidate(document: Document, name: str) -> str:
+    """Return the path of an uncertain number, named by its candidate and its environment or property."""
+    for i, item in enumerate(document.sections["ranking"]["candidates"], 1):
+        places = {environment: f'friction."{environment[:60]}"' for environment in item["friction"]}
+        if isinstance(item.get("material"), dict):
+            places |= {place: place for place in (f"material.{key}" for key in item["material"])}
+        if found := [place for inside, place in places.items() if name == f"{item['name']}.{inside}"]:
+            return f"[ranking] candidates[{i}].{found[0]}"
+    raise KeyError(name)
+
+
 def _frictions(value: Any, at: str) -> Uncertain:
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'

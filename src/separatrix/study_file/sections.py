@@ -186,6 +186,8 @@ def _as_written(document: Document, problem: InputError) -> InputError:
 
 def _with_distributions(document: Document, study: Study) -> Study:
     """The study with the distributions of its uncertain numbers, each fitting its place."""
+    from separatrix.study_file.ranking_section import place_of_candidate
+
     found = document.distributions
     if len(found) > MOST_DISTRIBUTIONS:
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
@@ -194,7 +196,7 @@ def _with_distributions(document: Document, study: Study) -> Study:
     for name, one in found.items():
         section, _, key = name.partition(".")
         if section == "ranking":
-            at = f"[ranking] candidates, {printable(key, 120)},"
+            at = place_of_candidate(document, key)
         else:
             is_key = key.partition(".")[0] in document.sections[section]
             at = f"[{section}] {key}" if is_key else f"[{section}] material.{key}"

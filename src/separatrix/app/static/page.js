@@ -80,29 +80,36 @@ function morph(old, now) {
     while (old.childNodes.length > children.length) old.lastChild.remove();
   }
   if ("defaultValue" in old && !kept && old.value !== old.defaultValue && old.type !== "hidden") old.value = old.defaultValue;
+  if (old.type === "checkbox" && !kept) old.checked = old.defaultChecked;
   if (old.nodeName === "SELECT" && !kept) for (const one of old.options) one.selected = one.defaultSelected;
 }
 
 const sent = new Map(); // field -> its value in the request that is under way
 
+const now = (field) => (field.type === "checkbox" ? field.checked : field.value);
+
 function given(field) { // the value that the server gave
+  if (field.type === "checkbox") return field.defaultChecked;
   if (field.nodeName !== "SELECT") return field.defaultValue;
   return ([...field.options].find((one) => one.defaultSelected) || field.options[0]).value;
 }
 
 function isEdited(field) {
   const is = field.nodeName === "SELECT" || ("defaultValue" in field && field.type !== "hidden");
-  return is && field.value !== (sent.has(field) ? sent.get(field) : given(field));
+  return is && now(field) !== (sent.has(field) ? sent.get(field) : given(field));
 }
 
 function inPlace(event) {
   const { target, xhr } = event.detail;
   if (!event.detail.shouldSwap || !["editor", "jobs"].includes(target.id) || !target.firstElementChild) return;
   event.detail.shouldSwap = false;
-  const now = target.cloneNode(false);
-  now.innerHTML = xhr.responseText;
-  morph(target, document.adoptNode(now));
+  const { then } = event.detail.requestConfig.elt.dataset;
+  const next = target.cloneNode(false);
+  next.innerHTML = xhr.responseText;
+  morph(target, document.adoptNode(next));
   for (const one of target.children) htmx.process(one); // the target itself keeps its queue of requests
+  const field = then && document.querySelector(then);
+  if (field) field.focus(); // that of a candidate which was added, or of the next one to add
 }
 
 function sending(event) {
@@ -117,7 +124,7 @@ function sending(event) {
     return;
   }
   if (requestConfig.verb !== "get") message("");
-  if (elt.matches(".field, .text")) for (const field of elt.elements) sent.set(field, field.value);
+  if (elt.matches(".field, .text")) for (const field of elt.elements) sent.set(field, now(field));
 }
 
 function ended(event) {
