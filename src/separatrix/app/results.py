@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Depends
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from markupsafe import Markup
 
 from separatrix.app.files import ANSWER_SUFFIXES
 from separatrix.app.motion import motion
@@ -18,6 +19,7 @@ from separatrix.app.plotly import spec
 from separatrix.errors import InputError
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
+from separatrix.figures.space_page import view as space_view
 from separatrix.limits.map_parameters import KICK, RESTITUTION
 from separatrix.questions import verb_named
 from separatrix.units import format_number, printable, shown
@@ -97,6 +99,7 @@ def routes(page: Page) -> APIRouter:
     @router.get("/cage/{name:path}", response_class=HTMLResponse)
     def cage(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
+        view = Markup(space_view(data)) if is_in_space(data) else None  # noqa: S704 - its texts are escaped
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
         words = str(data.attrs.get("title", name))
         return page.html(
@@ -105,7 +108,7 @@ def routes(page: Page) -> APIRouter:
             point=point,
             title=words,
             found=found,
-            in_space=is_in_space(data),
+            view=view,
             answers=page.answered(name),
         )
 
@@ -113,7 +116,7 @@ def routes(page: Page) -> APIRouter:
     def moving(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
         if is_in_space(data):
-            raise InputError(name, "moves in space", cure="Open simulation.html of the answer.")
+            raise InputError(name, "moves in space", cure="The page of its cage has its data.")
         return JSONResponse(motion(data))
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)

@@ -24,6 +24,7 @@ from separatrix.app.jobs import Jobs
 from separatrix.app.page import Page
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.figures.space_page import VIEW
 from separatrix.study_file import read_study
 
 HOST = "127.0.0.1"
@@ -70,6 +71,7 @@ def application(root: Path) -> FastAPI:
     def plotly() -> FileResponse:
         return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
 
+    app.mount("/static/space", StaticFiles(directory=VIEW))
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
 
