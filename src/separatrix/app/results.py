@@ -34,6 +34,9 @@ PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot]]] = {
 }
 """Verb -> its figures to hover over."""
 
+READ = (*PLOTS, "simulate")
+"""Verbs whose datasets the page reads."""
+
 FIGURES_OF = {
     "stability": ("stability-curve",),
     "rank": ("rank-", "stability-curve"),
