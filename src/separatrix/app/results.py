@@ -17,6 +17,8 @@ from separatrix.app.motion import motion
 from separatrix.app.page import Page, form_of
 from separatrix.app.plotly import spec
 from separatrix.errors import InputError
+from separatrix.figures.envelope import has_envelope
+from separatrix.figures.envelope_hover import envelope_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_page import view as space_view
@@ -26,13 +28,14 @@ from separatrix.units import format_number, printable, shown
 
 Form = Annotated[dict[str, str], Depends(form_of)]
 
-PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot]]] = {
+PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "traction": {"curves": traction_plot},
     "stability": {"curve": stability_plot},
     "rank": {"curve": stability_plot, "candidates": candidates_plot},
     "map": {"map": map_plot},
+    "sweep": {"envelope": envelope_plots},
 }
-"""Verb -> its figures to hover over."""
+"""Verb -> its figures to hover over, each one plot or several panels."""
 
 READ = (*PLOTS, "simulate")
 """Verbs whose datasets the page reads."""
@@ -41,7 +44,7 @@ FIGURES_OF = {
     "stability": ("stability-curve",),
     "rank": ("rank-", "stability-curve"),
     "map": ("stability-map",),
-    "sweep": ("stability-map", "sweep-"),
+    "sweep": ("stability-map", "sweep-", "envelope"),
     "simulate": ("simulation",),
 }
 """Verb -> how the names of its figures begin, if not as the verb."""
@@ -70,7 +73,7 @@ def routes(page: Page) -> APIRouter:
             verb=verb,
             found=found,
             text=_text(place / f"{verb}.txt"),
-            plots=[*PLOTS.get(verb, {})],
+            plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
             pictures=_files(place, verb, SHOWN),
             files=_files(place, verb, ANSWER_SUFFIXES),
             folder=page.folder.name(place),
@@ -87,7 +90,8 @@ def routes(page: Page) -> APIRouter:
             raise InputError(f"{name}: {verb}", "has no such figure")
         if environment is not None and "environment" in data.dims and figure == "curve":
             data = data.isel(environment=min(max(environment, 0), data.sizes["environment"] - 1))
-        return JSONResponse(spec(draw(data)))
+        found = draw(data)
+        return JSONResponse(spec(*found) if isinstance(found, tuple) else spec(found))
 
     @router.get("/file/{name:path}")
     def file(name: str) -> Response:
@@ -140,6 +144,13 @@ def routes(page: Page) -> APIRouter:
         return page.html("jobs.html", jobs=page.jobs.all())
 
     return router
+
+
+def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
+    """Return the names of the figures to hover over; a sweep may have no envelope."""
+    if verb == "sweep" and (data is None or not has_envelope(data)):
+        return []
+    return [*PLOTS.get(verb, {})]
 
 
 def _text(path: Path) -> str:
