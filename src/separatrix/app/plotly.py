@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,6 +14,9 @@ Spec = dict[str, Any]
 GRID = "rgba(128,128,128,0.25)"
 COLOURS = [[0.0, "#0072B2"], [0.5, "#f0f0f0"], [1.0, "#D55E00"]]
 """Of the share of runs that whirl: the palette of the printed figures."""
+
+LINE = 80
+"""Letters of a line of the words under the pointer."""
 
 GAP = 0.15
 """Share of its height that is left free below a panel."""
@@ -65,7 +69,7 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
     """Yield the traces of a series; intervals lie along x where places are names."""
     base: Spec = {"name": _plain(one.name), "x": one.x, "y": one.y}
     base |= (
-        {"text": [_plain(text) for text in one.text], "hoverinfo": "text"}
+        {"text": ["<br>".join(textwrap.wrap(_plain(text), LINE)) for text in one.text], "hoverinfo": "text"}
         if one.text
         else {"hoverinfo": "name"}
     )

@@ -28,9 +28,7 @@ def envelope_plots(data: xr.Dataset) -> tuple[Plot, ...]:
         at, words = found
         title = words if at is None else f"Worst case: {words}"
         if at is not None:
-            drawn[0][1].append(
-                Series(name="worst case", kind="upright", x=(at,), y=(None,), colour=VERMILION)
-            )
+            drawn[0][1].append(Series(name="", kind="upright", x=(at,), y=(None,), colour=VERMILION))
     only = str(data["parameter"].values[0])
     return tuple(
         Plot(
