@@ -22,6 +22,7 @@ from separatrix.figures.envelope_hover import envelope_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_page import view as space_view
+from separatrix.figures.style import study_of
 from separatrix.limits.map_parameters import KICK, RESTITUTION
 from separatrix.questions import verb_named
 from separatrix.units import format_number, printable, shown
@@ -135,7 +136,7 @@ def routes(page: Page) -> APIRouter:
         values = {str(data[f"{axis}_parameter"].values): _nearest(data, axis, sent) for axis in "xy"}
         folder = "_".join(f"{key.rpartition('.')[2]}-{format_number(v, 4)}" for key, v in values.items())
         place = page.folder.answers(name) / POINT / printable(folder, 100).replace("/", "-")
-        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"]))}
+        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"])), **_models(data)}
         if RESTITUTION in values:
             question["restitution_factor"] = values.pop(RESTITUTION)
         page.jobs.ask(
@@ -178,6 +179,12 @@ def _run(page: Page, name: str, point: str) -> xr.Dataset:
     if data is None:
         raise InputError(f"{name}: simulate", "has no answer yet", cure="Run the verb.")
     return data
+
+
+def _models(data: xr.Dataset) -> dict[str, str]:
+    """Return the models of motion and ball that a map was made with: its points are simulated with them."""
+    cage = study_of(data).get("cage", {})
+    return {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
 
 
 def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
