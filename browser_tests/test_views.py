@@ -22,6 +22,7 @@ def views(folder, server, browser) -> list[str]:
         "uncertain": 'extends = "small.toml"\ntitle = "<b>film</b>"\n[film]\nthickness = "0.5 um +- 20 %"\n',
         "refused": 'extends = "small.toml"\n[film]\nthickness = "0.5 kg"\n',
         "bare": "[bearing]\n",
+        "tilting": 'extends = "small.toml"\n[cage]\nmotion = "space"\n',
         "other": 'extends = "small.toml"\n[film]\nthickness = "1 um"\n',
     }
     for name, text in studies.items():
@@ -31,6 +32,8 @@ def views(folder, server, browser) -> list[str]:
     page.goto(server.link)
     page.goto(f"{server.address}/study/small.toml")
     run(page, "rank")
+    run(page, "simulate")
+    page.goto(f"{server.address}/study/tilting.toml")
     run(page, "simulate")
     page.goto(f"{server.address}/study/other.toml")
     run(page, "stability")
@@ -46,7 +49,7 @@ def views(folder, server, browser) -> list[str]:
         *(f"{one}/small.toml" for one in own),
         *(f"study/{one}.toml" for one in studies),
     ]
-    return [*views, "explore/bare.toml", "study/none.toml"]
+    return [*views, "cage/tilting.toml", "explore/bare.toml", "study/none.toml"]
 
 
 @pytest.mark.parametrize("size", SIZES)
