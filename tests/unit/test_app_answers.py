@@ -175,7 +175,11 @@ def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
     assert '<option value="duty.csv">' in page.get("/study/small.toml").text
     page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "margins": "on"})
     until(page, lambda jobs: jobs[0].startswith("finished"))
-    data = load(root / "small" / "sweep.nc")
+    path, end = root / "small" / "sweep.nc", time.monotonic() + 20
+    while path not in page.app.state.page._read:  # read as the job has ended
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    data = load(path)
     assert data["time_share"].values == pytest.approx([0.25, 0.75])
     assert np.isfinite(data["margin"].values).all()
     assert 'data-source="/plot/sweep/envelope/small.toml"' in page.get("/answer/sweep/small.toml").text
