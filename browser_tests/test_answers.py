@@ -47,6 +47,29 @@ def test_figures_show_numbers_under_the_pointer(view, server, ranked):
         assert any(sign.isdigit() for sign in figure.locator(".hoverlayer").text_content())
 
 
+def test_a_duty_cycle_is_run_and_its_envelope_pointed_at(view, server, ranked, folder):
+    """The table is picked from those beside the study; a case of each panel shows its numbers."""
+    rows = ("operation.inner_speed,time_share", "9000 rpm,1 h", "12000 rpm,2 h", "15000 rpm,1 h")
+    (folder / "duty.csv").write_text("\n".join(rows), encoding="utf-8")
+    page = view()
+    page.goto(f"{server.address}/study/small.toml")
+    page.get_by_text("More computations").click()
+    card = page.locator(".verb", has=page.get_by_role("heading", name="sweep", exact=True))
+    card.get_by_text("Options").click()
+    card.get_by_label("cases").select_option("duty.csv")
+    card.get_by_label("margins").check()
+    card.get_by_label("verdicts").check()
+    run(page, "sweep")
+    page.get_by_role("link", name="Show the answer").first.click()
+    figure = page.locator(".plot.tall .canvas")
+    figure.locator(".points path.point").first.wait_for(state="attached")
+    assert "lowest margin" in figure.locator(".gtitle").text_content()
+    figure.locator(".scatterlayer .points path.point").first.hover(force=True)
+    expect(figure.locator(".hoverlayer")).to_contain_text("P(stable)")
+    figure.locator(".barlayer path").nth(1).hover(force=True)
+    expect(figure.locator(".hoverlayer")).to_contain_text("inner speed 12000 rpm: 50 % of the time")
+
+
 @pytest.mark.parametrize("axes", ["default", "keys"])
 def test_a_click_in_a_map_simulates_that_point(view, server, ranked, folder, axes):
     """The run has the values of the cell: the restitution factor and friction, or two keys of the study."""
@@ -150,6 +173,7 @@ def test_pages_answer_within_200_ms(view, server, ranked):
     assert time.monotonic() - begin < 1.5
     places = ["/", "/study/small.toml", "/answer/rank/small.toml", "/cage/small.toml", "/explore/small.toml"]
     places += ["/plot/rank/candidates/small.toml", "/plot/map/map/small.toml", "/motion/small.toml", "/logs"]
+
     slow = {}
     for place in places:
         times = []

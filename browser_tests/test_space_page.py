@@ -1,4 +1,4 @@
-"""The page of a run in space, simulation.html: opened from its file, without a server."""
+"""A run in space: its page simulation.html, opened without a server, and the local page play it alike."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import subprocess
 import sys
 
 import pytest
-from conftest import STUDY
+from conftest import STUDY, run
+from playwright.sync_api import expect
 
 
 @pytest.fixture(scope="module")
@@ -19,25 +20,67 @@ def written(tmp_path_factory):
     return place / "out" / "simulation.html"
 
 
-def test_it_plays_by_buttons_keys_and_wheel(written, browser):
-    """Without an error: time goes on, the views change, and the scene is drawn."""
+def plays(page) -> None:
+    """Play, turn, scrub, enlarge and zoom by buttons, keys and wheel: the picture follows each."""
+    drawn, seen = "document.getElementById('scene').toDataURL()", []
+
+    def changed() -> None:
+        seen.append(page.evaluate(drawn))
+        assert len(seen) < 2 or seen[-1] != seen[-2]
+
+    page.wait_for_function("document.getElementById('grown').textContent")
+    changed()
+    page.click("#play")
+    expect(page.locator("#play")).to_have_text("Pause")
+    page.wait_for_function("Number(document.getElementById('time').value) > 0")
+    page.click("#play")
+    expect(page.locator("#play")).to_have_text("Play")
+    changed()
+    for key in ("ArrowLeft", "ArrowUp", "+", "-", ".", "0", ","):
+        page.focus("#scene")
+        page.keyboard.press(key)
+        changed()
+    page.focus("#time")
+    page.keyboard.press("End")
+    assert "ms" in page.get_attribute("#time", "aria-valuetext")
+    changed()
+    page.focus("#grow")
+    page.keyboard.press("Home")
+    changed()
+    page.check("#fixed")
+    page.hover("#scene")
+    page.mouse.wheel(0, 200)
+    page.mouse.down()
+    page.mouse.move(400, 300)
+    page.mouse.up()
+    changed()
+    page.focus("#scene")
+    page.keyboard.press(" ")
+    expect(page.locator("#play")).to_have_text("Pause")
+    assert page.locator("#readings tr").count() > 3
+
+
+def test_its_own_page_plays_without_a_server(written, browser):
+    """From the file, and without an error."""
     page, faults = browser.new_page(), []
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
     page.goto(written.as_uri())
-    drawn = "document.getElementById('scene').toDataURL()"
-    before = page.evaluate(drawn)
-    page.click("#play")
-    page.wait_for_function("Number(document.getElementById('time').value) > 0")
-    page.click("#play")
-    assert page.evaluate(drawn) != before
-    page.focus("#scene")
-    for key in ("ArrowLeft", "ArrowUp", "+", "-", ".", ",", " ", "0"):
-        page.keyboard.press(key)
-    page.check("#fixed")
-    page.hover("#scene")
-    page.mouse.wheel(0, 200)
+    plays(page)
     assert page.inner_text("#title") == "A small ensemble"
-    assert page.locator("#numbers tr").count() > 3
     assert faults == []
     page.close()
+
+
+def test_the_local_page_plays_it(view, server):
+    """From the answer of a run whose motion was chosen in the form; no inline script is needed."""
+    page = view()
+    page.goto(f"{server.address}/study/small.toml")
+    card = page.locator(".verb", has=page.get_by_role("heading", name="simulate", exact=True))
+    card.get_by_text("Options").click()
+    card.get_by_label("motion").select_option("space")
+    run(page, "simulate")
+    page.get_by_role("link", name="Show the answer").click()
+    page.get_by_role("link", name="Watch the cage move").click()
+    plays(page)
+    expect(page.locator("h1")).to_have_text("The moving cage: A small ensemble")

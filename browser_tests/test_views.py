@@ -24,6 +24,7 @@ def views(folder, server, browser) -> list[str]:
         "bare": "[bearing]\n",
         "own": 'extends = "cryogenic-turbopump"\n[[ranking.candidates]]\nname = "<b>mine</b>"\n'
         'material = { elastic_modulus = "5 GPa" }\nfriction = { air = 7, "lox, 440C" = 0.1 }\n',
+        "tilting": 'extends = "small.toml"\n[cage]\nmotion = "space"\n',
         "other": 'extends = "small.toml"\n[film]\nthickness = "1 um"\n',
     }
     for name, text in studies.items():
@@ -33,6 +34,8 @@ def views(folder, server, browser) -> list[str]:
     page.goto(server.link)
     page.goto(f"{server.address}/study/small.toml")
     run(page, "rank")
+    run(page, "simulate")
+    page.goto(f"{server.address}/study/tilting.toml")
     run(page, "simulate")
     page.goto(f"{server.address}/study/other.toml")
     run(page, "stability")
@@ -48,7 +51,7 @@ def views(folder, server, browser) -> list[str]:
         *(f"{one}/small.toml" for one in own),
         *(f"study/{one}.toml" for one in studies),
     ]
-    return [*views, "explore/bare.toml", "study/none.toml"]
+    return [*views, "cage/tilting.toml", "explore/bare.toml", "study/none.toml"]
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -1,9 +1,12 @@
 """What the page runs and shows: jobs with progress, answers, figures, points of a map, sliders, logs."""
 
+import itertools
 import json
 import os
+import re
 import signal
 import time
+from threading import Event, Thread
 
 import numpy as np
 import pytest
@@ -11,8 +14,12 @@ from fastapi.testclient import TestClient
 from raw_logs import anton_paar
 from test_cli_answers import SMALL
 
-from separatrix.app.server import application
-from separatrix.chain.solution import solve
+from separatrix.app.files import Folder
+from separatrix.app.jobs import Jobs
+from separatrix.app.page import Page
+from separatrix.app.server import application, made_ready
+from separatrix.chain.solution import Solution, solve
+from separatrix.figures.space import is_in_space
 from separatrix.limits.map_parameters import varied
 from separatrix.present import load
 from separatrix.study_file import read_study
@@ -140,6 +147,94 @@ def test_a_slider_out_of_range_is_refused_in_words(page):
     """As a study file would be."""
     found = page.get("/explored/small.toml?film.race_friction=7")
     assert (found.status_code, "race_friction" in found.text) == (422, True)
+
+
+def test_a_point_of_a_map_in_space_is_simulated_and_shown_in_space(page, root):
+    """The click takes the motion of the map, not that of the study; the page has the run and its script."""
+    axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2", "motion": "space"}
+    (root / "tilting.toml").write_text(SMALL)
+    page.post("/run/tilting.toml", data={"verb": "map", "runs": "1", **axes})
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    page.post("/point/tilting.toml", data={"x": 0.3, "y": 0.05})
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    (place,) = (root / "tilting" / "points").iterdir()
+    assert is_in_space(load(place / "simulate.nc"))
+    text = page.get(f"/cage/tilting.toml?point={place.name}").text
+    (run,) = re.findall('id="run">(.*?)</script>', text)
+    assert len(json.loads(run)["time"]) > 2
+    for source in re.findall('(?:src|href)="(/static/space/[^"]+)"', text):
+        assert page.get(source).status_code == 200
+    assert not re.search(r"<script(?! type=.application/json)(?![^>]* src=)", text)  # none runs inline
+    assert page.get(f"/motion/tilting.toml?point={place.name}").status_code == 422
+
+
+def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
+    """A table of the pick-list, with margins: shares of the time, and the envelope to point at."""
+    rows = ("operation.inner_speed,time_share", "9000 rpm,1 h", "15000 rpm,3 h")
+    (root / "duty.csv").write_text("\n".join(rows))
+    assert '<option value="duty.csv">' in page.get("/study/small.toml").text
+    page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "margins": "on"})
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    path, end = root / "small" / "sweep.nc", time.monotonic() + 20
+    while path not in page.app.state.page._read:  # read as the job has ended
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    data = load(path)
+    assert data["time_share"].values == pytest.approx([0.25, 0.75])
+    assert np.isfinite(data["margin"].values).all()
+    assert 'data-source="/plot/sweep/envelope/small.toml"' in page.get("/answer/sweep/small.toml").text
+    found = page.get("/plot/sweep/envelope/small.toml").json()
+    places = [found["layout"][name]["domain"] for name in ("yaxis", "yaxis2", "yaxis3")]
+    assert places[0][1] == 1.0
+    assert places[-1][0] == 0.0
+    assert all(above[0] > below[1] for above, below in itertools.pairwise(places))
+    assert {trace["yaxis"] for trace in found["data"]} == {"y", "y2", "y3"}
+    page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "vary": "cage.mass=20..30g:2"})
+    end = time.monotonic() + PATIENCE
+    while not (shown := jobs(page)[0]).startswith("refused"):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    assert "exclude each other" in shown
+    page.post("/jobs/forget")
+
+
+def test_the_newest_answers_are_read_before_they_are_looked_at(page, monkeypatch):
+    """At the start of the server, and at the end of a job; what sliders need is computed then, too."""
+    again = Page(folder=page.app.state.page.folder, jobs=page.app.state.page.jobs)
+    solved = []
+    monkeypatch.setattr(Solution, "friction", property(lambda _: solved.append(True)))
+    made_ready(again)
+    assert solved == [True]
+    monkeypatch.setattr("separatrix.present.load", refuse)
+    for verb in ("rank", "map", "sweep"):
+        assert again.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
+        assert page.app.state.page.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
+
+
+def refuse(path):
+    """Stand for a reader that must not be asked."""
+    raise AssertionError(path)
+
+
+def test_reading_one_file_delays_no_other(root):
+    """A dataset that takes a second to read leaves titles and tables to other requests."""
+    page, begun, may_end = Page(folder=Folder(root=root), jobs=Jobs(root)), Event(), Event()
+
+    def slowly():
+        begun.set()
+        assert may_end.wait(20)
+        return "read"
+
+    slow = Thread(target=page._known, args=(root / "long.toml", slowly))
+    slow.start()
+    assert begun.wait(20)
+    other = Thread(target=page.title, args=("small.toml",))
+    other.start()
+    other.join(5)
+    assert not other.is_alive()
+    may_end.set()
+    slow.join(20)
+    assert page._known(root / "long.toml", refuse) == "read"
 
 
 def test_a_job_is_cancelled_and_resumed(page, root):

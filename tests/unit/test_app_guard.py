@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -68,6 +69,11 @@ def folder(tmp_path_factory):
     (root / "tested.toml").write_text(SMALL.partition("[ranking]")[0] + TESTED)
     (root / "tests.toml").write_text(TESTS)
     (root / "variant.toml").write_text('extends = "own.toml"\n')
+    (root / "sub").mkdir()
+    tables = (outside / "secret.csv", root / ".hidden.csv", root / "cases.csv", root / "sub" / "a.csv")
+    for path in tables:
+        path.write_text("film.thickness\n1 um\n")
+    (root / "leads-out.csv").symlink_to(outside / "secret.csv")
     (root / "link.toml").symlink_to(outside / "secret.toml")
     (root / "linked").symlink_to(outside)
     return root
@@ -157,6 +163,26 @@ def test_a_study_cannot_name_a_file_outside(client):
     status, _, text = client.ask("/edit/%3Cb%3Ebold.toml", "POST", body)
     assert (status, "is outside the folder" in text, "# secret" in text) == (200, True, False)
     client.ask("/discard/%3Cb%3Ebold.toml", "POST")
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "../secret.csv",
+        "linked/secret.csv",
+        "leads-out.csv",
+        ".hidden.csv",
+        "/etc/passwd",
+        "hostile.toml",
+        "sub/a.csv",
+    ],
+)
+def test_cases_are_read_from_tables_beside_the_study_only(client, folder, table):
+    """Neither dots, nor links, nor absolute names, nor other folders or kinds; none of them is listed."""
+    text = client.ask("/study/%3Cb%3Ebold.toml")[2]
+    assert re.findall('<option value="([^"]+csv)"', text) == ["cases.csv"]
+    status, _, text = client.ask("/run/%3Cb%3Ebold.toml", "POST", f"verb=sweep&cases={quote(table, safe='')}")
+    assert (status, "must be a CSV file beside the study" in text) == (422, True)
 
 
 def test_scripts_in_texts_are_text(client, folder):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 
@@ -16,7 +17,7 @@ from separatrix.cage import run_ensemble
 from separatrix.cli import main
 from separatrix.figures.animation import animate
 from separatrix.figures.space import in_plane, is_in_space, land_forces
-from separatrix.figures.space_page import page, write_page
+from separatrix.figures.space_page import page, view, write_page
 from separatrix.figures.space_scene import space_scene
 
 TITLE = 'A cage in space & <b>"two lands"</b> </script> $1$'
@@ -197,8 +198,19 @@ def test_the_page_needs_no_network_and_its_words_are_escaped(data):
     assert text.count("</script>") == 2
     assert "<b>" not in text
     (found,) = re.findall(r'id="run">(.*?)</script>', text, re.DOTALL)
-    assert json.loads(found)["title"] == TITLE
+    assert f'<h1 id="title">{html.escape(TITLE)}</h1>' in text
+    assert len(json.loads(found)["time"]) > 2
     assert "NaN" not in found
+
+
+def test_a_long_title_or_none_leaves_the_operating_point_to_the_view(data):
+    """The words under the title are those of the run, however many lines the title would take."""
+    words = re.search('class="about">(.*?)</p>', view(data), re.DOTALL)[1]
+    assert "inner ring" in words
+    for title in ("", "A long title of a study. " * 9):
+        assert (
+            re.search('class="about">(.*?)</p>', view(data.assign_attrs(title=title)), re.DOTALL)[1] == words
+        )
 
 
 def test_runs_in_space_are_compared(folder, tmp_path, capsys):

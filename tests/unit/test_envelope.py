@@ -16,9 +16,11 @@ from separatrix.errors import InputError
 from separatrix.explore.envelope import duty, orders, time_shares, worst_case
 from separatrix.explore.sweep import sweep
 from separatrix.figures import draw
+from separatrix.figures.envelope_hover import envelope_plots
 from separatrix.limits import own_threshold, restitution_threshold, threshold_points
 from separatrix.limits.curve import COARSE
 from separatrix.present import dataset, load
+from separatrix.reporting.pictures import picture
 from separatrix.runner import Runner
 from separatrix.study import ClearanceState
 from separatrix.study_file import read_study
@@ -75,6 +77,32 @@ def test_a_duty_cycle_names_its_worst_case_and_its_time(answered):
     figure = dict(draw("sweep", data))["envelope"]
     assert "case 2: lowest margin" in figure.axes[0].get_title(loc="left")
     assert [axes.get_ylabel() for axes in figure.axes][1:] == ["P(stable) [-]", "frequency [Hz]", "time [%]"]
+
+
+def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
+    """Panels, axes and values are those of the figure; a case has its number, its values and its margin."""
+    data = load(answered / "sweep.nc")
+    plots, figure = envelope_plots(data), dict(draw("sweep", data))["envelope"]
+    assert [one.y_label.replace("\N{GREEK SMALL LETTER ETA}", r"$\eta$") for one in plots] == [
+        axes.get_ylabel() for axes in figure.axes
+    ]
+    threshold = next(one for one in plots[0].series if one.name.startswith("threshold"))
+    assert threshold.y == pytest.approx(data["restitution_threshold"].values[1:])
+    assert threshold.text[1].startswith("case 2, inner speed 6000 rpm, ball cage friction 1.5: threshold")
+    assert threshold.text[1].endswith(f"margin {float(data['margin'][2]):+.3f}")
+    assert plots[0].title.startswith("Worst case: case 2: lowest margin")
+    assert [one.x for one in plots[0].series if one.kind == "upright"] == [(2.0,)]
+    assert plots[3].series[0].y == pytest.approx([25.0, 50.0, 12.5, 12.5])
+
+
+def test_the_report_marks_the_cases_in_its_picture(answered):
+    """A mark lies where the picture has its point: higher values higher, and all inside."""
+    (found,) = picture("sweep", load(answered / "sweep.nc"), "envelope", "", "")
+    marks = [one for one in found.hover if "% of the time" in one.text]
+    assert [one.text.partition(",")[0] for one in marks] == [f"case {number}" for number in range(4)]
+    assert marks[1].y < marks[0].y < marks[2].y == marks[3].y
+    assert all(0 < one.x < found.width and 0 < one.y < found.height for one in found.hover)
+    assert len({one.text for one in found.hover}) > 15
 
 
 def test_start_up_from_zero_is_a_row_with_its_reason(answered):

@@ -89,7 +89,7 @@ def routes(page: Page) -> APIRouter:
             raise InputError(name, f"is not run: {faults[0].message}")
         draft.save(path)
         place = page.folder.answers(name)
-        page.jobs.ask(verb.name, path, place, name=name, question=question_of(verb, sent))
+        page.jobs.ask(verb.name, path, place, name=name, question=question_of(page, name, verb, sent))
         return page.html("jobs.html", jobs=page.jobs.all())
 
     @router.get("/jobs")
@@ -200,19 +200,22 @@ def running(page: Page, name: str, found: Study | None) -> dict[str, Any]:
         "answers": page.answered(name),
         "jobs": page.jobs.all(),
         "motions": [one.value for one in MotionModel],
+        "tables": page.folder.tables(name),
         "balls": [one.value for one in BallModel],
     }
 
 
-def question_of(verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
-    """Return the options of a verb as a form gives them; empty ones have their defaults."""
+def question_of(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
+    """Return the options of a verb of a study as a form gives them; empty ones have their defaults."""
     question: dict[str, Any] = {}
     for name in (*verb.question, *(("motion", "ball") if verb.moves_a_cage else ())):
         text = sent.get(name, "").strip()
-        if not text or name in ("animate", "cases"):
+        if not text or name == "animate":
             continue
         if name == "vary":
             question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
+        elif name == "cases":
+            question[name] = page.folder.table(study, text)
         elif name in ("adaptive", "verdicts", "margins"):
             question[name] = True
         elif name in TYPED:

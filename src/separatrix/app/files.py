@@ -17,6 +17,7 @@ ANSWER_SUFFIXES = (
     *(".json", ".txt", ".nc", ".png", ".svg", ".pdf", ".html", ".csv", ".xlsx", ".gif", ".mp4"),
     ".toml",
 )
+TABLE_SUFFIX = ".csv"
 MOST_STUDIES, DEEPEST = 500, 3
 _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
@@ -79,6 +80,29 @@ class Folder:
         """Return the folder of the answers to a study, that of the command line; it need not exist."""
         path = self.study(name)
         return path.parent / printable(path.stem, 100)
+
+    def tables(self, name: str) -> list[str]:
+        """Return the names of the CSV files beside a study: what `sweep` may take its cases from."""
+        return [
+            path.name
+            for path in sorted(self.study(name).parent.iterdir())
+            if path.suffix.lower() == TABLE_SUFFIX
+            and not path.name.startswith(".")
+            and not path.is_symlink()
+            and path.is_file()
+        ][:MOST_STUDIES]
+
+    def table(self, name: str, table: str) -> Path:
+        """Return the path of a CSV file beside a study.
+
+        Raises
+        ------
+        InputError
+            It is not one of `tables`.
+        """
+        if table not in self.tables(name):
+            raise InputError("--cases", "must be a CSV file beside the study", got=shown(table))
+        return self.study(name).parent / table
 
     def name(self, path: Path) -> str:
         """Return the name of a file in the folder."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -68,10 +68,14 @@ class _State:
 
 
 class Jobs:
-    """The queue and its process, which is started with the first job and again if it was killed."""
+    """The queue and its process, which is started with the first job and again if it was killed.
+
+    `after` is called with each task that has ended, in a thread of its own.
+    """
 
     def __init__(self, root: Path) -> None:
         self.root = root
+        self.after: Callable[[Task], None] = lambda _: None
         self._lock, self._state = threading.Lock(), _State()
 
     def ask(
@@ -199,6 +203,8 @@ class Jobs:
         new = {name: value for name in known if (value := getattr(report, name)) is not None}
         if report.state is not None and report.state not in ACTIVE:
             new["ended"] = time.monotonic()
+            if (job := self._state.jobs.get(report.number)) is not None:
+                threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
         self._change(report.number, **new)
         self._feed()
 

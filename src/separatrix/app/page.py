@@ -6,7 +6,7 @@ import json
 import threading
 import tomllib
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,12 +46,21 @@ TEMPLATES.filters["digits"] = lambda value, count=2: "-" if value is None else f
 
 
 @dataclass(slots=True)
+class _Read:
+    """What a file held when it was read; each file has its own lock, so that a long one delays no other."""
+
+    stamp: int | None = None
+    content: Any = None
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+
+@dataclass(slots=True)
 class Page:
     """The folder that is shown, and what works for it."""
 
     folder: Folder
     jobs: Jobs
-    _read: OrderedDict[Path, tuple[int, Any]] = field(default_factory=OrderedDict)
+    _read: OrderedDict[Path, _Read] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def html(self, template: str, *, status: int = 200, **values: Any) -> HTMLResponse:
@@ -97,17 +106,24 @@ class Page:
         except OSError:
             return None
         with self._lock:
-            known = self._read.get(path)
-            if known is None or known[0] != stamp:
-                try:
-                    known = stamp, load()
-                except (ValueError, InputError):
-                    known = stamp, None
-                self._read[path] = known
-                if len(self._read) > MOST_READ:
-                    self._read.popitem(last=False)
+            known = self._read.setdefault(path, _Read())
             self._read.move_to_end(path)
-            return known[1]
+            if len(self._read) > MOST_READ:
+                self._read.popitem(last=False)
+        with known.lock:
+            if known.stamp != stamp:
+                try:
+                    known.content = load()
+                except (ValueError, InputError):
+                    known.content = None
+                known.stamp = stamp
+            return known.content
+
+    def newest(self, verbs: Collection[str]) -> list[Path]:
+        """Return the saved datasets of these verbs in the folder, the newest first."""
+        names = [(self.folder.answers(name), verb) for name in self.folder.studies() for verb in verbs]
+        found = [path for place, verb in names if (path := place / f"{verb}.nc").is_file()]
+        return sorted(found, key=lambda path: -path.stat().st_mtime_ns)
 
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,27 +15,43 @@ GRID = "rgba(128,128,128,0.25)"
 COLOURS = [[0.0, "#0072B2"], [0.5, "#f0f0f0"], [1.0, "#D55E00"]]
 """Of the share of runs that whirl: the palette of the printed figures."""
 
+LINE = 80
+"""Letters of a line of the words under the pointer."""
 
-def spec(plot: Plot) -> Spec:
-    """Return the figure of a plot; colours of text and paper are set by the page, light or dark."""
+GAP = 0.15
+"""Share of its height that is left free below a panel."""
+
+
+def spec(*plots: Plot) -> Spec:
+    """Return the figure of a plot, or of several one below the other over the x axis of the first.
+
+    Colours of text and paper are set by the page, light or dark.
+    """
+    first, count = plots[0], len(plots)
     layout: Spec = {
-        "title": {"text": _plain(plot.title), "font": {"size": 15}, "x": 0.01, "xanchor": "left"},
-        "xaxis": _axis(plot.x_label, is_log=plot.x_log),
-        "yaxis": _axis(plot.y_label, is_log=plot.y_log),
+        "title": {"text": _plain(first.title), "font": {"size": 15}, "x": 0.01, "xanchor": "left"},
+        "xaxis": _axis(first.x_label, is_log=first.x_log) | {"anchor": f"y{count}" if count > 1 else "y"},
         "hovermode": "closest",
         "margin": {"l": 70, "r": 20, "t": 50, "b": 55},
         "legend": {"orientation": "h", "y": -0.22, "font": {"size": 11}},
         "shapes": [],
     }
-    if plot.y_names:
-        places = [*range(len(plot.y_names))]
-        names = [_plain(name) for name in plot.y_names]
-        layout["yaxis"] |= {"tickvals": places, "ticktext": names, "automargin": True}
     data: list[Spec] = []
-    for one in plot.series:
-        if one.kind == "upright":
-            layout["shapes"].append(_upright(one))
-        data += _traces(one, across=bool(plot.y_names))
+    for place, plot in enumerate(plots, start=1):
+        number = str(place) if place > 1 else ""  # Plotly counts so
+        layout[f"yaxis{number}"] = axis = _axis(plot.y_label, is_log=plot.y_log)
+        if count > 1:
+            top, foot = 1.0 - (place - 1) / count, 1.0 - (place - GAP) / count
+            axis["domain"] = [foot if place < count else 0.0, top]
+            layout[f"legend{number}"] = {"x": 1.01, "y": top, "yanchor": "top", "font": {"size": 11}}
+        if plot.y_names:
+            names = [_plain(name) for name in plot.y_names]
+            axis |= {"tickvals": [*range(len(names))], "ticktext": names, "automargin": True}
+        for one in plot.series:
+            if one.kind == "upright":
+                layout["shapes"].append(_upright(one))
+            own = {"yaxis": f"y{number}", "legend": f"legend{number}"}
+            data += [trace | own for trace in _traces(one, across=bool(plot.y_names))]
     return {"data": data, "layout": layout}
 
 
@@ -52,7 +69,7 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
     """Yield the traces of a series; intervals lie along x where places are names."""
     base: Spec = {"name": _plain(one.name), "x": one.x, "y": one.y}
     base |= (
-        {"text": [_plain(text) for text in one.text], "hoverinfo": "text"}
+        {"text": ["<br>".join(textwrap.wrap(_plain(text), LINE)) for text in one.text], "hoverinfo": "text"}
         if one.text
         else {"hoverinfo": "name"}
     )
@@ -71,6 +88,8 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
         yield edge | {"y": one.high, "fill": "tonexty", "name": base["name"], "fillcolor": _faint(one.colour)}
     elif one.kind == "line":
         yield base | {"mode": "lines", "line": {"color": one.colour, "width": 2}} | _interval(one, across)
+    elif one.kind == "bars":
+        yield base | {"type": "bar", "textposition": "none", "marker": {"color": one.colour}}
     elif one.kind == "points":
         look = {"color": one.colour, "size": 10, "line": {"width": 1, "color": "white"}}
         yield base | {"mode": "markers", "marker": look} | _interval(one, across)
@@ -99,7 +118,13 @@ def _less(a: float | None, b: float | None) -> float | None:
 
 def _upright(one: Series) -> Spec:
     line = {"color": one.colour, "width": 1.5, "dash": "dash"}
-    label = {"text": _plain(one.name), "textangle": -90, "font": {"size": 11}, "textposition": "end"}
+    label = {
+        "text": _plain(one.name),
+        "textangle": -90,
+        "font": {"size": 11},
+        "textposition": "end",
+        "yanchor": "top",
+    }
     at = {"x0": one.x[0], "x1": one.x[0], "y0": 0, "y1": 1, "yref": "paper"}
     return {"type": "line", "line": line, "label": label, **at}
 

@@ -10,33 +10,42 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Depends
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from markupsafe import Markup
 
 from separatrix.app.files import ANSWER_SUFFIXES
 from separatrix.app.motion import motion
 from separatrix.app.page import Page, form_of
 from separatrix.app.plotly import spec
 from separatrix.errors import InputError
+from separatrix.figures.envelope import has_envelope
+from separatrix.figures.envelope_hover import envelope_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
+from separatrix.figures.space_page import view as space_view
+from separatrix.figures.style import study_of
 from separatrix.limits.map_parameters import KICK, RESTITUTION
 from separatrix.questions import verb_named
 from separatrix.units import format_number, printable, shown
 
 Form = Annotated[dict[str, str], Depends(form_of)]
 
-PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot]]] = {
+PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "traction": {"curves": traction_plot},
     "stability": {"curve": stability_plot},
     "rank": {"curve": stability_plot, "candidates": candidates_plot},
     "map": {"map": map_plot},
+    "sweep": {"envelope": envelope_plots},
 }
-"""Verb -> its figures to hover over."""
+"""Verb -> its figures to hover over, each one plot or several panels."""
+
+READ = (*PLOTS, "simulate")
+"""Verbs whose datasets the page reads."""
 
 FIGURES_OF = {
     "stability": ("stability-curve",),
     "rank": ("rank-", "stability-curve"),
     "map": ("stability-map",),
-    "sweep": ("stability-map", "sweep-"),
+    "sweep": ("stability-map", "sweep-", "envelope"),
     "simulate": ("simulation",),
 }
 """Verb -> how the names of its figures begin, if not as the verb."""
@@ -65,7 +74,7 @@ def routes(page: Page) -> APIRouter:
             verb=verb,
             found=found,
             text=_text(place / f"{verb}.txt"),
-            plots=[*PLOTS.get(verb, {})],
+            plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
             pictures=_files(place, verb, SHOWN),
             files=_files(place, verb, ANSWER_SUFFIXES),
             folder=page.folder.name(place),
@@ -82,7 +91,8 @@ def routes(page: Page) -> APIRouter:
             raise InputError(f"{name}: {verb}", "has no such figure")
         if environment is not None and "environment" in data.dims and figure == "curve":
             data = data.isel(environment=min(max(environment, 0), data.sizes["environment"] - 1))
-        return JSONResponse(spec(draw(data)))
+        found = draw(data)
+        return JSONResponse(spec(*found) if isinstance(found, tuple) else spec(found))
 
     @router.get("/file/{name:path}")
     def file(name: str) -> Response:
@@ -97,6 +107,7 @@ def routes(page: Page) -> APIRouter:
     @router.get("/cage/{name:path}", response_class=HTMLResponse)
     def cage(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
+        view = Markup(space_view(data)) if is_in_space(data) else None  # noqa: S704 - its texts are escaped
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
         words = str(data.attrs.get("title", name))
         return page.html(
@@ -105,7 +116,7 @@ def routes(page: Page) -> APIRouter:
             point=point,
             title=words,
             found=found,
-            in_space=is_in_space(data),
+            view=view,
             answers=page.answered(name),
         )
 
@@ -113,7 +124,7 @@ def routes(page: Page) -> APIRouter:
     def moving(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
         if is_in_space(data):
-            raise InputError(name, "moves in space", cure="Open simulation.html of the answer.")
+            raise InputError(name, "moves in space", cure="The page of its cage has its data.")
         return JSONResponse(motion(data))
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)
@@ -125,7 +136,7 @@ def routes(page: Page) -> APIRouter:
         values = {str(data[f"{axis}_parameter"].values): _nearest(data, axis, sent) for axis in "xy"}
         folder = "_".join(f"{key.rpartition('.')[2]}-{format_number(v, 4)}" for key, v in values.items())
         place = page.folder.answers(name) / POINT / printable(folder, 100).replace("/", "-")
-        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"]))}
+        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"])), **_models(data)}
         if RESTITUTION in values:
             question["restitution_factor"] = values.pop(RESTITUTION)
         page.jobs.ask(
@@ -134,6 +145,13 @@ def routes(page: Page) -> APIRouter:
         return page.html("jobs.html", jobs=page.jobs.all())
 
     return router
+
+
+def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
+    """Return the names of the figures to hover over; a sweep may have no envelope."""
+    if verb == "sweep" and (data is None or not has_envelope(data)):
+        return []
+    return [*PLOTS.get(verb, {})]
 
 
 def _text(path: Path) -> str:
@@ -161,6 +179,12 @@ def _run(page: Page, name: str, point: str) -> xr.Dataset:
     if data is None:
         raise InputError(f"{name}: simulate", "has no answer yet", cure="Run the verb.")
     return data
+
+
+def _models(data: xr.Dataset) -> dict[str, str]:
+    """Return the models of motion and ball that a map was made with: its points are simulated with them."""
+    cage = study_of(data).get("cage", {})
+    return {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
 
 
 def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import secrets
 import socket
 import threading
@@ -21,15 +20,20 @@ from separatrix.app import editing, exploring, handing, logs, results
 from separatrix.app.files import Folder
 from separatrix.app.guard import Guard
 from separatrix.app.jobs import Jobs
-from separatrix.app.page import Page
+from separatrix.app.page import TEMPLATES, Page
+from separatrix.app.worker import Task
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.figures.space_page import VIEW
 from separatrix.study_file import read_study
 
 HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200
 IDLE = 10
 """Time after which an idle connection is closed [s]."""
+
+MOST_READY = 12
+"""Answers that are read before they are looked at; reading one takes up to a second."""
 
 STATIC = Path(__file__).with_name("static")
 A_DAY = {"cache-control": "max-age=86400"}
@@ -48,6 +52,12 @@ def plotly_file() -> Path:
 def application(root: Path) -> FastAPI:
     """Return the page of a folder, unguarded."""
     page, drawing = Page(folder=Folder(root=root), jobs=Jobs(root)), plotly_file()
+
+    def read(task: Task) -> None:
+        if task.verb in results.READ:
+            page.dataset(task.folder / f"{task.verb}.nc")
+
+    page.jobs.after = read
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
@@ -70,17 +80,23 @@ def application(root: Path) -> FastAPI:
     def plotly() -> FileResponse:
         return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
 
+    app.mount("/static/space", StaticFiles(directory=VIEW))
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
 
 
 def made_ready(page: Page) -> None:
-    """Load what solves studies and reads answers, before the first view that needs it."""
+    """Load what the first views need, while the page answers already.
+
+    These are the templates, the newest answers that have figures, and the kernels that the sliders use.
+    """
     warnings.simplefilter("ignore", ValidityWarning)  # shown in the page, where an answer has some
-    solve(read_study("cryogenic-turbopump"))
-    names = ((name, verb) for name in page.folder.studies() for verb in page.answered(name))
-    for name, verb in itertools.islice(names, 1):
-        page.dataset(page.folder.answers(name) / f"{verb}.nc")
+    for name in TEMPLATES.list_templates():
+        TEMPLATES.get_template(name)
+    for path in page.newest(results.READ)[:MOST_READY]:
+        page.dataset(path)
+    found = solve(read_study("cryogenic-turbopump"))
+    _ = found.restitution, found.friction  # computed when asked for
 
 
 def listening(port: int) -> socket.socket:

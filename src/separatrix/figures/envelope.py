@@ -58,28 +58,33 @@ Place = tuple[Array, bool]
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the pictures of `sweep`; one without a finished case has none."""
     yield from map.sweep_figures(data)
-    if "case" not in data.sizes or not np.isfinite(data["cage_speed"].values.astype(float)).any():
-        return
-    if data.sizes["parameter"] == 1 or _duty(data) is not None or data.sizes["case"] <= MOST_CASES:
+    if has_envelope(data):
         yield "envelope", envelope(data)
+
+
+def has_envelope(data: xr.Dataset) -> bool:
+    """Whether a sweep has an envelope to draw: a finished case, and not too many of several parameters."""
+    if "case" not in data.sizes or not np.isfinite(data["cage_speed"].values.astype(float)).any():
+        return False
+    return data.sizes["parameter"] == 1 or has_duty(data) or data.sizes["case"] <= MOST_CASES
 
 
 def envelope(data: xr.Dataset) -> Figure:
     """Draw restitution factor and threshold, P(stable), frequencies and time over the cases."""
     panels: list[tuple[float, Callable[[Axes, xr.Dataset, Place], None]]] = []
-    if _column(data, "restitution_factor") is not None:
+    if column(data, "restitution_factor") is not None:
         panels.append((1.5, _margin))
-    if _column(data, "probability_stable") is not None:
+    if column(data, "probability_stable") is not None:
         panels.append((1.1, _probability))
     panels.append((1.9, _frequencies))
-    if _duty(data) is not None:
+    if has_duty(data):
         panels.append((0.8, _time))
     heights = [height for height, _ in panels]
     ratios: Look = {"height_ratios": heights}
     figure, grid = canvas(
         PAGE, sum(heights) + 0.9, nrows=len(panels), sharex=True, squeeze=False, gridspec_kw=ratios
     )
-    axes, place = [row[0] for row in grid], _places(data)
+    axes, place = [row[0] for row in grid], places(data)
     for one, (_, draw) in zip(axes, panels, strict=True):
         draw(one, data, place)
         if one.get_legend_handles_labels()[0]:
@@ -90,17 +95,18 @@ def envelope(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _column(data: xr.Dataset, name: str) -> Array | None:
+def column(data: xr.Dataset, name: str) -> Array | None:
     """Return a number of each case, NaN where it is not known; None where it never is."""
     values = np.asarray(data[name].values, dtype=float)
     return values if np.isfinite(values).any() else None
 
 
-def _duty(data: xr.Dataset) -> Array | None:
-    return _column(data, "time_share")
+def has_duty(data: xr.Dataset) -> bool:
+    """Whether the cases are a duty cycle: they have shares of the time."""
+    return column(data, "time_share") is not None
 
 
-def _places(data: xr.Dataset) -> Place:
+def places(data: xr.Dataset) -> Place:
     """Values of the only parameter where these rise; else the numbers of the cases."""
     names = [str(name) for name in data["parameter"].values]
     if len(names) == 1:
@@ -115,7 +121,7 @@ def _margin(axes: Axes, data: xr.Dataset, place: Place) -> None:
     x, is_line = place
     eta = np.asarray(data["restitution_factor"].values, dtype=float)
     axes.plot(x, eta, "o-" if is_line else "o", ms=3.0, color=BLACK, label=r"restitution factor $\eta$")
-    threshold, top = _column(data, "restitution_threshold"), float(np.nanmax(eta))
+    threshold, top = column(data, "restitution_threshold"), float(np.nanmax(eta))
     if threshold is not None:
         top = 1.0
         low, high = (data[f"restitution_threshold_{end}"].values.astype(float) for end in ("low", "high"))
@@ -152,14 +158,14 @@ def _frequencies(axes: Axes, data: xr.Dataset, place: Place) -> None:
     """Draw the whirl without clearance and the orbits of whirling runs among the orders of the bearing."""
     x, is_line = place
     stroke: Look = {} if is_line else {"ls": "", "marker": "_", "ms": 13.0, "mew": 1.6}
-    linear = _column(data, "linear_whirl_frequency")
+    linear = column(data, "linear_whirl_frequency")
     if linear is not None:
         axes.plot(x, linear, color=BLACK, label="whirl without clearance", **stroke)
     for name, (words, colour, dashes) in ORDERS.items():
         values = np.asarray(data[name].values, dtype=float)
         look = {"ls": dashes} if is_line else stroke
         axes.plot(x, np.where(values > 0.0, values, np.nan), color=colour, label=words, **look)
-    orbit = _column(data, "orbit_frequency")
+    orbit = column(data, "orbit_frequency")
     for sign, marker, words in ((1.0, "^", "forward"), (-1.0, "v", "backward")):
         those = np.zeros(x.size, bool) if orbit is None else np.sign(orbit) == sign
         if orbit is not None and those.any():
@@ -199,25 +205,35 @@ def _name_axis(axes: Axes, data: xr.Dataset, place: Place) -> None:
         axes.set_xlabel(f"case: {keys}")
 
 
-def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
-    """Mark the worst case in every panel, and say above which and why; not where all are alike."""
+def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
+    """Return where the worst case lies, and which it is and why; no place where all cases are alike."""
     if "worst_case" not in data:
-        return
+        return None
     case, alike = int(data["worst_case"]), int(data["worst_alike"])
     why = SENTENCES[str(data["worst_quantity"].values)].format(float(data["worst_value"]))
     why = why.replace("-", "\N{MINUS SIGN}")
     if alike == int(data["worst_compared"]) > 1:
-        panels[0].set_title(f"no worst case: all {alike} have the {why}")
-        return
+        return None, f"no worst case: all {alike} have the {why}"
     at = place[0][data["case"].values == case][0]
-    for axes in panels:
-        axes.axvline(at, color=VERMILION, lw=0.9, ls=(0, (1, 2)), zorder=0)
     name = str(data["parameter"].values[0])
     value = data[name].values[data["case"].values == case][0]
     words = f"{name.rpartition('.')[2].replace('_', ' ')} {format_quantity(value, data[name].attrs['units'])}"
-    others = f" and {alike - 1} more" * (alike > 1)
-    which = (words if place[1] else f"case {case}") + others
-    panels[0].set_title(f"worst case (dotted line): {which}: {why}", color=VERMILION)
+    which = (words if place[1] else f"case {case}") + f" and {alike - 1} more" * (alike > 1)
+    return float(at), f"{which}: {why}"
+
+
+def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
+    """Mark the worst case in every panel, and say above which and why; not where all are alike."""
+    found = worst(data, place)
+    if found is None:
+        return
+    at, words = found
+    if at is None:
+        panels[0].set_title(words)
+        return
+    for axes in panels:
+        axes.axvline(at, color=VERMILION, lw=0.9, ls=(0, (1, 2)), zorder=0)
+    panels[0].set_title(f"worst case (dotted line): {words}", color=VERMILION)
 
 
 def _mark_refused(axes: Axes, data: xr.Dataset, place: Place) -> None:

@@ -19,7 +19,7 @@ from separatrix.present.text.tables import interval, number, quantity, significa
 Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""
 
-Kind = Literal["line", "points", "band", "upright", "cells"]
+Kind = Literal["line", "points", "band", "upright", "cells", "bars"]
 SYMBOLS = {r"$\eta$": "\N{GREEK SMALL LETTER ETA}", r"$f_{BC}$": "f_BC", r"$C_T$": "C_T"}
 """Symbols of labels, and as plain text."""
 

@@ -1,10 +1,11 @@
-"""One run of a cage in space as a page to turn and play: one file, that needs no network."""
+"""One run of a cage in space to turn and play: as one file that needs no network, and in the local page."""
 
 from __future__ import annotations
 
 import html
 import json
-from importlib.resources import files
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,14 @@ from separatrix.figures.animation import frame_moments, shown_parts
 from separatrix.figures.scene import turned_by
 from separatrix.figures.simulation import is_logarithmic
 from separatrix.figures.space_scene import AROUND, RIM, space_scene
-from separatrix.figures.style import heading
+from separatrix.figures.style import WIDTH, cut, heading
 from separatrix.units import Array
 
 MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames of a page, and most numbers in all: they keep it under 1 MB."""
+
+VIEW = Path(__file__).with_name("space_view")
+"""Folder of what every page that shows a run has, and of the page that has nothing else."""
 
 NANO = 1e9
 """Movements are whole nanometres and nanoradians; forces 1/255 of the largest."""
@@ -32,27 +36,49 @@ def write_page(data: xr.Dataset, path: Path) -> None:
 
 def page(data: xr.Dataset) -> str:
     """Return the page as text; words of the study are escaped."""
-    template = files("separatrix.figures").joinpath("space_page.html").read_text(encoding="utf-8")
-    title = str(data.attrs.get("title", "")) or "A cage in space"
-    # a text of the study may hold any mark: the JSON stands in a script, the title in the head
-    found = json.dumps(run_for_page(data), allow_nan=False, separators=(",", ":"))
-    for sign in "<>&\u2028\u2029":
-        found = found.replace(sign, f"\\u{ord(sign):04x}")
-    before, after = template.split("@DATA@")
-    return before.replace("@TITLE@", html.escape(title)) + found + after
+    parts = {
+        "TITLE": html.escape(str(data.attrs.get("title", "")) or "A cage in space"),
+        "STYLE": _text(VIEW / "view.css"),
+        "VIEW": view(data),
+        "SCRIPT": _text(VIEW / "view.js"),
+    }
+    return _filled(_text(VIEW / "page.html"), parts)
 
 
-def run_for_page(data: xr.Dataset) -> dict[str, Any]:
-    """Return what the page draws as plain data."""
+def view(data: xr.Dataset) -> str:
+    """Return the part of a page that shows the run, with its data; it needs style and script of `VIEW`."""
     most = int(min(MOST_FRAMES, MOST_NUMBERS // (8 + 3 * data.sizes["ball"])))
     moments = frame_moments(data, max(2, most))
-    at, lines = space_scene(data, moments), heading(data)
+    run = run_for_page(data, moments)
     spans = " and ".join(f"{first:.4g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
+    title = cut(str(data.attrs.get("title", "")), WIDTH)
+    # a text of the study may hold any mark: the JSON stands in a script
+    found = json.dumps(run, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        found = found.replace(sign, f"\\u{ord(sign):04x}")
+    parts = {
+        "ABOUT": html.escape("\n".join(heading(data)[len(title) :])),
+        "MOST": f"{run['most']:.3g}",
+        "SHOWN": f"Frames show {spans}{', on logarithmic time' if is_logarithmic(data) else ''}.",
+        "DATA": found,
+    }
+    return _filled(_text(VIEW / "view.html"), parts)
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _filled(template: str, parts: Mapping[str, str]) -> str:
+    """Return a template with its marks replaced; what stands in their place is not searched again."""
+    return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], template)
+
+
+def run_for_page(data: xr.Dataset, moments: Array) -> dict[str, Any]:
+    """Return what the page draws as plain data."""
+    at = space_scene(data, moments)
     largest = at.largest_force or 1.0
     return {
-        "title": str(data.attrs.get("title", "")),
-        "about": "\n".join(lines[1:]),
-        "shown": f"Frames show {spans}{', on logarithmic time' if is_logarithmic(data) else ''}.",
         "radius": at.radius,
         "ball": at.ball,
         "halfWidth": at.half_width,
@@ -81,5 +107,5 @@ def run_for_page(data: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def _whole(values: Array) -> list[int]:
-    return [int(one) for one in np.rint(values).ravel()]
+def _whole(values: Array) -> Any:
+    return np.rint(values).astype(int).ravel().tolist()

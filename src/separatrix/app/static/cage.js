@@ -30,8 +30,8 @@ async function start(box) {
 
   function step(now) {
     if (!playing) return;
-    at += ((now - before) / 1e3 / WHOLE) * Number(speed.value) * last;
-    before = now;
+    at += (Math.max(0, now - before) / 1e3 / WHOLE) * Number(speed.value) * last;
+    before = Math.max(now, before); // a frame may have begun before the click
     if (at >= last) { at = last; toggle(); }
     show();
     if (playing) requestAnimationFrame(step);

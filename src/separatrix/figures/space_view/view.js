@@ -1,69 +1,9 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy"
-      content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>@TITLE@</title>
-<style>
-body { margin: 0; font: 14px/1.45 system-ui, sans-serif; color: #111; background: #fff; }
-header { padding: 10px 16px 4px; white-space: pre-line; font-size: 12px; }
-header h1 { font-size: 16px; margin: 0 0 2px; }
-main { display: flex; flex-wrap: wrap; gap: 8px 16px; padding: 0 16px; }
-#view { flex: 1 1 520px; min-width: 300px; }
-aside { flex: 0 0 250px; }
-canvas { display: block; width: 100%; touch-action: none; }
-#view canvas { height: 62vh; min-height: 320px; border: 1px solid #ccc; border-radius: 4px; cursor: grab; }
-canvas:focus-visible, button:focus-visible, input:focus-visible { outline: 2px solid #0072B2; }
-#controls { display: flex; flex-wrap: wrap; gap: 6px 16px; align-items: center; padding: 8px 0; }
-#controls label { display: flex; gap: 6px; align-items: center; }
-#time { flex: 1 1 240px; }
-button { font: inherit; min-width: 5em; padding: 3px 10px; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%; font-size: 13px; }
-td { padding: 1px 0; } td:last-child { text-align: right; }
-.key { font-size: 12px; color: #444; padding: 2px 16px 12px; }
-.bar { display: inline-block; width: 70px; height: 10px; border: 1px solid #666; vertical-align: middle;
-       background: linear-gradient(to right, #fff, #D55E00); }
-h2 { font-size: 12px; margin: 8px 0 0; font-weight: 600; }
-</style>
-</head>
-<body>
-<header><h1 id="title"></h1><span id="about"></span></header>
-<main>
-<div id="view">
-<canvas id="scene" tabindex="0" role="img"
-        aria-label="Cage, balls and lands in space. Arrow keys turn the view, plus and minus zoom."></canvas>
-<div id="controls">
-<button id="play" type="button">Play</button>
-<input id="time" type="range" min="0" value="0" step="1" aria-label="Time">
-<label>speed <input id="speed" type="range" min="-2" max="2" step="0.5" value="0"></label>
-<label>enlarged <input id="grow" type="range" min="1" step="0.1"><output id="grown"></output></label>
-<label><input id="fixed" type="checkbox"> fixed in space</label>
-</div>
-</div>
-<aside>
-<table><tbody id="numbers"></tbody></table>
-<h2>Path of the centre [mm]</h2><canvas id="orbit" height="190"></canvas>
-<h2>Lean of the axis [mrad]</h2><canvas id="lean" height="190"></canvas>
-</aside>
-</main>
-<p class="key">Balls: <span class="bar"></span> 0 to <span id="most"></span> N in the pocket, root scale, the largest
-since the frame before. Blue: cage; grey: land. Movements and clearances are enlarged by the number beside the
-slider; at 1 all is to scale. Drag or arrow keys: turn; wheel, + and &minus;: zoom; space: play or pause; comma and
-full stop: one frame back or on; 0: first view. <span id="shown"></span></p>
-<script type="application/json" id="run">@DATA@</script>
-<script>
-"use strict";
+// The view of a run of a cage in space: in a page of its own and in the local page, data in #run.
 const run = JSON.parse(document.getElementById("run").textContent);
-const at = (name) => document.getElementById(name);
+const at = (name) => document.getElementById(name), box = at("space");
 const Z = run.angles.length, N = run.time.length, R = run.radius, TAU = 2 * Math.PI;
 const view = { high: 0.49, around: -1.08, zoom: 1 };
 let frame = 0, playing = false, due = 0, grow = run.enlarged, faces = [];
-at("title").textContent = run.title;
-at("about").textContent = run.about;
-at("most").textContent = run.most.toPrecision(3);
-at("shown").textContent = run.shown;
 at("time").max = N - 1;
 at("grow").max = Math.max(2, 2 * run.enlarged);
 at("grow").value = run.enlarged;
@@ -219,7 +159,7 @@ function tell() {
     ["rotation", (1e-6 * run.rotation[f]).toFixed(2) + " mrad"],
     ["largest pocket force", (force / 255 * run.most).toPrecision(2) + " N"],
   ];
-  const body = at("numbers");
+  const body = at("readings");
   body.replaceChildren(...rows.map((row) => {
     const line = document.createElement("tr");
     for (const text of row) line.appendChild(document.createElement("td")).textContent = text;
@@ -228,6 +168,7 @@ function tell() {
   path("orbit", run.centre, 1e-6, run.side ? 1e3 * run.gap : 0);
   path("lean", run.lean, 1e-6, 0);
   at("time").value = frame;
+  at("time").setAttribute("aria-valuetext", rows[0][1]);
   at("grown").textContent = "\u00d7 " + grow.toFixed(1);
 }
 
@@ -257,7 +198,7 @@ at("play").addEventListener("click", () => play(!playing));
 at("time").addEventListener("input", () => { play(false); show(Number(at("time").value)); });
 at("grow").addEventListener("input", () => { grow = Number(at("grow").value); build(); draw(); });
 at("fixed").addEventListener("change", draw);
-window.addEventListener("resize", draw);
+new ResizeObserver(draw).observe(at("scene"));
 const turnBy = (across, up) => {
   view.around += across;
   view.high = Math.min(1.5, Math.max(-1.5, view.high + up));
@@ -282,6 +223,7 @@ const keys = {
 };
 document.addEventListener("keydown", (event) => {
   const element = event.target;
+  if (element !== document.body && !box.contains(element)) return;
   if (element.tagName === "INPUT" || (element.tagName === "BUTTON" && event.key === " ")) return;
   if (event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(keys, event.key)) return;
   event.preventDefault();
@@ -289,6 +231,3 @@ document.addEventListener("keydown", (event) => {
 });
 build();
 draw();
-</script>
-</body>
-</html>
