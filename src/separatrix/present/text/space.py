@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.present.shapes import outcome_sentence
-from separatrix.present.text.cage import clearance_fact, friction_text
+from separatrix.present.text.cage import clearance_fact, damping_fact, friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.clearances import running_clearances
 from separatrix.present.text.tables import facts, number, paragraph, quantity, rate, section, stated
@@ -35,6 +35,7 @@ def simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
         ("Judged", f"from {span}; the run has {quantity(found.run_length, 's')}"),
         ("Kick, run, seed", f"{answer.kick:g} m/s, {answer.run}, {study.stability.seed}"),
         ("Pocket friction", friction_text(cage, study)),
+        *damping_fact(answer),
         ("Drift rate", drift),
         ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
     ]
