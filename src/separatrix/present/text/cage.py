@@ -62,7 +62,7 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     ]
     energies = {name: getattr(history, name) for name in ("kinetic_energy", "spring_energy", "land_energy")}
     ledger = [
-        (name.replace("_", " "), f"{1e3 * values[-1]:.4g} mJ")
+        (name.replace("_", " "), f"{significant(1e3 * values[-1])} mJ")
         for name, values in (history.work | energies).items()
         if values.any()
     ]
@@ -91,11 +91,9 @@ def damping_fact(answer: OfCage) -> list[tuple[str, str]]:
     cage = answer.cage
     if cage.race_damping == answer.solution.restitution.race_damping:
         return []
-    size = (
-        quantity(cage.race_damping, "N s/m") if isfinite(cage.race_damping) else "infinite: races grip balls"
-    )
-    eta = number(own_restitution_factor(cage))
-    return [("Race damping", f"{size}, for a restitution factor of {eta} in place of the study's")]
+    size = quantity(cage.race_damping, "N s/m") if isfinite(cage.race_damping) else "infinite"
+    eta = own_restitution_factor(cage)
+    return [("Race damping", f"{size}, for a restitution factor of {eta:.4g} in place of the study's")]
 
 
 def orbit_facts(history: History, cage: PlanarCage) -> list[tuple[str, str]]:
@@ -129,7 +127,8 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
     mean = f"{stated(found, 'mean_offset')} at the end, relative spread {number(found.orbit_evenness, 2)}"
     forces = f"{stated(found, 'largest_contact_force')} at a pocket, {stated(found, 'largest_land_force')}"
     energy = (
-        f"{1e3 * found.end_energy:.3g} mJ; frame and loads alone can give {1e3 * found.drive_energy:.3g} mJ"
+        f"{significant(1e3 * found.end_energy, 3)} mJ; frame and loads alone can give "
+        f"{significant(1e3 * found.drive_energy, 3)} mJ"
     )
     growth = f"{significant(found.growth_rate, 3)} 1/s "
     if found.growth_rate_low is None:

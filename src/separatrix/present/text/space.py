@@ -10,7 +10,16 @@ from separatrix.present.shapes import outcome_sentence
 from separatrix.present.text.cage import clearance_fact, damping_fact, friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.clearances import running_clearances
-from separatrix.present.text.tables import facts, number, paragraph, quantity, rate, section, stated
+from separatrix.present.text.tables import (
+    facts,
+    number,
+    paragraph,
+    quantity,
+    rate,
+    section,
+    significant,
+    stated,
+)
 
 if TYPE_CHECKING:
     from separatrix.answers import SpaceSimulationAnswer
@@ -77,7 +86,7 @@ def _motion(found: SpaceAnalysis) -> list[tuple[str, str]]:
 
 
 def _mrad(angle: float) -> str:
-    return f"{1e3 * angle:.3g} mrad"
+    return f"{significant(1e3 * angle, 3)} mrad"
 
 
 def _cone(found: SpaceAnalysis) -> str:
