@@ -164,8 +164,8 @@ def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
     offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
     return (
         f"The motion settles, but the cage centre ends up to {_three(offset)} mm off in {int(left.sum())} "
-        f"of {left.size} runs, more than {LEFT:g} times the half play of its pockets ({_three(play)} mm): the "
-        f"land is too wide to guide it."
+        f"of {left.size} runs, more than {LEFT:g} times the half play of its pockets ({_three(play)} mm): "
+        f"the land is too wide to guide it."
     )
 
 
