@@ -150,6 +150,13 @@ def test_verdict_and_probability_are_those_of_the_worst_kick():
         assert [count.whirls for count in result.by_kick] == [15 if i == worst else 0 for i in range(3)]
 
 
+def test_numbers_of_a_reason_have_no_exponent():
+    """Three digits, of large numbers too."""
+    rows = [[WHIRLS] * 16] * 3
+    result = judge(CAGE, ensemble(rows, whirl_frequency=3254.0, pocket_power=2.5e3))
+    assert result.reason.endswith("whirl, at 3250 Hz; friction feeds the cage 2.5 kW.")
+
+
 def test_a_whirl_that_is_sure_comes_before_one_that_is_not():
     """A kick from which fewer settle, but less than half whirl for sure, is not the worst."""
     mixed = [WHIRLS] * 8 + [UNRESOLVED] * 8

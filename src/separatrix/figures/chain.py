@@ -274,6 +274,6 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
     words = [rf"this bearing{at}: $\eta$ = {own:.2f}"]
     if zero := [f"{f:g}" for f, eta in zip(frictions, data[name].values, strict=True) if not eta.any()]:
         words.append(rf"$\eta$ = 0 throughout for $f_{{BT}}$ = {', '.join(zero)}")
-    place: Look = {"loc": "lower left", "bbox_to_anchor": (-0.03, 0.98), "handletextpad": 0.3}
+    place: Look = {"loc": "lower left", "bbox_to_anchor": (-0.03, 1.0), "handletextpad": 0.3}
     axes.legend([star], ["\n".join(words)], **place)
     return len(words)
