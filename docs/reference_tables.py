@@ -38,7 +38,8 @@ is that of the results; the file may state
 NAMES = """# Names in the JSON documents
 
 After this page you can look up each name in the document that `--json` prints: its unit, its shape and its
-meaning. The page is written from the records of the program. All numbers are in SI units. What the parts of
+meaning. The page is written from the records of the program and from the
+[nomenclature](../reference/nomenclature.md). All numbers are in SI units. What the parts of
 a document are for, and the files beside it: [results](../reference/results.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
