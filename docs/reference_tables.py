@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 import inspect
 import re
-import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import Any, NamedTuple, get_args, get_type_hints
 
+from reference_meanings import Line, lines_of
+
 from separatrix import answers, study
-from separatrix.cage import PlanarCage
-from separatrix.cage.space_body import SpaceBody
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.restitution import Restitution
@@ -25,7 +23,6 @@ from separatrix.explore.sweep import Sweep
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
 from separatrix.present.contact import GIVEN, NUMBERS
-from separatrix.present.walk import field_axes, field_units
 from separatrix.study_file import document
 from separatrix.study_file.sections import READERS, required_fields
 from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
@@ -41,7 +38,8 @@ is that of the results; the file may state
 NAMES = """# Names in the JSON documents
 
 After this page you can look up each name in the document that `--json` prints: its unit, its shape and its
-meaning. The page is written from the records of the program. All numbers are in SI units. What the parts of
+meaning. The page is written from the records of the program and from the
+[nomenclature](../reference/nomenclature.md). All numbers are in SI units. What the parts of
 a document are for, and the files beside it: [results](../reference/results.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
@@ -50,15 +48,6 @@ Every document of a study has `separatrix_version`, `verb`, `name` and `title` (
 """
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
-
-
-class Line(NamedTuple):
-    """One name of a table, with the unit, the dimensions and the meaning of its value."""
-
-    name: str
-    unit: str = ""
-    shape: str = ""
-    meaning: str = ""
 
 
 class Verb(NamedTuple):
@@ -107,6 +96,9 @@ RUN = (
     *OF_CAGE,
     Line("outcome_sentence", meaning="where the motion ends, in words"),
     Line("rubbing_power", "W", meaning="power that rubbing on the land turns to heat, in the judged part"),
+    Line(
+        "race_damping", "N s/m", meaning="in `cage`: null where it is infinite, at a restitution factor of 1"
+    ),
     Line("drift_rate_law", "1/s", meaning="growth rate of the offset by the linear law"),
     *(
         Line(name, "J", "time", f"in `work`: done on the cage by {what}")
@@ -252,49 +244,6 @@ def _records_in(hint: Any) -> Iterator[type]:
         yield from _records_in(argument)
 
 
-def lines_of(record: type) -> list[Line]:
-    """Return a line for each field of a record."""
-    units, axes, meanings = field_units(record), field_axes(record), meanings_of(record)
-    return [
-        Line(one.name, units.get(one.name, ""), ", ".join(axes.get(one.name, ())), meanings.get(one.name, ""))
-        for one in fields(record)
-    ]
-
-
-def meanings_of(record: type) -> dict[str, str]:
-    """Return what docstrings and comments state of each field of a record and of those it extends."""
-    found = {one.key: one.meaning for one in template_keys()} if record in (PlanarCage, SpaceBody) else {}
-    for one in reversed([base for base in record.__mro__ if is_dataclass(base)]):
-        found |= _of_source(one) | _of_docstring(one)
-    return found
-
-
-def _of_docstring(record: type) -> dict[str, str]:
-    """Entries of the section Attributes."""
-    _, _, section = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n----------\n")
-    found: dict[str, str] = {}
-    for entry in re.split(r"\n(?=\S)", section):
-        head, _, text = entry.partition("\n")
-        names = head.partition(" : ")[0].split(", ")
-        found |= dict.fromkeys(names, " ".join(text.split()))
-    return found
-
-
-def _of_source(record: type) -> dict[str, str]:
-    """Text below a field, or the comment beside it."""
-    source = textwrap.dedent(inspect.getsource(record))
-    lines, (body,) = source.splitlines(), ast.parse(source).body
-    found: dict[str, str] = {}
-    last = ""
-    for node in body.body if isinstance(body, ast.ClassDef) else ():
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            last, comment = node.target.id, lines[(node.end_lineno or 1) - 1].partition("  # ")[2]
-            found |= {last: comment} if comment else {}
-        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and last:
-            found[last] = " ".join(str(node.value.value).split())
-    return found
-
-
 def names_of(verb: str) -> set[str]:
     """Return every name that the tables of a verb have a line for."""
     made_of = VERBS[verb]
@@ -314,6 +263,7 @@ def json_page() -> str:
     page += ["## Records\n"]
     for record in shown:
         text, _, _ = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n")
+        text, _, _ = text.partition("\nParameters\n")
         name = record.__name__
         page += [f"({_anchor(record)})=\n### {name}\n", _markdown(text).strip() + "\n"]
         page += _table(lines_of(record))

@@ -31,10 +31,10 @@ class CheckAnswer:
     The clearances are also None, without a reason, for a study that states the running ones.
     """
 
-    static: BearingState | None
-    static_reason: str = ""
-    clearances: Clearances | None = None
-    clearances_reason: str = ""
+    static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused
+    static_reason: str = ""  # why there are no contacts at standstill; empty if there are
+    clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
+    clearances_reason: str = ""  # why the running clearances were refused; empty if they were not
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,20 +45,20 @@ class TractionAnswer:
     """
 
     race_friction: Ratio
-    bearing: BearingState
-    comparison: ModelComparison
-    inner: TractionCurve
-    outer: TractionCurve
-    inner_strips: TractionCurve
-    outer_strips: TractionCurve
-    inner_exact: TractionCurve | None
-    outer_exact: TractionCurve | None
-    inner_area: ExactArea | None
-    outer_area: ExactArea | None
-    inner_others: tuple[TractionCurve, ...]
-    outer_others: tuple[TractionCurve, ...]
-    inner_shear: ShearField
-    outer_shear: ShearField
+    bearing: BearingState  # equilibrium and contacts
+    comparison: ModelComparison  # slopes, damping and restitution factor by each model
+    inner: TractionCurve  # curve of the inner race by the study's model
+    outer: TractionCurve  # curve of the outer race by the study's model
+    inner_strips: TractionCurve  # curve of the inner race by strips
+    outer_strips: TractionCurve  # curve of the outer race by strips
+    inner_exact: TractionCurve | None  # curve of the inner race by the exact contact
+    outer_exact: TractionCurve | None  # curve of the outer race by the exact contact
+    inner_area: ExactArea | None  # fields of the exact contact, inner race
+    outer_area: ExactArea | None  # fields of the exact contact, outer race
+    inner_others: tuple[TractionCurve, ...]  # inner race at other pivoting-to-rolling ratios
+    outer_others: tuple[TractionCurve, ...]  # outer race at other pivoting-to-rolling ratios
+    inner_shear: ShearField  # shear of strips in free rolling, inner race
+    outer_shear: ShearField  # shear of strips in free rolling, outer race
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,11 +68,11 @@ class RestitutionAnswer:
     `exact_films` are of a study with the exact model, `wear` of one with a worn band.
     """
 
-    solution: Solution
-    film_thickness: Metre
-    lubrication: LubricationCurve | None
-    exact_films: ExactFilms | None
-    wear: WearCurve | None
+    solution: Solution  # the chain
+    film_thickness: Metre  # film thickness of the study
+    lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
+    exact_films: ExactFilms | None  # the same by exact contacts
+    wear: WearCurve | None  # restitution factor against the width of a worn band
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,59 +82,59 @@ class MobilityAnswer:
     `impacts` is None, with the reason, for a study whose cage has no stiffness, or without a cage.
     """
 
-    solution: Solution
-    mobility: Mobility
-    rigid: LinearMobility
-    impacts: Impacts | None
-    impacts_reason: str = ""
+    solution: Solution  # the chain
+    mobility: Mobility  # by the slip fields of the study's contacts
+    rigid: LinearMobility  # small motion of the same ball between rigid bodies
+    impacts: Impacts | None  # of the cage on this ball
+    impacts_reason: str = ""  # why there are no impacts; empty if there are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfCage:
     """The chain, and the cage that an answer is for."""
 
-    solution: Solution
-    cage: PlanarCage
+    solution: Solution  # the chain
+    cage: PlanarCage  # the cage with its pockets, land and balls, as the runs use it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityAnswer(OfCage):
     """Stability curve of the cage."""
 
-    curve: StabilityCurve
+    curve: StabilityCurve  # critical friction against the restitution factor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapAnswer(OfCage):
     """The map, and the cage of the study itself."""
 
-    map: StabilityMap
+    map: StabilityMap  # the two axes, the points and the boundary between them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationAnswer(OfCage):
     """One run of the ensemble, from one kick."""
 
-    history: History
+    history: History  # the motion, sampled
     kick: MetrePerSecond
-    run: int
+    run: int  # number of the run in the ensemble, from 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpaceSimulationAnswer(OfCage):
     """One run of a cage in space, from one kick."""
 
-    history: SpaceHistory
-    analysis: SpaceAnalysis
+    history: SpaceHistory  # the motion, sampled
+    analysis: SpaceAnalysis  # means, extremes and spectra of the whole run
     kick: MetrePerSecond
-    run: int
+    run: int  # number of the run in the ensemble, from 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankingAnswer(OfCage):
     """The ranking, and the cage of its reference candidate."""
 
-    ranking: Ranking
+    ranking: Ranking  # the candidates in each environment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,6 +144,6 @@ class SensitivityAnswer(OfCage):
     `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
     """
 
-    uncertain: UncertainStudy
-    film_thickness: Metre | None
-    race_friction: Ratio
+    uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
+    film_thickness: Metre | None  # of the study; null if the races are bare
+    race_friction: Ratio  # of the study

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import separatrix
 from separatrix import figures
 from separatrix.errors import InputError
-from separatrix.figures.chain import signed
+from separatrix.figures.chain import lubrication, signed
 from separatrix.figures.map import sweep
 from separatrix.figures.ranking import file_name, overview, rank_texts, text_order
 from separatrix.figures.sensitivity import bearings
@@ -201,3 +202,15 @@ def test_a_sweep_marks_verdicts_and_names_units():
     labels = [axes.get_xlabel() for axes in sweep(data).axes]
     assert labels == ["film thickness [\N{MICRO SIGN}m]", "inner speed [rpm]"]
     assert sweep(data).legends
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+@pytest.mark.parametrize("study", ["momentum-wheel", "lox-turbopump"])
+def test_what_names_the_point_of_a_film_covers_no_curve(study):
+    """Curves end at 1, the top of the panel; what names the study's point begins above it."""
+    figure = lubrication(separatrix.restitution(study).to_xarray())
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        text = axes.get_legend().get_texts()[0]
+        assert text.get_window_extent().y0 >= axes.get_window_extent().y1
+        assert text.get_window_extent().x1 <= figure.bbox.width

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from commands import document
-from reference_tables import VERBS, json_page, keys_without_line, lines_of, names_of, study_page
+from reference_meanings import lines_of
+from reference_tables import VERBS, json_page, keys_without_line, names_of, records_of, study_page
 
 import separatrix
 from separatrix.ranking import Ranked
@@ -109,6 +110,15 @@ def test_every_name_of_a_contact_has_a_line(tmp_path, monkeypatch, capsys):
     found = document(capsys, "contact", "ball.toml")
     assert len(found["cases"]) == 1
     assert missing("contact", found) == set()
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_name_has_a_meaning(verb):
+    """Of its own lines and of its records: words that are not the name again."""
+    lines = [line for record in records_of(*VERBS[verb].records) for line in lines_of(record)]
+    empty = [one for one in [*lines, *VERBS[verb].own] if not one.meaning.strip()]
+    again = [one for one in lines if one.meaning.strip(". ").casefold() == one.name.replace("_", " ")]
+    assert empty + again == []
 
 
 def test_every_key_of_a_study_has_a_line():

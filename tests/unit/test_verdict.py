@@ -44,7 +44,7 @@ def once(most, other):
 
 
 ALL_SETTLE = "All of the runs settle from the worst kick, 0.1 m/s"
-ALL_WHIRL = "All of the runs from 0.1 m/s whirl, at 1.5e+03 Hz"
+ALL_WHIRL = "All of the runs from 0.1 m/s whirl, at 1500 Hz"
 TOO_FEW = "Too few runs for a verdict: 3 at each kick; set [stability] runs to 4 or more."
 OFF = "The motion settles, but the cage centre"
 FED = {"whirl_frequency": 1500.0, "pocket_power": 11.0, "land_power": -3.0}

@@ -50,8 +50,14 @@ class History:
         Why the run is unresolved, if it is.
     judged_from, judged_until : float
         The last part of the run, by which it was judged [s]; the history goes on to its duration.
-    end_energy, growth_rate, drift_rate, pocket_power, land_power, rubbing_force, rubbing_speed : float
-        As in the ensemble.
+    end_energy : float
+        Mean kinetic energy in that part [J]; all that follow are as in the ensemble.
+    growth_rate, drift_rate : float
+        Half the logarithmic rate of the kinetic energy, and the growth rate of the mean offset [1/s].
+    pocket_power, land_power : float
+        Fed into the cage by friction in the pockets and on the land, in that part [W].
+    rubbing_force, rubbing_speed : float
+        Of the land, in that part [N] and [m/s].
     """
 
     time: Annotated[Array, "s", ("time",)]
@@ -66,9 +72,9 @@ class History:
     kinetic_energy: Annotated[Array, "J", ("time",)]
     spring_energy: Annotated[Array, "J", ("time",)]
     ball_energy: Annotated[Array, "J", ("time",)]
-    land_energy: Annotated[Array, "J", ("time",)]
+    land_energy: Annotated[Array, "J", ("time",)]  # stored in the land's spring
     work: Annotated[dict[str, Array], "J", ("time",)]
-    pocket_angle: Annotated[Array, "rad", ("ball",)]
+    pocket_angle: Annotated[Array, "rad", ("ball",)]  # place of each pocket in the turning frame
     half_play: Annotated[Array, "m", ("ball",)]
     outcome: RunOutcome
     cause: Cause

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from separatrix.cage.closed_forms import drift_rate_law, room
 from separatrix.cage.ending import GROWS_ON
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
-from separatrix.units import Array, Metre
+from separatrix.units import Array, Metre, format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
@@ -94,14 +94,15 @@ def settles(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
         return f"{first}."
     speed = float(np.median(ensemble.rubbing_speed[kick][settled]))
     power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
-    return f"{first}; the cage then rubs on its land with {force:.3g} N at {speed:.3g} m/s ({_watt(power)})."
+    rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
+    return f"{first}; the cage then rubs on its land with {rubs}."
 
 
 def whirls(ensemble: Ensemble, kick: int) -> str:
     """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
     whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
     pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
-    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {pace:.3g} Hz"
+    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {_three(pace)} Hz"
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
@@ -125,7 +126,7 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
         causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
         most = Cause(int(np.bincount(causes).argmax()))
         followed = ensemble.followed[kick].max()
-        cure = f"{CAUSES[most]} (followed for {followed:.3g} s)"
+        cure = f"{CAUSES[most]} (followed for {_three(followed)} s)"
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
 
@@ -155,16 +156,16 @@ def few_kept(cage: PlanarCage, ensemble: Ensemble) -> str:
 def _lively(ensemble: Ensemble, kept: Mask) -> str:
     energy, power = (_median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
     force = float(ensemble.largest_land_force[kept].max())
-    return f"{1e3 * energy:.3g} mJ, fed {_watt(power)}, up to {force:.3g} N on the land"
+    return f"{_three(1e3 * energy)} mJ, fed {_watt(power)}, up to {_three(force)} N on the land"
 
 
 def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
     """Return how far off the centre ends."""
     offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
     return (
-        f"The motion settles, but the cage centre ends up to {offset:.3g} mm off in {int(left.sum())} of "
-        f"{left.size} runs, more than {LEFT:g} times the half play of its pockets ({play:.3g} mm): the land "
-        f"is too wide to guide it."
+        f"The motion settles, but the cage centre ends up to {_three(offset)} mm off in {int(left.sum())} "
+        f"of {left.size} runs, more than {LEFT:g} times the half play of its pockets ({_three(play)} mm): "
+        f"the land is too wide to guide it."
     )
 
 
@@ -172,9 +173,9 @@ def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
     """Return how far the centre went beyond what land and pockets leave."""
     offset, clearance = 1e3 * float(ensemble.largest_offset.max()), 1e3 * room(cage)
     return (
-        f"The motion settles, but the cage centre reached {offset:.3g} mm, more than "
-        f"{1e3 * largest_room(cage):.3g} mm (clearance {clearance:.3g} mm): no cage survives that; lower "
-        f"[stability] kicks or check [cage] land_stiffness."
+        f"The motion settles, but the cage centre reached {_three(offset)} mm, more than "
+        f"{_three(1e3 * largest_room(cage))} mm (clearance {_three(clearance)} mm): no cage survives that; "
+        f"lower [stability] kicks or check [cage] land_stiffness."
     )
 
 
@@ -182,15 +183,15 @@ def drift(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
     """Return how many runs left their pockets, and the rate of drift as measured and by the linear law."""
     limit = 2.0 * cage.half_play
     passed = int(np.count_nonzero(ensemble.largest_offset > limit))
-    seen = f"its offset passed {1e3 * limit:.3g} mm, the pocket clearance, in {passed} of "
+    seen = f"its offset passed {_three(1e3 * limit)} mm, the pocket clearance, in {passed} of "
     seen += f"{ensemble.outcome.size} runs"
     if limit == 0.0:
         seen = "without pocket clearance nothing holds its centre"
     rate = drift_rate_law(cage)
     if rate > 0.0:
         measured = _median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
-        seen += f", and by the linear law it grows e-fold every {1.0 / rate:.3g} s"
-        seen += f" ({rate:.3g} 1/s; measured {measured:.3g} 1/s)"
+        seen += f", and by the linear law it grows e-fold every {_three(1.0 / rate)} s"
+        seen += f" ({_three(rate)} 1/s; measured {_three(measured)} 1/s)"
     return f"The cage has no land and drifts: {seen}."
 
 
@@ -202,5 +203,9 @@ def _share(runs: Mask) -> str:
     return "All" if runs.all() else f"{100.0 * float(runs.mean()):.0f} %"
 
 
+def _three(value: float) -> str:
+    return format_number(value, 3)
+
+
 def _watt(power: float) -> str:
-    return f"{1e3 * power:.3g} mW" if power < 1.0 else f"{power:.3g} W"
+    return format_quantity(power, "W", 3)

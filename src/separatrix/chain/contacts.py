@@ -47,23 +47,23 @@ Result = TypeVar("Result")
 class RaceContact:
     """Contact of the most loaded ball with one race."""
 
-    ball: int
-    contact_angle: Radian
-    load: Newton
-    ellipse: ContactEllipse
-    creep: Creep
-    spin_roll_ratio: Ratio
-    rolling_speed: MetrePerSecond
+    ball: int  # number of the ball, from 0
+    contact_angle: Radian  # under load
+    load: Newton  # normal to the contact
+    ellipse: ContactEllipse  # by Hertz, without films
+    creep: Creep  # what the kinematics fix of it
+    spin_roll_ratio: Ratio  # pivoting over rolling speed of ball relative to race, signed
+    rolling_speed: MetrePerSecond  # mean speed of both surfaces through the contact
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BearingState:
     """Equilibrium of the bearing, the contacts of its most loaded ball, and where they leave their model."""
 
-    equilibrium: Equilibrium
-    inner: RaceContact
-    outer: RaceContact
-    notes: tuple[str, ...] = ()
+    equilibrium: Equilibrium  # loads, angles and speeds of every ball
+    inner: RaceContact  # the most loaded ball on the inner race
+    outer: RaceContact  # the most loaded ball on the outer race
+    notes: tuple[str, ...] = ()  # where a contact leaves the range of its model, a sentence each
     clearances: Clearances | None = None
     """Of the cage as it runs; only in the answer of `bearing`."""
 

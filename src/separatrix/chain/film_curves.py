@@ -32,21 +32,23 @@ class WearCurve:
     model is not the exact contact, and lack the points that have no answer.
     """
 
-    share: Annotated[Array, "-", ("worn",)]
-    width: Annotated[Array, "m", ("worn",)]
-    restitution_factor: Annotated[Array, "-", ("worn",)]
+    share: Annotated[Array, "-", ("worn",)]  # width of the band over that of the wider contact
+    width: Annotated[Array, "m", ("worn",)]  # of the worn band
+    restitution_factor: Annotated[Array, "-", ("worn",)]  # by strips
     restitution_factor_free_spin: Annotated[Array, "-", ("worn",)]
-    exact_share: Annotated[Array | None, "-", ("worn_exact",)]
-    exact_restitution_factor: Annotated[Array | None, "-", ("worn_exact",)]
+    """The same if the ball is free to spin in the impact."""
+    exact_share: Annotated[Array | None, "-", ("worn_exact",)]  # share at which exact contacts were solved
+    exact_restitution_factor: Annotated[Array | None, "-", ("worn_exact",)]  # by exact contacts
     exact_restitution_factor_free_spin: Annotated[Array | None, "-", ("worn_exact",)]
+    """By exact contacts, the ball free to spin."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExactFilms:
     """Restitution factor by exact contacts against the thickness of a whole film, shape (film,)."""
 
-    thickness: Annotated[Array, "m", ("film_exact",)]
-    restitution_factor: Annotated[Array, "-", ("film_exact",)]
+    thickness: Annotated[Array, "m", ("film_exact",)]  # of the whole film
+    restitution_factor: Annotated[Array, "-", ("film_exact",)]  # with that film
 
 
 def wear_curve(solution: Solution) -> WearCurve | None:

@@ -38,16 +38,16 @@ LATERAL: Ratio = 0.05
 class ModelSlopes:
     """Slopes by one model, and what they make of the damping; None with the reason where it has no answer."""
 
-    model: TractionModel
-    pressure: ContactPressure
-    is_used: bool
-    inner_slope: Ratio | None = None
-    inner_slope_error: Ratio | None = None
-    outer_slope: Ratio | None = None
-    outer_slope_error: Ratio | None = None
+    model: TractionModel  # strips or exact contact
+    pressure: ContactPressure  # by Hertz, or of the coated bodies
+    is_used: bool  # whether the study uses this model
+    inner_slope: Ratio | None = None  # alpha of the inner race
+    inner_slope_error: Ratio | None = None  # its estimated error
+    outer_slope: Ratio | None = None  # alpha of the outer race
+    outer_slope_error: Ratio | None = None  # its estimated error
     race_damping: NewtonSecondPerMetre | None = None
     restitution_factor: Ratio | None = None
-    reason: str = ""
+    reason: str = ""  # why there is no answer; empty if there is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,23 +60,23 @@ class FreeRolling:
     """
 
     lateral_force: Newton
-    lateral_share: Ratio
+    lateral_share: Ratio  # lateral force over friction times load
     spin_moment: NewtonMetre
     stick_share: Ratio
-    max_pressure: Pascal
+    max_pressure: Pascal  # largest of the contact, with the films
     film_strain: Ratio
-    pressure_slip: Ratio
-    dissipation: Watt
+    pressure_slip: Ratio  # largest slip caused by the pressure, over the saturation creep
+    dissipation: Watt  # power of the slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelComparison:
     """Models side by side, the exact contacts in free rolling, and where the strips leave their range."""
 
-    models: Annotated[tuple[ModelSlopes, ...], Rows("model")]
-    inner: FreeRolling | None
-    outer: FreeRolling | None
-    outside: tuple[str, ...]
+    models: Annotated[tuple[ModelSlopes, ...], Rows("model")]  # one for each model and pressure
+    inner: FreeRolling | None  # the exact contact with the inner race, if it was solved
+    outer: FreeRolling | None  # the exact contact with the outer race, if it was solved
+    outside: tuple[str, ...]  # where the strips leave their range, a sentence each
 
 
 def compare_models(solution: Solution) -> ModelComparison:

@@ -34,13 +34,13 @@ class PocketConditions:
     over the contact, two thirds of `max_pressure`.
     """
 
-    slip_speed: MetrePerSecond
-    slip_speed_low: MetrePerSecond
-    slip_speed_high: MetrePerSecond
-    impact_force: Newton
-    pressure: Pascal
-    max_pressure: Pascal
-    contact_radius: Metre
+    slip_speed: MetrePerSecond  # sliding speed of ball on pocket, mean over the balls
+    slip_speed_low: MetrePerSecond  # of the slowest ball
+    slip_speed_high: MetrePerSecond  # of the fastest ball
+    impact_force: Newton  # largest force of the impact
+    pressure: Pascal  # mean over the contact at the largest force
+    max_pressure: Pascal  # in the middle of the contact at the largest force
+    contact_radius: Metre  # at the largest force
 
 
 def pocket_conditions(

@@ -33,8 +33,8 @@ class ExactArea:
     NaN where a strip slips throughout; None where the strips have another ellipse.
     """
 
-    solution: exact.ContactSolution
-    stick_line: Array | None
+    solution: exact.ContactSolution  # tractions and slip of every cell
+    stick_line: Array | None  # where the stick of strips ends in each row
 
 
 def exact_area(track: RaceTrack, settings: TractionSettings) -> ExactArea | None:

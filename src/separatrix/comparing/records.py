@@ -24,29 +24,29 @@ class Noise(StrEnum):
 class Named:
     """Which answer it is; `seed` is None where it does not state one."""
 
-    path: str
-    title: str
-    seed: int | None
+    path: str  # where the answer was read
+    title: str  # of its study
+    seed: int | None  # null where it does not state one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
     """An input that differs: a number with its unit, a text, or a list of them; None where it is absent."""
 
-    key: str
-    first: object
-    second: object
-    unit: str | None
+    key: str  # of the input in the study
+    first: object  # null where it is absent
+    second: object  # null where it is absent
+    unit: str | None  # of the numbers; null for a text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
     """A result in one answer, with its 95 % interval if it has one; `runs` are those it was counted in."""
 
-    value: Plain
-    low: float | None = None
-    high: float | None = None
-    runs: int | None = None
+    value: Plain  # null where this answer lacks it
+    low: float | None = None  # lower end of the 95 % interval
+    high: float | None = None  # upper end of the 95 % interval
+    runs: int | None = None  # that it was counted in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,13 +95,13 @@ class Comparison:
     `environment` is the bearing's own, where both rank in the same.
     """
 
-    of: str
-    answers: tuple[Named, Named]
-    same_seed: bool
-    differences: tuple[Difference, ...]
-    verdicts: tuple[Row, ...]
-    rows: tuple[Row, ...]
-    unchanged: int
-    left_out: int
-    also: tuple[str, ...] = ()
-    environment: str | None = None
+    of: str  # verb of both answers
+    answers: tuple[Named, Named]  # the first and the second
+    same_seed: bool  # whether both draw the same runs
+    differences: tuple[Difference, ...]  # inputs that differ
+    verdicts: tuple[Row, ...]  # verdicts that changed
+    rows: tuple[Row, ...]  # other results that differ, more than noise first
+    unchanged: int  # number of results that are equal
+    left_out: int  # number of rows that were too many to list
+    also: tuple[str, ...] = ()  # other verbs that both have
+    environment: str | None = None  # the bearing's own, where both rank in the same

@@ -22,7 +22,7 @@ from separatrix.library import beside, with_files
 from separatrix.study_file.values import named_material, using
 from separatrix.toml_text import Kind, Places, label_of, places_of, read_toml
 from separatrix.toml_values import Reader, choice, nearest, text
-from separatrix.units import printable, shown
+from separatrix.units import format_quantity, printable, shown
 
 FILE = Kind(noun="a contact file", empty="docs/how-to/contact.md has one to start from.")
 MOST_LAYERS = 4
@@ -239,7 +239,8 @@ def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEll
         else:
             found = ellipse_of_curvatures(given["load"], 1.0 / rolling, 1.0 / lateral, modulus)
         if not found.max_pressure < modulus:
-            value, cure = f"{found.max_pressure:.3g} Pa", f"The modulus of the pair is {modulus:.3g} Pa."
+            value = format_quantity(found.max_pressure, "Pa", 3)
+            cure = f"The modulus of the pair is {format_quantity(modulus, 'Pa', 3)}."
             raise InputError("[contact]", "needs a pressure below the modulus of the pair", value, cure)
         steepest = max(
             found.semi_minor * found.curvature_rolling, found.semi_major * found.curvature_transverse

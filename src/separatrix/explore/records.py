@@ -17,12 +17,12 @@ class InputRow:
     "assumed" for the default one, a guess. Mean and standard deviation are in SI.
     """
 
-    name: str
-    unit: str
-    distribution: str
-    source: str
-    mean: float
-    standard_deviation: float
+    name: str  # its key in the study
+    unit: str  # of mean and standard deviation, SI
+    distribution: str  # in words
+    source: str  # study, measured, or assumed (a guess)
+    mean: float  # of the distribution
+    standard_deviation: float  # of the distribution
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,8 +66,8 @@ class UncertainMaterial:
 class NotDrawn:
     """A candidate without a measured friction in this environment; `reason` says so."""
 
-    name: str
-    reason: str
+    name: str  # of the candidate
+    reason: str  # which test is missing
 
 
 UncertainRow = UncertainMaterial | NotDrawn
@@ -77,8 +77,9 @@ UncertainRow = UncertainMaterial | NotDrawn
 class UncertainEnvironment:
     """The candidates in one environment, best first; those not measured come last."""
 
-    name: str
+    name: str  # medium and counterface
     materials: Annotated[tuple[UncertainRow, ...], Rows("material", "material_", label="name")]
+    """A row for each candidate, best first."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,33 +89,33 @@ class ConvergenceRow:
     `size` : shape (size,); `probability_stable` with its 95 % interval, shape (size,) [-].
     """
 
-    name: str
-    environment: str
-    size: tuple[int, ...]
-    probability_stable: Array
-    probability_low: Array
-    probability_high: Array
+    name: str  # of the candidate
+    environment: str  # empty: overall
+    size: tuple[int, ...]  # numbers of bearings
+    probability_stable: Array  # from the first so many bearings
+    probability_low: Array  # lower end of the 95 % interval
+    probability_high: Array  # upper end of the 95 % interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cloud:
     """Bearings of one case: restitution factor, friction [-], and whether it settles; shape (run,) each."""
 
-    name: str
-    environment: str
-    restitution_factor: Array
-    friction: Array
-    settles: Array
+    name: str  # of the candidate
+    environment: str  # empty: overall
+    restitution_factor: Array  # of each bearing
+    friction: Array  # of each bearing's cage
+    settles: Array  # 1 where the cage settles, else 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Share:
     """Part of a variance that one input brings, and its 95 % interval [-]."""
 
-    name: str
-    share: Ratio
-    share_low: Ratio
-    share_high: Ratio
+    name: str  # the input; chance is that of the single run
+    share: Ratio  # of the variance
+    share_low: Ratio  # lower end of the 95 % interval
+    share_high: Ratio  # upper end of the 95 % interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,20 +155,20 @@ class SmoothShares:
     `quantity` is "restitution_factor" or "race_damping", `name` the candidate.
     """
 
-    quantity: str
-    name: str
-    first: tuple[Share, ...]
-    total: tuple[Share, ...]
+    quantity: str  # restitution_factor or race_damping
+    name: str  # of the candidate
+    first: tuple[Share, ...]  # by each input alone
+    total: tuple[Share, ...]  # by each input with its interactions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TestGain:
     """How many undecided cases measuring one input settles on average, and which with what probability."""
 
-    name: str
-    settled: float
-    cases: tuple[str, ...]
-    chances: tuple[Ratio, ...]
+    name: str  # the input to measure
+    settled: float  # mean number of cases that get a verdict
+    cases: tuple[str, ...]  # that may get one
+    chances: tuple[Ratio, ...]  # probability that it does, for each case
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,13 +179,13 @@ class AllowedFriction:
     or none too high; `reason` says which.
     """
 
-    names: tuple[str, ...]
-    probability: Ratio
-    scatter: Ratio
-    friction: Ratio | None
-    friction_low: Ratio | None
-    friction_high: Ratio | None
-    reason: str
+    names: tuple[str, ...]  # candidates whose pockets it is for
+    probability: Ratio  # wanted, to settle
+    scatter: Ratio  # assumed of a new cage, as a share of the mean
+    friction: Ratio | None  # largest mean friction; null where `reason` says why
+    friction_low: Ratio | None  # lower end of the 95 % interval
+    friction_high: Ratio | None  # upper end of the 95 % interval
+    reason: str  # why there is no limit; empty if there is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,7 +213,7 @@ class AllowedFilm:
     restitution_factor: Ratio | None
     restitution_factor_low: Ratio | None
     restitution_factor_high: Ratio | None
-    reason: str
+    reason: str  # why there is no limit; empty if there is
     film_thickness: Array
     race_friction: Array
     film_restitution_factor: Array
@@ -227,23 +228,26 @@ class UncertainStudy:
     `undecided` names the cases without a verdict. `complete` is False if an interrupt left something out.
     """
 
-    bearings: int
-    failed: int
-    stopped_risk: Ratio
-    default_scatter: Ratio
-    environment: str
+    bearings: int  # drawn for each case
+    failed: int  # of these, that do not make a bearing
+    stopped_risk: Ratio  # largest probability that an ended case would decide otherwise
+    default_scatter: Ratio  # of an unrepeated friction test, as a share of the mean
+    environment: str  # the bearing's own
     inputs: Annotated[tuple[InputRow, ...], Rows("input", "input_", label="name")]
+    """A row for each uncertain input."""
     environments: Annotated[tuple[UncertainEnvironment, ...], Rows("environment", label="name")]
+    """The candidates in each."""
     overall: Annotated[tuple[UncertainRow, ...], Rows("material", "overall_", label="name")]
-    convergence: tuple[ConvergenceRow, ...]
-    clouds: tuple[Cloud, ...]
-    drivers: tuple[Drivers, ...]
-    shares: tuple[SmoothShares, ...]
-    undecided: tuple[str, ...]
-    next_tests: tuple[TestGain, ...]
-    allowed_friction: tuple[AllowedFriction, ...]
-    allowed_films: tuple[AllowedFilm, ...]
+    """With the mean friction over all environments."""
+    convergence: tuple[ConvergenceRow, ...]  # P(stable) against the number of bearings
+    clouds: tuple[Cloud, ...]  # the bearings of each case
+    drivers: tuple[Drivers, ...]  # inputs that decide each case
+    shares: tuple[SmoothShares, ...]  # Sobol indices of what the chain computes
+    undecided: tuple[str, ...]  # cases without a verdict
+    next_tests: tuple[TestGain, ...]  # best first
+    allowed_friction: tuple[AllowedFriction, ...]  # of a new material
+    allowed_films: tuple[AllowedFilm, ...]  # that keep each case stable
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int
-    notes: tuple[str, ...]
-    complete: bool
+    runs: int  # of each bearing, from each kick
+    notes: tuple[str, ...]  # what was left out and why, a sentence each
+    complete: bool  # false if an interrupt left something out

@@ -49,26 +49,26 @@ class SweptCase:
     Frequencies are those that a sensor on the housing would see (`explore.envelope.orders`).
     """
 
-    case: int
-    values: tuple[float, ...]
-    cage_speed: RadianPerSecond | None = None
+    case: int  # number of the case, from 0
+    values: tuple[float, ...]  # of the parameters, in their order
+    cage_speed: RadianPerSecond | None = None  # of the ball set about the bearing axis
     load_inner: Newton | None = None
     load_outer: Newton | None = None
     contact_angle_inner: Radian | None = None
     contact_angle_outer: Radian | None = None
-    max_pressure_inner: Pascal | None = None
-    max_pressure_outer: Pascal | None = None
+    max_pressure_inner: Pascal | None = None  # Hertz, inner race
+    max_pressure_outer: Pascal | None = None  # Hertz, outer race
     spin_roll_ratio_inner: Ratio | None = None
     spin_roll_ratio_outer: Ratio | None = None
-    slope_inner: Ratio | None = None
-    slope_outer: Ratio | None = None
+    slope_inner: Ratio | None = None  # alpha of the inner race
+    slope_outer: Ratio | None = None  # alpha of the outer race
     ball_cage_stiffness: NewtonPerMetre | None = None
     race_damping: NewtonSecondPerMetre | None = None
     damping_ratio: Ratio | None = None
     restitution_factor: Ratio | None = None
     ball_cage_friction: Ratio | None = None
-    pocket_clearance: Metre | None = None
-    land_clearance: Metre | None = None
+    pocket_clearance: Metre | None = None  # running, along the circumference, stop to stop
+    land_clearance: Metre | None = None  # running, diametral; null without a land
     shaft_frequency: Hertz | None = None
     cage_frequency: Hertz | None = None
     outer_pass_frequency: Hertz | None = None
@@ -79,18 +79,18 @@ class SweptCase:
     restitution_threshold_low: Ratio | None = None
     restitution_threshold_high: Ratio | None = None
     margin: Ratio | None = None
-    verdict: str | None = None
-    probability_stable: Ratio | None = None
+    verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
+    probability_stable: Ratio | None = None  # from the worst kick
     probability_low: Ratio | None = None
     probability_high: Ratio | None = None
-    cage_motion: str | None = None
+    cage_motion: str | None = None  # what the cage does at the end
     largest_offset: Metre | None = None
     drift_rate: PerSecond | None = None
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
-    runs: int | None = None
-    time_share: Ratio | None = None
-    reason: str = ""
+    runs: int | None = None  # of the verdict
+    time_share: Ratio | None = None  # of a duty cycle; null without one
+    reason: str = ""  # why the case was refused; empty if it was not
 
 
 EVIDENCE = {f.name for f in fields(SweptCase)} & {f.name for f in fields(Judgement)} - {
@@ -107,13 +107,13 @@ class Sweep:
     `worst` is None where no case has an answer, `duty` without shares of time.
     """
 
-    parameters: tuple[Parameter, ...]
-    cases: tuple[SweptCase, ...]
-    verdicts: bool
-    margins: bool
-    worst: WorstCase | None
-    duty: Duty | None
-    complete: bool
+    parameters: tuple[Parameter, ...]  # the varied inputs
+    cases: tuple[SweptCase, ...]  # a row for each
+    verdicts: bool  # whether verdicts were asked for
+    margins: bool  # whether thresholds and margins were asked for
+    worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
+    duty: Duty | None  # time in each verdict; null without shares of time
+    complete: bool  # false if an interrupt left cases out
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row a case: its values and what came out, in SI units."""

@@ -223,19 +223,26 @@ def wear(data: xr.Dataset) -> Figure:
     return figure
 
 
+LEGEND_LINE = 11.0
+"""Height of a line of text between a panel and its title [pt]."""
+
+
 def lubrication(data: xr.Dataset) -> Figure:
     """Restitution factor against film thickness and race friction: dampings summed, and ball free to spin."""
-    figure, axes = canvas(PAGE, 3.1, ncols=2, sharey=True)
-    _panel(axes[0], data, "lubrication_restitution_factor", float(data["chain_restitution_factor"]))
+    figure, axes = canvas(PAGE, 3.2, ncols=2, sharey=True)
     free = "restitution_factor_free_spin"
-    _panel(axes[1], data, f"lubrication_{free}", float(data[free]))
+    lines = max(
+        _panel(axes[0], data, "lubrication_restitution_factor", float(data["chain_restitution_factor"])),
+        _panel(axes[1], data, f"lubrication_{free}", float(data[free])),
+    )
     if "film_exact" in data.sizes:
         thickness = 1e6 * data["exact_films_thickness"].values
         bare = 0.2 * 1e6 * float(data["film_thickness"].values[1])
         points = np.where(thickness > 0.0, thickness, bare), data["exact_films_restitution_factor"].values
         axes[0].plot(*points, "D", color=VERMILION, mfc="none", ms=4, label="exact contact, this friction")
-    axes[0].set(title="a  Race dampings summed (Eq. 18)", ylabel=r"restitution factor $\eta$ [-]")
-    axes[1].set(title="b  Ball free to spin in the impact")
+    axes[0].set_title("a  Race dampings summed (Eq. 18)", pad=6.0 + LEGEND_LINE * lines)
+    axes[0].set_ylabel(r"restitution factor $\eta$ [-]")
+    axes[1].set_title("b  Ball free to spin in the impact", pad=6.0 + LEGEND_LINE * lines)
     figure.supxlabel("total thickness of the film [\u00b5m]", fontsize=8)
     handles, labels = axes[0].get_legend_handles_labels()
     look: Look = {"title": "race friction", "fontsize": 7.0, "title_fontsize": 7.0, "handlelength": 3.2}
@@ -243,8 +250,11 @@ def lubrication(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> None:
-    """Draw one line for each race friction; bare races are apart from it, at the left."""
+def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
+    """Draw one line for each race friction; bare races are apart from it, at the left.
+
+    What names the study's own point is above the panel, where no curve can be; its lines are returned.
+    """
     thickness, frictions = 1e6 * data["film_thickness"].values, data["race_friction"].values
     films = thickness > 0
     bare = 0.2 * thickness[films].min()
@@ -261,8 +271,9 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> None:
     friction = study_of(data).get("film", {}).get("race_friction", {}).get("value")
     at = "" if friction is None else f", $f_{{BT}}$ = {friction:g}"
     (star,) = axes.plot(here if here > 0 else bare, own, "*", color=BLACK, ms=9, mfc="white", zorder=5)
-    axes.legend([star], [rf"this bearing{at}: $\eta$ = {own:.2f}"], loc="upper right", handletextpad=0.3)
-    zero = [f"{f:g}" for f, eta in zip(frictions, data[name].values, strict=True) if not eta.any()]
-    if zero:
-        words = rf"$\eta$ = 0 throughout for $f_{{BT}}$ = {', '.join(zero)}"
-        axes.annotate(words, (0.98, 0.83), xycoords="axes fraction", fontsize=7.5, color=GREY, ha="right")
+    words = [rf"this bearing{at}: $\eta$ = {own:.2f}"]
+    if zero := [f"{f:g}" for f, eta in zip(frictions, data[name].values, strict=True) if not eta.any()]:
+        words.append(rf"$\eta$ = 0 throughout for $f_{{BT}}$ = {', '.join(zero)}")
+    place: Look = {"loc": "lower left", "bbox_to_anchor": (-0.03, 1.0), "handletextpad": 0.3}
+    axes.legend([star], ["\n".join(words)], **place)
+    return len(words)

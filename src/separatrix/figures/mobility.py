@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from separatrix.figures.style import BLACK, BLUE, GREEN, GREY, PAGE, VERMILION, Look, canvas, legend_below
+from separatrix.units import format_number
 
 DASHED = (0, (4, 2))
 
@@ -40,7 +41,7 @@ def _step(axes: Axes, data: xr.Dataset) -> None:
     )
     for name, words, dashes in lines:
         value = float(data[name])
-        axes.axhline(value, color=GREY, lw=0.8, ls=dashes, label=f"{words}: {value:.4g}")
+        axes.axhline(value, color=GREY, lw=0.8, ls=dashes, label=f"{words}: {format_number(value)}")
     top = 2.0 * float(data["damping_locked"])
     axes.set(xscale="log", ylim=(0, top), title="a  Response to a step of force")
     axes.set(xlabel="time after the step [s]", ylabel="force over speed [N s/m]")
@@ -65,7 +66,7 @@ def _size(axes: Axes, data: xr.Dataset) -> None:
 def _push(axes: Axes, data: xr.Dataset) -> None:
     """F(u) of the slip fields both ways, the law, the linear law and the capacity."""
     u, capacity = data["speed"].values, float(data["capacity"])
-    axes.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity {capacity:.3g} N")
+    axes.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity {format_number(capacity, 3)} N")
     linear = np.array((0.0, 1.15 * capacity / float(data["damping"])))
     axes.plot(linear, float(data["damping"]) * linear, color=BLACK, lw=0.8, ls=(0, (1, 1.5)), label="$C_f u$")
     for name, words, colour in (("forward", "forward", BLUE), ("backward", "backward", VERMILION)):
@@ -102,7 +103,9 @@ def impacts(data: xr.Dataset) -> Figure:
     returned.set(ylabel="restitution [-]", ylim=(None, 1.0))
     capacity = float(data["capacity"])
     force.plot(v, data["impacts_peak_force"], color=BLUE, label="largest force of the pocket")
-    force.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity of the races {capacity:.3g} N")
+    force.axhline(
+        capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity of the races {format_number(capacity, 3)} N"
+    )
     force.set(xscale="log", yscale="log", title="b  Largest force", xlabel="speed of the impact [m/s]")
     force.set(ylabel="force [N]")
     legend_below(figure, columns=3)

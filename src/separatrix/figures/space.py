@@ -28,7 +28,7 @@ from separatrix.figures.style import (
     label_lines,
     legend_above,
 )
-from separatrix.units import Array
+from separatrix.units import Array, format_number
 
 MICRO = "\N{MICRO SIGN}"
 POLES = ("front", "+ axial", "rear", "\N{MINUS SIGN} axial")
@@ -250,7 +250,7 @@ def forces(data: xr.Dataset) -> Figure:
     largest.plot(milliseconds(data), data["contact_force"].values.max(axis=1), color=BLUE, lw=0.7)
     peak = float(data["largest_contact_force"])
     largest.set(ylabel="force [N]", ylim=(0.0, 1.08 * peak or 1.0))
-    largest.set_title(f"b  Largest pocket force; {peak:.3g} N at most")
+    largest.set_title(f"b  Largest pocket force; {format_number(peak, 3)} N at most")
     _lands(land, data)
     for axes in (raster, largest, land):
         time_axis(axes, data)
@@ -301,7 +301,8 @@ def _lands(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(milliseconds(data), force, lw=0.7, label=name, **look)
     most = max(float(force.max(initial=0.0)) for _, force in found)
     axes.set_ylim(0.0, 1.08 * most or 1.0)
-    axes.set_title(f"c  Force of each land; {most:.3g} N at most" if most else "c  The land was not touched")
+    title = f"c  Force of each land; {format_number(most, 3)} N at most"
+    axes.set_title(title if most else "c  The land was not touched")
     if len(found) > 1:
         legend_above(axes, columns=2)
 

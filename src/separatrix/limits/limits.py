@@ -20,8 +20,8 @@ them, so that any kick [m/s] gives the same."""
 class LinearLimit:
     """Critical friction without clearance in a ball set at rest, in closed form."""
 
-    restitution_factor: Ratio
-    critical_friction: Ratio
+    restitution_factor: Ratio  # at which the limit is taken
+    critical_friction: Ratio  # above which every disturbance grows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,8 +33,8 @@ class HardLimit:
     pocket's spring gives by far less than the clearance.
     """
 
-    restitution_factor: Ratio
-    critical_friction: Ratio | None
+    restitution_factor: Ratio  # of every impact
+    critical_friction: Ratio | None  # at which half the runs whirl; null if less than half do
 
 
 def linear_limit(cage: PlanarCage, restitution_factor: Ratio) -> LinearLimit:

@@ -28,8 +28,8 @@ _MADE = {RADIAL_CLEARANCE: "m", "film.elastic_modulus": "Pa", "film.poisson_rati
 class Parameter:
     """A number that a map varies: its name in a study file, and the SI unit it is written in."""
 
-    name: str
-    unit: str
+    name: str  # as in a study file
+    unit: str  # in which values are written, SI
 
     @property
     def is_whole(self) -> bool:

@@ -19,10 +19,10 @@ NOT_RUN = "not run"
 class MapAxis:
     """One parameter of a map: its name and SI unit, its rising values, and its value in the study."""
 
-    parameter: str
-    unit: str
-    values: tuple[float, ...]
-    here: float | None = None
+    parameter: str  # its name in a study file
+    unit: str  # of the values, SI
+    values: tuple[float, ...]  # rising
+    here: float | None = None  # its value in the study; null if there is none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,10 +84,10 @@ class MapPoint:
 class MapChange:
     """Between these two neighbouring decided points of a column the motion changes from rest to a whirl."""
 
-    x: float
-    y_low: float
-    y_high: float
-    whirls_above: bool
+    x: float  # value of x in this column
+    y_low: float  # last point below the change
+    y_high: float  # first point above the change
+    whirls_above: bool  # whether the cage whirls above the band, or below it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,15 +175,17 @@ class StabilityMap:
     `inference` is None where every point is run; `complete` is False if an interrupt left points out.
     """
 
-    x: MapAxis
-    y: MapAxis
-    points: tuple[MapPoint, ...]
+    x: MapAxis  # horizontal axis
+    y: MapAxis  # vertical axis
+    points: tuple[MapPoint, ...]  # column after column of x
     changes: Annotated[tuple[MapChange, ...], Rows("change", "change_")]
+    """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]
-    kick: MetrePerSecond
-    stopping: Stopping
-    inference: Inference | None
-    duration: Second
+    """Points of each decision, refused, inferred, not run."""
+    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    stopping: Stopping  # when a point is ended early
+    inference: Inference | None  # errors of the points that were not run; null if all were
+    duration: Second  # of a run
     ball_scatter: Ratio
-    adaptive: bool
-    complete: bool
+    adaptive: bool  # whether only points near a change were run
+    complete: bool  # false if an interrupt left points out

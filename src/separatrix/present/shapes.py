@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import isfinite
 from typing import TypeVar
 
 import numpy as np
@@ -20,7 +21,7 @@ from separatrix.answers import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import History, Judgement, SpaceHistory
+from separatrix.cage import History, Judgement, PlanarCage, SpaceHistory
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage.planar import OUTCOME_SENTENCES
 from separatrix.cage.reason import CAUSES
@@ -163,6 +164,13 @@ def _(found: MobilityAnswer) -> Node:
 
 
 # The cage.
+
+
+@shape.register
+def _(found: PlanarCage) -> Node:
+    """The race damping of balls that their races grip, which is infinite, is None."""
+    node = fields_of(found)
+    return node if isfinite(found.race_damping) else node | {"race_damping": Leaf(None, "N s/m")}
 
 
 @shape.register

@@ -16,8 +16,8 @@ from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Rati
 class NotMeasured:
     """A candidate without a measured friction in this environment; `reason` says so."""
 
-    name: str
-    reason: str
+    name: str  # of the candidate
+    reason: str  # which test is missing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,21 +28,21 @@ class NotFinished:
     of `Ranked`.
     """
 
-    name: str
-    friction: Ratio
-    friction_error: Ratio | None
-    friction_deviation: Ratio | None
-    probability_lowest_friction: Ratio | None = None
-    friction_scatter_assumed: bool
-    extrapolation: tuple[str, ...]
-    ball_cage_stiffness: NewtonPerMetre
-    pocket_clearance: Metre
-    land_clearance: Metre | None
-    restitution_factor: Ratio
-    judgement: Judgement | None = None
-    over_inputs: Judgement | None = None
-    other_ball: Judgement | None = None
-    reason: str
+    name: str  # of the candidate
+    friction: Ratio  # mean, as the cage sees it
+    friction_error: Ratio | None  # standard error of the mean
+    friction_deviation: Ratio | None  # standard deviation of a new sample about the mean
+    probability_lowest_friction: Ratio | None = None  # that no other candidate's mean friction is lower
+    friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
+    extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
+    ball_cage_stiffness: NewtonPerMetre  # of its own pocket
+    pocket_clearance: Metre  # running, along the circumference
+    land_clearance: Metre | None  # running, diametral; null without a land
+    restitution_factor: Ratio  # of the chain with its pocket
+    judgement: Judgement | None = None  # null if it has no verdict either
+    over_inputs: Judgement | None = None  # with uncertain inputs drawn; null without
+    other_ball: Judgement | None = None  # by the other model of a ball; null without
+    reason: str  # what is missing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,16 +121,18 @@ class OwnCurve:
     0 where half the runs whirl without friction, the top of the searched frictions where none is enough.
     """
 
-    name: str
+    name: str  # of the candidate
     own_critical_friction: Annotated[tuple[Ratio, ...], ("own_eta",)]
+    """0: whirls without friction; the top of the search: none is enough."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankedEnvironment:
     """The candidates in one environment, best first; then those not finished, and those not measured."""
 
-    name: str
+    name: str  # medium and counterface
     materials: Annotated[tuple[Row, ...], Rows("material", "material_", label="name")]
+    """A row for each candidate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,25 +151,29 @@ class Ranking:
     verdict, by the other model of the ball.
     """
 
-    environment: str
-    candidate: str
+    environment: str  # the bearing's own, of the headline
+    candidate: str  # whose pocket the chain and the curve are for
     restitution_factor: Ratio
-    restitution_factor_free_spin: Ratio
-    ball_cage_stiffness: NewtonPerMetre
-    pocket: PocketConditions
-    friction_scatter: Ratio
-    solid_lubrication_limit: Ratio
-    paper_statement: str
+    restitution_factor_free_spin: Ratio  # of the chain, the ball free to spin in the impact
+    ball_cage_stiffness: NewtonPerMetre  # of the pocket of `candidate`
+    pocket: PocketConditions  # sliding speed and pressure at which friction is taken
+    friction_scatter: Ratio  # assumed for an unrepeated test, as a share of the mean
+    solid_lubrication_limit: Ratio  # largest restitution factor with solid lubrication, by the paper
+    paper_statement: str  # what the paper grants solid lubrication, in words
     environments: Annotated[tuple[RankedEnvironment, ...], Rows("environment", label="name")]
+    """The candidates in each."""
     overall: Annotated[tuple[Row, ...], Rows("material", "overall_", label="name")]
+    """The candidates with their mean friction over the environments."""
     stability: Annotated[StabilityCurve | None, Rows()]
-    own_eta: tuple[Ratio, ...] | None
+    """Critical friction against restitution factor; null if left out."""
+    own_eta: tuple[Ratio, ...] | None  # restitution factors of the own curves
     own_curves: Annotated[tuple[OwnCurve, ...] | None, Rows("material", label="name")]
+    """A curve for each candidate; null where all have one stiffness."""
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int
-    duration: Second
-    ball_model: BallModel
-    motion_model: MotionModel
-    capacity: Newton
-    notes: tuple[str, ...] = ()
-    complete: bool
+    runs: int  # from each kick
+    duration: Second  # of a run
+    ball_model: BallModel  # damper or traction
+    motion_model: MotionModel  # plane or space
+    capacity: Newton  # most that the races can transmit to the most loaded ball
+    notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
+    complete: bool  # false if an interrupt left something out

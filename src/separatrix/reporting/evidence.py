@@ -54,6 +54,8 @@ def _evidence(rank: Row) -> Iterator[Block]:
         "centre about the axis over that of the ball set; rubbing: friction power on the land.",
         left=2,
     )
+    if any(row.get("largest_tilt") is not None for row in rows):
+        yield _in_space(rows)
     if any(row.get("other_ball_verdict") for row in rows):
         yield _other_ball(rank, rows)
     yield facts(
@@ -67,6 +69,25 @@ def _evidence(rank: Row) -> Iterator[Block]:
     for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
         if others:
             yield _short(name, each)
+
+
+def _in_space(rows: list[Row]) -> Table:
+    """Return the evidence that only a cage in space has."""
+    return Table(
+        ("candidate", "largest tilt", "axial travel", "cone ratio", "impacts at pockets [1/s]"),
+        tuple(
+            (
+                str(row["name"]),
+                quantity(row["largest_tilt"], "rad", 3),
+                quantity(row["axial_travel"], "m", 3),
+                number(row["cone_ratio"], 2),
+                number(row["impact_rate"], 0),
+            )
+            for row in rows
+        ),
+        "Motion out of the plane. Travel: along the axis from end to end; cone ratio: speed at which the "
+        "lean of the cage's axis goes round over the speed of the ball set.",
+    )
 
 
 def _other_ball(rank: Row, rows: list[Row]) -> Table:

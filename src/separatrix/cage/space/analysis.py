@@ -42,22 +42,22 @@ FEWEST, WINDOWS = 16, 24
 class Lengths:
     """Mean, standard deviation, root mean square about zero, and extremes of a length over time [m]."""
 
-    mean: Metre
-    standard_deviation: Metre
-    rms: Metre
-    low: Metre
-    high: Metre
+    mean: Metre  # over the run
+    standard_deviation: Metre  # about the mean
+    rms: Metre  # root of the mean square
+    low: Metre  # smallest
+    high: Metre  # largest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Angles:
     """As `Lengths`, of an angle [rad]."""
 
-    mean: Radian
-    standard_deviation: Radian
-    rms: Radian
-    low: Radian
-    high: Radian
+    mean: Radian  # over the run
+    standard_deviation: Radian  # about the mean
+    rms: Radian  # root of the mean square
+    low: Radian  # smallest
+    high: Radian  # largest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,7 +148,7 @@ class Rubbing:
     land_sliding: Annotated[Array, "J", ("guide",)]
     pocket_power: Annotated[Array, "W", ("ball",)]
     land_power: Annotated[Array, "W", ("guide",)]
-    total_power: Watt
+    total_power: Watt  # mean friction heat of all pockets and lands
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,7 +171,7 @@ class SpaceAnalysis:
         Largest pocket force over what the races can transmit to a ball; None if that is not known.
     """
 
-    run_length: Second
+    run_length: Second  # time over which the means are taken
     whole_run: bool
     offset: Lengths
     axial: Lengths
@@ -181,10 +181,10 @@ class SpaceAnalysis:
     largest_axial: Metre
     largest_tilt: Radian
     cage_slip: Ratio | None
-    whirl: Whirl
-    spectra: Spectra
-    impacts: Impacts
-    rubbing: Rubbing
+    whirl: Whirl  # of the cage centre and of the tilt
+    spectra: Spectra  # of the motion's parts, with their strongest tones
+    impacts: Impacts  # counts, rates and impulses of pockets and lands
+    rubbing: Rubbing  # friction heat of pockets and lands
     force_share: Ratio | None
 
 

@@ -117,7 +117,7 @@ class SpaceHistory:
     kinetic_energy: Annotated[Array, "J", ("time",)]
     stored_energy: Annotated[Array, "J", ("time",)]
     work: Annotated[dict[str, Array], "J", ("time",)]
-    pocket_angle: Annotated[Array, "rad", ("ball",)]
+    pocket_angle: Annotated[Array, "rad", ("ball",)]  # place of each pocket in the turning frame
     half_play: Annotated[Array, "m", ("ball",)]
     pocket_impacts: Annotated[Array, "-", ("ball",)]
     pocket_rubbing: Annotated[Array, "J", ("ball",)]

@@ -38,13 +38,13 @@ class Spectra:
     axial: Annotated[Array, "m", ("tone",)]
     slip_rate: Annotated[Array, "rad/s", ("tone",)]
     offset_frequency: Hertz | None
-    offset_amplitude: Metre
+    offset_amplitude: Metre  # of the strongest tone of the offset
     lean_frequency: Hertz | None
-    lean_amplitude: Radian
+    lean_amplitude: Radian  # of the strongest tone of the lean
     axial_frequency: Hertz | None
-    axial_amplitude: Metre
+    axial_amplitude: Metre  # of the strongest tone along the axis
     slip_frequency: Hertz | None
-    slip_amplitude: RadianPerSecond
+    slip_amplitude: RadianPerSecond  # of the strongest tone of the slip rate
 
 
 def spectra(

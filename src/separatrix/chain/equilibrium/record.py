@@ -34,14 +34,14 @@ class Equilibrium:
     the ring [N]. `race_control` says which race Jones's criterion would let control the ball.
     """
 
-    model: KinematicModel
+    model: KinematicModel  # what fixes the ball's spin axis
     azimuth: Annotated[Array, "rad", ("ball",)]
     contact_angle_inner: Annotated[Array, "rad", ("ball",)]
     contact_angle_outer: Annotated[Array, "rad", ("ball",)]
     load_inner: Annotated[Array, "N", ("ball",)]
     load_outer: Annotated[Array, "N", ("ball",)]
-    inner_contact: Annotated[NDArray[np.bool_], ("ball",)]
-    outer_contact: Annotated[NDArray[np.bool_], ("ball",)]
+    inner_contact: Annotated[NDArray[np.bool_], ("ball",)]  # whether the ball touches the inner race
+    outer_contact: Annotated[NDArray[np.bool_], ("ball",)]  # whether it touches the outer race
     orbital_speed: Annotated[Array, "rad/s", ("ball",)]
     pitch_angle: Annotated[Array, "rad", ("ball",)]
     yaw_angle: Annotated[Array, "rad", ("ball",)]
@@ -60,15 +60,16 @@ class Equilibrium:
     centrifugal_force: Annotated[Array, "N", ("ball",)]
     gyroscopic_moment: Annotated[Array, "N m", ("ball",)]
     race_control: Annotated[tuple[Race, ...], ("ball",)]
+    """Race that controls the ball's spin by Jones's criterion."""
     axial_displacement: Metre
     radial_displacement: Metre
     transverse_displacement: Metre
     tilt: Radian
-    is_tilt_held: bool
+    is_tilt_held: bool  # whether the rings are held, parallel or at a given tilt
     cross_tilt: Radian
     moment: NewtonMetre
-    iterations: int
-    residual: Newton
+    iterations: int  # steps of the solver
+    residual: Newton  # unbalanced force on the inner ring
 
     @property
     def most_loaded(self) -> int:

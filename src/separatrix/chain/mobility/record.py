@@ -41,7 +41,7 @@ class LinearMobility:
     and 1 + in front of it. The groove values are those of the ball centre across its orbit.
     """
 
-    slip_law: SlipLaw
+    slip_law: SlipLaw  # which slip speed rounds the corner of Coulomb's law
     slip_speed_inner: MetrePerSecond
     slip_speed_outer: MetrePerSecond
     pitch_angle: Radian
@@ -49,8 +49,8 @@ class LinearMobility:
     oscillations: Annotated[Array, "rad/s", ("mode",)]
     shares: Annotated[Array, "-", ("mode",)]
     damping: NewtonSecondPerMetre
-    damping_relaxed: NewtonSecondPerMetre
-    damping_locked: NewtonSecondPerMetre
+    damping_relaxed: NewtonSecondPerMetre  # C_eff, the attitude of the spin axis following too
+    damping_locked: NewtonSecondPerMetre  # all spin held
     effective_mass: Kilogram
     pocket_friction_effect: Ratio
     groove_damping: NewtonSecondPerMetre
@@ -68,21 +68,22 @@ class Mobility:
     (instant,); the size of Y = u/F and 1/Re Y have shape (frequency,).
     """
 
-    ball: int
-    linear: LinearMobility
+    ball: int  # number of the most loaded ball, from 0
+    linear: LinearMobility  # small motion about steady rolling
     capacity: Newton
-    traction: BallTraction
+    traction: BallTraction  # law of traction fitted to the forces
     law_error: Ratio
     asymmetry: Ratio
-    speed: Annotated[Array, "m/s", ("push",)]
+    speed: Annotated[Array, "m/s", ("push",)]  # of the push, beyond the free orbit
     force_forward: Annotated[Array, "N", ("push",)]
     force_backward: Annotated[Array, "N", ("push",)]
     force_law: Annotated[Array, "N", ("push",)]
-    instant: Annotated[Array, "s", ("instant",)]
-    step_damping: Annotated[Array, "N s/m", ("instant",)]
-    frequency: Annotated[Array, "Hz", ("frequency",)]
+    instant: Annotated[Array, "s", ("instant",)]  # time since a unit force was put on
+    step_damping: Annotated[Array, "N s/m", ("instant",)]  # force over speed at that time
+    frequency: Annotated[Array, "Hz", ("frequency",)]  # of a small alternating force
     mobility: Annotated[Array, "m/s/N", ("frequency",)]
     damping_at_frequency: Annotated[Array, "N s/m", ("frequency",)]
+    """1/Re Y, what a small alternating force feels."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -97,13 +98,15 @@ class Impacts:
     """
 
     felt_mass: Kilogram
-    ball_cage_stiffness: NewtonPerMetre
-    nominal_restitution_factor: Ratio
-    restitution_summed: Ratio
-    restitution_linear: Ratio
-    speed: Annotated[Array, "m/s", ("impact",)]
+    ball_cage_stiffness: NewtonPerMetre  # linear stiffness of the pocket in the impacts
+    nominal_restitution_factor: Ratio  # the paper's formula, with the whole cage mass
+    restitution_summed: Ratio  # the paper's formula, with the felt mass
+    restitution_linear: Ratio  # limit of gentle impacts
+    speed: Annotated[Array, "m/s", ("impact",)]  # of the cage before the impact
     restitution_forward: Annotated[Array, "-", ("impact",)]
+    """By the slip fields, the cage from behind the ball."""
     restitution_backward: Annotated[Array, "-", ("impact",)]
-    restitution_law: Annotated[Array, "-", ("impact",)]
-    peak_force: Annotated[Array, "N", ("impact",)]
-    duration: Annotated[Array, "s", ("impact",)]
+    """By the slip fields, the cage from in front of the ball."""
+    restitution_law: Annotated[Array, "-", ("impact",)]  # by the fitted law of traction
+    peak_force: Annotated[Array, "N", ("impact",)]  # the larger of both senses
+    duration: Annotated[Array, "s", ("impact",)]  # of the contact

@@ -34,15 +34,15 @@ class ShearField:
     shape (strip,).
     """
 
-    across: Annotated[Array, "m", ("strip",)]
-    along: Annotated[Array, "m", ("strip", "node")]
+    across: Annotated[Array, "m", ("strip",)]  # place of each strip
+    along: Annotated[Array, "m", ("strip", "node")]  # place of each element, leading edge first
     creep_ratio: Annotated[Array, "-", ("strip",)]
-    pressure: Annotated[Array, "Pa", ("strip", "node")]
-    bound: Annotated[Array, "Pa", ("strip", "node")]
+    pressure: Annotated[Array, "Pa", ("strip", "node")]  # by Hertz
+    bound: Annotated[Array, "Pa", ("strip", "node")]  # friction times pressure
     shear: Annotated[Array, "Pa", ("strip", "node")]
-    shear_without_slip: Annotated[Array, "Pa", ("strip", "node")]
-    slip: Annotated[Array, ("strip", "node")]
-    sweeps: Annotated[Array, ("strip",)]
+    shear_without_slip: Annotated[Array, "Pa", ("strip", "node")]  # shear of a contact that sticks throughout
+    slip: Annotated[Array, ("strip", "node")]  # 0 in stick, else the sign of the slip
+    sweeps: Annotated[Array, ("strip",)]  # solutions until the strip's stick zone settled
 
 
 def shear_field(

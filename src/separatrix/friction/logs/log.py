@@ -35,16 +35,19 @@ from separatrix.units import (
 class Conditions:
     """Under which one test was run; None where that is not known."""
 
-    material: str | None = None
-    counterface: str | None = None
-    medium: str | None = None
-    sample: str | None = None
-    test: str | None = None
+    material: str | None = None  # of the sample
+    counterface: str | None = None  # what the sample slides on
+    medium: str | None = None  # in which it slides
+    sample: str | None = None  # name of the piece; tests of one piece share it
+    test: str | None = None  # name of the test
     temperature: Kelvin | None = field(default=None, metadata=_check.must(_check.positive, 0.1, 3000.0))
+    """Of the test."""
     slip_speed: MetrePerSecond | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e3))
+    """Of the test."""
     pressure: Pascal | None = field(default=None, metadata=_check.must(_check.positive, 1e-3, 1e12))
     """Mean contact pressure."""
     normal_force: Newton | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e7))
+    """Of the test."""
     cycle_time: Second | None = field(default=None, metadata=_check.must(_check.positive, 1e-6, 1e7))
     """Of one revolution or of one stroke there and back."""
 
@@ -63,7 +66,7 @@ class Conditions:
 class ColumnRead:
     """How one column of a file was understood."""
 
-    header: str
+    header: str  # as in the file
     meaning: str | None  # A key of `MEANINGS`; None where the column is not used
     unit: str  # as the file or the column map writes it; empty where there is none
     why: str  # for instance ``"its name"`` or ``"column map"``
@@ -92,23 +95,23 @@ class RawLog:
     """Name of the file, and of the sheet, channel group or section in it."""
     checksum: str
     """SHA-256 of the file."""
-    format: str
+    format: str  # of the file, in words
     friction: Array
     """Magnitude, shape (row,) [-]."""
-    time: Array | None = None
-    distance: Array | None = None
-    cycles: Array | None = None
-    normal_force: Array | None = None
+    time: Array | None = None  # since the start, shape (row,) [s]
+    distance: Array | None = None  # slid, shape (row,) [m]
+    cycles: Array | None = None  # turns or strokes, shape (row,)
+    normal_force: Array | None = None  # shape (row,) [N]
     tangential_force: Array | None = None
     """With the sign that was logged, shape (row,) [N]."""
-    temperature: Array | None = None
-    wear_depth: Array | None = None
-    slip_speed: Array | None = None
+    temperature: Array | None = None  # shape (row,) [K]
+    wear_depth: Array | None = None  # shape (row,) [m]
+    slip_speed: Array | None = None  # shape (row,) [m/s]
     missing: int = 0
     """Rows left out because friction or its abscissa was not there."""
-    columns: tuple[ColumnRead, ...] = ()
-    metadata: Mapping[str, str] = field(default_factory=dict)
-    conditions: Conditions = field(default_factory=Conditions)
+    columns: tuple[ColumnRead, ...] = ()  # how each was understood
+    metadata: Mapping[str, str] = field(default_factory=dict)  # what the header states, by its name there
+    conditions: Conditions = field(default_factory=Conditions)  # from header, column map and columns
     series: str = ""
     """What the header states about the test that this is a part of; empty if nothing."""
     notes: tuple[str, ...] = ()

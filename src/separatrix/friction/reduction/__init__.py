@@ -76,9 +76,9 @@ class TestFriction:
 
     __test__ = False
 
-    source: str
-    checksum: str
-    conditions: Conditions
+    source: str  # name of the file, and of the part of it
+    checksum: str  # SHA-256 of the file
+    conditions: Conditions  # under which it was run
     friction: Ratio
     """Mean over the steady part."""
     standard_error: Ratio
@@ -93,11 +93,11 @@ class TestFriction:
     """In the SI unit of `run_in_axis`; the steady part begins here."""
     run_in_axis: str
     """``"time"``, ``"distance"`` or ``"cycles"``."""
-    run_in_method: str
+    run_in_method: str  # how the end of running-in was found
     steady_end: float
     """Where the steady part ends, in the SI unit of `run_in_axis`."""
-    rows: int
-    steady_rows: int
+    rows: int  # of the log
+    steady_rows: int  # of them in the steady part
     cycles: int
     """Whole cycles averaged; 0 where none are."""
     drift_rate: float
@@ -108,7 +108,7 @@ class TestFriction:
     """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
     stick_slip_frequency: float
     """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
-    flags: tuple[str, ...] = ()
+    flags: tuple[str, ...] = ()  # what a reader should know, a sentence each
 
     @property
     def half_width(self) -> Ratio:

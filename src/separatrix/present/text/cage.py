@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from separatrix.cage import CageMotion
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage_choice import cage_candidate, environment_of
+from separatrix.limits.point import own_restitution_factor
 from separatrix.present.shapes import outcome_sentence
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
@@ -24,7 +26,7 @@ from separatrix.present.text.tables import (
 from separatrix.study import Guidance
 
 if TYPE_CHECKING:
-    from separatrix.answers import SimulationAnswer
+    from separatrix.answers import OfCage, SimulationAnswer
     from separatrix.cage import History, Judgement, PlanarCage
     from separatrix.study import Study
 
@@ -49,6 +51,7 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     ended = [
         ("Kick, run, seed", f"{answer.kick:g} m/s, {answer.run}, {study.stability.seed}"),
         ("Pocket friction", friction_text(cage, study)),
+        *damping_fact(answer),
         ("Outcome", outcome),
         *_power_facts(history, rubbing),
     ]
@@ -59,7 +62,7 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     ]
     energies = {name: getattr(history, name) for name in ("kinetic_energy", "spring_energy", "land_energy")}
     ledger = [
-        (name.replace("_", " "), f"{1e3 * values[-1]:.4g} mJ")
+        (name.replace("_", " "), f"{significant(1e3 * values[-1])} mJ")
         for name, values in (history.work | energies).items()
         if values.any()
     ]
@@ -81,6 +84,16 @@ def friction_text(cage: PlanarCage, study: Study) -> str:
     environment = environment_of(study.ranking) if study.ranking and candidate else None
     whose = f", {candidate.name} in {environment}" if candidate else ""
     return number(cage.ball_cage_friction) + whose
+
+
+def damping_fact(answer: OfCage) -> list[tuple[str, str]]:
+    """Return the race damping and the restitution factor of a run if they are not those of the study."""
+    cage = answer.cage
+    if cage.race_damping == answer.solution.restitution.race_damping:
+        return []
+    size = quantity(cage.race_damping, "N s/m") if isfinite(cage.race_damping) else "infinite"
+    eta = own_restitution_factor(cage)
+    return [("Race damping", f"{size}, for a restitution factor of {eta:.4g} in place of the study's")]
 
 
 def orbit_facts(history: History, cage: PlanarCage) -> list[tuple[str, str]]:
@@ -114,7 +127,8 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
     mean = f"{stated(found, 'mean_offset')} at the end, relative spread {number(found.orbit_evenness, 2)}"
     forces = f"{stated(found, 'largest_contact_force')} at a pocket, {stated(found, 'largest_land_force')}"
     energy = (
-        f"{1e3 * found.end_energy:.3g} mJ; frame and loads alone can give {1e3 * found.drive_energy:.3g} mJ"
+        f"{significant(1e3 * found.end_energy, 3)} mJ; frame and loads alone can give "
+        f"{significant(1e3 * found.drive_energy, 3)} mJ"
     )
     growth = f"{significant(found.growth_rate, 3)} 1/s "
     if found.growth_rate_low is None:

@@ -7,10 +7,19 @@ from typing import TYPE_CHECKING
 
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.present.shapes import outcome_sentence
-from separatrix.present.text.cage import clearance_fact, friction_text
+from separatrix.present.text.cage import clearance_fact, damping_fact, friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.clearances import running_clearances
-from separatrix.present.text.tables import facts, number, paragraph, quantity, rate, section, stated
+from separatrix.present.text.tables import (
+    facts,
+    number,
+    paragraph,
+    quantity,
+    rate,
+    section,
+    significant,
+    stated,
+)
 
 if TYPE_CHECKING:
     from separatrix.answers import SpaceSimulationAnswer
@@ -35,6 +44,7 @@ def simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
         ("Judged", f"from {span}; the run has {quantity(found.run_length, 's')}"),
         ("Kick, run, seed", f"{answer.kick:g} m/s, {answer.run}, {study.stability.seed}"),
         ("Pocket friction", friction_text(cage, study)),
+        *damping_fact(answer),
         ("Drift rate", drift),
         ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
     ]
@@ -76,7 +86,7 @@ def _motion(found: SpaceAnalysis) -> list[tuple[str, str]]:
 
 
 def _mrad(angle: float) -> str:
-    return f"{1e3 * angle:.3g} mrad"
+    return f"{significant(1e3 * angle, 3)} mrad"
 
 
 def _cone(found: SpaceAnalysis) -> str:

@@ -32,9 +32,9 @@ class FrictionLaw:
     the groove.
     """
 
-    coefficient: Ratio | Profile
-    cohesion: Pascal = 0.0
-    shear_strength: Pascal = math.inf
+    coefficient: Ratio | Profile  # of friction; a profile varies across the groove
+    cohesion: Pascal = 0.0  # largest traction without pressure
+    shear_strength: Pascal = math.inf  # that no pressure exceeds
 
     def __post_init__(self) -> None:
         mu = self.coefficient

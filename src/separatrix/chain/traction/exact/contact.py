@@ -53,13 +53,13 @@ class ContactProblem:
     unlike bodies.
     """
 
-    ellipse: ContactEllipse
-    bodies: tuple[Body, Body]
-    friction: FrictionLaw
-    film_compliance: float | Profile = 0.0
-    roughness: Metre = 0.0
-    own_pressure: bool = False
-    coupled: bool = False
+    ellipse: ContactEllipse  # Hertz contact of the bodies without films
+    bodies: tuple[Body, Body]  # ball and race
+    friction: FrictionLaw  # largest traction against the pressure
+    film_compliance: float | Profile = 0.0  # h/G of a film in series, beside the layers of the bodies [m/Pa]
+    roughness: Metre = 0.0  # length l of a rough interface: its tangential stiffness is p/l
+    own_pressure: bool = False  # whether the pressure of the layered bodies replaces Hertz's
+    coupled: bool = False  # whether pressure causes slip between unlike bodies
 
     def __post_init__(self) -> None:
         gap = ("curvature_rolling", "curvature_transverse") if self.own_pressure else ()
@@ -107,23 +107,24 @@ class ContactSolution:
     residual : of the tractions.
     """
 
-    along: Annotated[Array, "m", ("column",)]
-    across: Annotated[Array, "m", ("row",)]
+    along: Annotated[Array, "m", ("column",)]  # middle of each column
+    across: Annotated[Array, "m", ("row",)]  # middle of each row
     fraction: Annotated[Array, "-", ("row", "column")]
-    pressure: Field
-    traction: Vectors
+    pressure: Field  # mean of a cell
+    traction: Vectors  # on the ball, along and across rolling, mean of a cell
     slip: Annotated[Array, "-", ("direction", "row", "column")]
-    stick: NDArray[np.bool_]
-    load: Newton
+    """Along and across rolling, over the rolling speed."""
+    stick: NDArray[np.bool_]  # whether a cell sticks
+    load: Newton  # sum of the pressure
     force: Newton
     lateral_force: Newton
     spin_moment: NewtonMetre
     stick_share: Ratio
-    dissipation: Newton
-    max_pressure: Pascal
+    dissipation: Newton  # power over rolling speed
+    max_pressure: Pascal  # largest of a cell
     film_strain: Ratio
-    iterations: int
-    residual: Ratio
+    iterations: int  # steps of the solver for the tractions
+    residual: Ratio  # error that the solver left in the tractions
 
     @property
     def traction_coefficient(self) -> Ratio:

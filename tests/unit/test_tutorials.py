@@ -1,0 +1,110 @@
+"""The tutorials, followed as a reader would: what the program prints is what the page shows."""
+
+import re
+import runpy
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+import separatrix
+from separatrix.cli import main
+
+FOLDER = Path(__file__).parents[2] / "docs" / "tutorials"
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+QUICK = {"new", "check", "map", "simulate", "sweep", "tribometer"}
+"""Verbs that are run here, a few seconds each; rankings take longer."""
+
+SHOWN = {  # page: blocks of output that are compared
+    "design": 3,
+    "first-ranking": 1,
+    "tribometer": 2,
+    "uncertainty": 0,
+}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(plt, "show", lambda: None)
+
+
+def blocks(page: str) -> Iterator[tuple[str, str]]:
+    """Yield the language and the text of each block of a page."""
+    yield from BLOCK.findall((FOLDER / f"{page}.md").read_text(encoding="utf-8"))
+
+
+def run(command: str, capsys) -> str:
+    """Return what a command of a page prints; patterns are replaced as a shell does."""
+    words = shlex.split(command)[1:]
+    expanded = [
+        name for word in words for name in (sorted(map(str, Path().glob(word))) if "*" in word else [word])
+    ]
+    capsys.readouterr()
+    assert main(expanded) == 0, command
+    return capsys.readouterr().out
+
+
+def followed(code: str) -> None:
+    """Run a script of a page."""
+    Path("script.py").write_text(code, encoding="utf-8")
+    runpy.run_path("script.py")
+
+
+@pytest.mark.parametrize("page", SHOWN)
+def test_a_command_of_a_tutorial_prints_what_the_page_shows(page, capsys):
+    """The files of the page are written, its commands run in order; each line shown is printed, in order."""
+    command, printed, compared = "", "", 0
+    for language, text in blocks(page):
+        name = re.match(r"# (\S+\.toml)", text)
+        if language == "python":
+            followed(text)
+        elif language == "toml" and name:
+            Path(name[1]).write_text(text, encoding="utf-8")
+        elif text.startswith("separatrix "):
+            command, printed = text.splitlines()[-1], ""
+            if command.startswith("separatrix new"):
+                run(command, capsys)
+        elif language == "text" and command.split()[1:2] and command.split()[1] in QUICK:
+            printed = printed or run(command, capsys)
+            lines = iter(printed.splitlines())
+            assert [line for line in text.splitlines() if line not in lines] == []
+            compared += 1
+    assert compared == SHOWN[page]
+
+
+def test_every_tutorial_is_followed():
+    """Those of the command line, and that of Python."""
+    assert {path.stem for path in FOLDER.glob("*.md")} == {*SHOWN, "python"}
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+def test_the_tutorial_of_python_prints_what_the_page_says(capsys):
+    """Its blocks run in one session, but for the ranking; the numbers are those of the text between them."""
+    text = (FOLDER / "python.md").read_text(encoding="utf-8")
+    codes = [code for language, code in blocks("python") if language == "python"]
+    followed("\n".join(code for code in codes if "separatrix.rank" not in code))
+    printed = capsys.readouterr().out.splitlines()
+    factors = re.findall(r"prints (0\.\d+)\.\.\.", text)
+    assert len(factors) == 2
+    assert [number[:6] for number in printed[:2]] == factors
+    (outcome,) = re.findall(r"prints ([A-Z]+) and", text)
+    assert printed[-1] == outcome
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+def test_what_the_tutorials_say_of_a_run_without_output(capsys):
+    """The clearances of the cage to design, and its run from the usual kick."""
+    words = (FOLDER / "design.md").read_text(encoding="utf-8")
+    (study,) = [text for language, text in blocks("design") if language == "toml"]
+    Path("my-cage.toml").write_text(study)
+    (pocket, land) = re.search(
+        r"clearances: (\d+ um) each way in the pockets, (\d+ um) radial", words
+    ).groups()
+    checked = run("separatrix check my-cage.toml", capsys)
+    assert re.search(rf"Pocket clearance +{pocket} each way", checked)
+    assert re.search(rf"Land clearance +{land} radial", checked)
+    found = separatrix.simulate("my-cage.toml")
+    assert f"the\ndisturbance is {found.kick:g} m/s, and run 0 {found.history.outcome.name.lower()}" in words
