@@ -22,6 +22,8 @@ ARGUMENTS = ["--no-sandbox", "--no-first-run", *(f"--disable-{name}" for name in
 PATIENCE = 200_000
 """For what computes [ms]: a loaded machine is slow, and a new one may have to compile a kernel first."""
 
+playwright_api.expect.set_options(timeout=60_000)  # what is expected comes at once where the machine is idle
+
 STUDY = """\
 extends = "cryogenic-turbopump"
 title = "A small ensemble"
