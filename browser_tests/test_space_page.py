@@ -28,11 +28,11 @@ def plays(page) -> None:
         seen.append(page.evaluate(drawn))
         assert len(seen) < 2 or seen[-1] != seen[-2]
 
-    page.wait_for_function("document.getElementById('grown').textContent")
+    expect(page.locator("#grown")).not_to_be_empty()
     changed()
     page.click("#play")
     expect(page.locator("#play")).to_have_text("Pause")
-    page.wait_for_function("Number(document.getElementById('time').value) > 0")
+    expect(page.locator("#time")).not_to_have_value("0")
     page.click("#play")
     expect(page.locator("#play")).to_have_text("Play")
     changed()
