@@ -13,9 +13,9 @@ A cut cell with the share f of its length inside has the extra term
 
     c D_0 (1/f - 1) cos(theta),    D_0 = D_n n n + D_t t t,
 
-n the normal of the outline, at the angle theta to rolling, and t its tangent. D_n and D_t are what the stencil
-takes of a row of endless width: the ends of neighbouring rows move together as one edge. Along rolling that
-edge is 1/cos(theta) as long as across itself.
+n the normal of the outline, at the angle theta to rolling, and t its tangent. D_n and D_t are the stencil's
+terms of a row of endless width: the ends of neighbouring rows move together as one edge. Distances along
+rolling are 1/cos(theta) of those across that edge.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class Operator:
     """Slip times dx of tractions (2, row, column), and what the preconditioner needs of it.
 
     spectra : transforms of xx, yy, xy; padded : size of the transform; local : extra diagonal, cross : extra
-    xy in the cell, and upstream : factor of the next cell upstream, of cuts and films; diagonal : A_ii; active, whole : cells in the
-    contact, cells not cut by much; rows : Toeplitz coefficients of a row, shape (kind, 2, 2 columns - 1), and
-    inverses of their leading blocks; kind : which of them a row of the grid takes.
+    xy in the cell, and upstream : factor of the next cell upstream, of cuts and films; diagonal : A_ii;
+    active, whole : cells in the contact, cells not cut by much; rows : Toeplitz coefficients of a row, shape
+    (kind, 2, 2 columns - 1), and inverses of their leading blocks; kind : which of them a row takes.
     """
 
     spectra: Complex
