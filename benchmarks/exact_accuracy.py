@@ -12,7 +12,7 @@ from itertools import chain
 
 import numpy as np
 from exact_cases import MU, body, contact, kalker, saturation, strip_force
-from test_exact_contact import GALIN, given
+from test_exact_contact import GALIN, LONG, coefficients, given
 from test_exact_normal import COATED, spheres_on_two_grids
 from test_exact_rolling import (
     CREEPS,
@@ -35,14 +35,6 @@ from separatrix.chain.traction.profile import worn_band
 from separatrix.errors import ValidityWarning
 
 
-def coefficients(b, nu, columns, rows):
-    """C11, C22, C23, C33 in full stick."""
-    made, e = contact(b, nu, columns=columns, rows=rows, friction=1e6), 1e-6
-    along, across, spun = (kalker(made, *creep, tolerance=1e-7) for creep in np.eye(3) * -e)
-    forces = (along.force / b, across.lateral_force / b, spun.lateral_force / b**1.5, spun.spin_moment / b**2)
-    return np.array(forces) / e
-
-
 def say(*values):
     """Print with four digits behind the point, at once."""
     print(*(np.round(v, 4) if isinstance(v, (float, np.ndarray)) else v for v in values), flush=True)
@@ -54,12 +46,17 @@ def percent(found, exact):
 
 
 def kalker_table():
-    """Kalker's coefficients on 40 x 40 cells, and extrapolated over two grids."""
-    print("## C11 C22 C23 C33: per cent at 40 x 40 | 2 f(80) - f(40) | 2 f(160) - f(80), wide contacts")
+    """Kalker's coefficients on 1600 cells, and extrapolated over two grids."""
+    print("## C11 C22 C23 C33: per cent at 40 x 40 | 2 f(80) - f(40) | 2 f(160) - f(80), from b/a = 0.5 on")
     for b, nu, *exact in GALIN:
-        f = {n: coefficients(b, nu, n, n) for n in ((40, 80, 160) if b >= 1.0 else (40, 80))}
-        values = [f[40], 2.0 * f[80] - f[40]] + ([2.0 * f[160] - f[80]] if b >= 1.0 else [])
+        counts = (40, 80, 160) if b >= 0.5 else (40, 80)
+        f = {n: np.delete(coefficients(b, nu, n, n), 3) for n in counts}
+        values = [f[40], 2.0 * f[80] - f[40]] + ([2.0 * f[160] - f[80]] if b >= 0.5 else [])
         say(b, nu, f[40], " | ".join(percent(v, exact) for v in values))
+        if b in LONG:
+            columns, rows = LONG[b]
+            one, two = (np.delete(coefficients(b, nu, m * columns, m * rows), 3) for m in (1, 2))
+            say(f"   {columns} x {rows}", percent(one, exact), "| twice", percent(two, exact))
 
 
 def partial_slip_table():

@@ -21,7 +21,9 @@ from separatrix.chain.traction.exact.contact import (
     solve,
     solve_each,
 )
+from separatrix.chain.traction.exact.grid import elliptic_grid, end_normals
 from separatrix.chain.traction.exact.newton import settle
+from separatrix.chain.traction.exact.operator import ROLLING
 from separatrix.errors import ConvergenceError, InputError, ValidityWarning
 
 BARE = (body(0.25), body(0.25))
@@ -34,18 +36,18 @@ def circle_area(x):
 
 @pytest.mark.parametrize("columns", [20, 40, 80])
 def test_carter(columns):
-    """Plane strip at 0.4 of its saturation: T/(mu P) = 0.64 exactly, error 0.06 over the columns."""
+    """Plane strip at 0.4 of its saturation: T/(mu P) = 0.64 exactly, error 0.01 over the columns."""
     force = strip_force(columns, BARE, creep=0.4 * 2.0 * MU * 0.75, bound=circle_area)
-    assert force / (math.pi / 2.0 * MU) == pytest.approx(0.64, abs=0.08 / columns)
+    assert force / (math.pi / 2.0 * MU) == pytest.approx(0.64, abs=0.016 / columns)
 
 
 @pytest.mark.parametrize("fraction", [1.0, 0.8, 0.5, 0.2, 0.05])
 def test_cut_cells_do_not_matter(fraction):
-    """Sticking strip: slope pi/(2 (1 - nu)) whatever the cut of its ends, to 0.12 over the columns."""
+    """Sticking strip: slope pi/(2 (1 - nu)) whatever the cut of its ends, to 0.04 over the columns."""
     exact = 2.0 * math.pi / 4.0 / (1.0 - 0.25) * 1.0
     for columns in (10, 20, 40):
         error = strip_force(columns, BARE, fraction=fraction) / exact - 1.0
-        assert abs(error) * columns < 0.13
+        assert abs(error) * columns < 0.045
 
 
 PLANE = [  # G_f/G, nu_f and the slope over its bare value at h/b = 0.03, 0.1, 0.3, 1; substrates nu = 0.285
@@ -87,7 +89,7 @@ def cauchy_slope(coated, n=160):
 def test_plane_layer(ratio, nu, expected):
     """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988), by the equation of its slope.
 
-    0.36 % at 40 columns, 0.1 % at 160. `expected` was computed before, with other quadratures: its four
+    0.3 % at 40 columns, 0.05 % at 160. `expected` was computed before, with other quadratures: its four
     decimals, of which the softest film's are short by one.
     """
     bare = math.pi / 2.0 / (1.0 - 0.285)
@@ -95,7 +97,7 @@ def test_plane_layer(ratio, nu, expected):
         coated = body(0.285, (ratio, nu, h))
         exact = cauchy_slope(coated) / bare
         assert exact == pytest.approx(value, abs=1.5e-4)
-        for columns, tolerance in ((40, 3.6e-3), (160, 1e-3)):
+        for columns, tolerance in ((40, 3.2e-3), (160, 5e-4)):
             base = strip_force(columns, (body(0.285), body(0.285)))
             found = strip_force(columns, (body(0.285), coated)) / base
             assert found == pytest.approx(exact, rel=tolerance)
@@ -162,7 +164,7 @@ ORDER = ["x", "y", "ym", "ym", "ym", "xym", "xym"]
 
 @pytest.mark.parametrize("row", PARTIAL, ids=lambda row: f"{row[0]:g}")
 def test_partial_slip(row):
-    """Force, lateral force and moment at 40 x 40: 0.0025, of which 0.001 is the numbers' own."""
+    """Force, lateral force and moment at 40 x 40: 0.002, of which 0.001 is the numbers' own."""
     b, nu, *expected = row
     made, xs = contact(b, nu), saturation(nu)
     sliding = MU * made.problem.ellipse.load
@@ -171,7 +173,7 @@ def test_partial_slip(row):
         one = kalker(made, -xi * xs, -eta * xs, -phi * xs / math.sqrt(b))
         values = {"x": one.force, "y": one.lateral_force, "m": one.spin_moment / math.sqrt(b)}
         found += [values[key] / sliding for key in wanted]
-    assert found == pytest.approx(list(chain.from_iterable(expected)), abs=0.0026)
+    assert found == pytest.approx(list(chain.from_iterable(expected)), abs=0.002)
 
 
 @pytest.mark.parametrize(("lam", "force"), [(0.3, 0.695), (1.0, 0.522), (3.0, 0.297)])
@@ -206,13 +208,30 @@ def test_slope_with_much_spin():
     assert -chord == pytest.approx(1.5 * MU * made.problem.ellipse.load * B / spin, rel=0.01)
 
 
-def test_second_order_in_the_cells_with_spin():
-    """C11 at 10, 20 and 40 columns and rows falls smoothly: 3.4057, 3.3881, 3.3807 (exact 3.3750)."""
-    found = [
-        -kalker(contact(0.2, columns=n, rows=n, friction=1e5), 1e-6).force / 1e-6 / 0.2 for n in (10, 20, 40)
-    ]
-    assert found == pytest.approx([3.4057, 3.3881, 3.3807], abs=2e-4)
-    assert 2.0 * found[2] - found[1] == pytest.approx(3.3750, rel=1e-3)
+def test_the_stencil_does_not_see_jumps():
+    """Centres and edges of cells each sum to 0; the mean of their places is 1, that of their squares 0."""
+    shift, factor = np.array(ROLLING).T
+    assert factor[shift % 2 == 0].sum() == factor[shift % 2 == 1].sum() == 0.0
+    assert factor @ shift == -2.0
+    assert factor @ shift**2 == 0.0
+
+
+def test_row_ends_are_edges_with_a_normal():
+    """Circle: cosine and sine of the polar angle of the row, to 0.01."""
+    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=80, rows=80)
+    cos, sin = end_normals(grid)
+    rows = slice(12, 68)
+    assert sin[rows, -1] == pytest.approx(grid.y[rows], abs=0.01)
+    assert sin[rows, 0] == pytest.approx(-grid.y[rows], abs=0.01)
+    assert np.hypot(cos, sin) == pytest.approx(1.0, rel=1e-14)
+    assert end_normals(strip(20, BARE)[1])[0] == pytest.approx(1.0)
+
+
+def test_coefficients_on_few_cells():
+    """C11 at 10, 20 and 40 columns and rows: 0.05 % (exact 3.3750)."""
+    for n in (10, 20, 40):
+        found = -kalker(contact(0.2, columns=n, rows=n, friction=1e5), 1e-6).force / 1e-6 / 0.2
+        assert found == pytest.approx(3.3750, rel=5e-4)
 
 
 def test_any_number_of_threads_is_the_same():

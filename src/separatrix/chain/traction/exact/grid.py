@@ -68,6 +68,23 @@ def _inside(x: Array, dx: Metre, low: Array, high: Array) -> Array:
     return np.where(share > SMALLEST_FRACTION, share, 0.0)
 
 
+def end_normals(grid: Grid) -> tuple[Array, Array]:
+    """Cosine and sine between rolling and the normal of the outline, shape (row, column) [-].
+
+    A cell takes the end of its row on its side. The outline is the chord across a row, between the means of
+    its end and those of its neighbours; the outermost rows end in a point.
+    """
+    inside = np.maximum(grid.fraction.sum(axis=1), SMALLEST_FRACTION)
+    middle, half = grid.fraction @ grid.x / inside, 0.5 * grid.dx * inside
+    ends = np.stack([middle - half, middle + half])
+    between = 0.5 * (ends[:, 1:] + ends[:, :-1])
+    first, last = np.full((2, 1), middle[0]), np.full((2, 1), middle[-1])
+    left, right = np.diff(np.concatenate([first, between, last], axis=1), axis=1) / grid.dy
+    slope = np.where(grid.x > middle[:, None], right[:, None], left[:, None])
+    cos = 1.0 / np.sqrt(1.0 + slope**2)
+    return cos, -slope * cos
+
+
 def elliptic_pressure(grid: Grid, *, semi_minor: Metre, semi_major: Metre, max_pressure: Pascal) -> Array:
     """Hertz pressure averaged over whole cells, shape (row, column) [Pa]; its load is exact."""
     b, a, p0 = semi_minor, semi_major, max_pressure

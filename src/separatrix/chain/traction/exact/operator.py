@@ -3,11 +3,19 @@ r"""Slip that tractions cause: a convolution over the grid, and the local terms 
 Steady rolling (Kalker 1990) has the slip W - dU/dx. The derivative is one-sided, of second order at the
 centre of the cell: times dx,
 
-    S_i = W dx + 3 U(x_i) - 4 U(x_i + dx/2) + U(x_i + dx).
+    S_i = W dx + U(x_i - dx/2)/2 + U(x_i) - U(x_i + dx/2) - U(x_i + dx) + U(x_i + 3 dx/2)/2.
 
-Its one-sidedness carries the entry condition. U is the convolution of the tractions with the influence of one
-cell, by zero-padded FFT (Liu & Wang 2000). A cut cell with the share f of its length inside has the extra
-diagonal c D_0 (1/f - 1), D_0 the stencil's own term.
+Its bias upstream carries the entry condition. The factors of the cells' centres and those of their edges each
+sum to 0, so that it does not see how the jumps of the tractions between cells differ at centres and edges.
+U is the convolution of the tractions with the influence of one cell, by zero-padded FFT (Liu & Wang 2000).
+
+A cut cell with the share f of its length inside has the extra term
+
+    c D_0 (1/f - 1) cos(theta),    D_0 = D_n n n + D_t t t,
+
+n the normal of the outline, at the angle theta to rolling, and t its tangent. D_n and D_t are the stencil's
+terms of a row of endless width: the ends of neighbouring rows move together as one edge. Distances along
+rolling are 1/cos(theta) of those across that edge.
 """
 
 from __future__ import annotations
@@ -19,7 +27,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from separatrix.chain.traction.exact.flexibility import Body, flexibility, half_space_flexibility
-from separatrix.chain.traction.exact.grid import Grid
+from separatrix.chain.traction.exact.grid import Grid, end_normals
 from separatrix.chain.traction.exact.images import influence, pair_images
 from separatrix.chain.traction.exact.precondition import leading_inverses
 from separatrix.compiled import kernel
@@ -29,11 +37,13 @@ Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-ROLLING = ((0, 3.0), (1, -4.0), (2, 1.0))  # pairs of shift in dx/2 and factor
+ROLLING = ((-1, 0.5), (0, 1.0), (1, -1.0), (2, -1.0), (3, 0.5))  # pairs of shift in dx/2 and factor
+THIN_ROLLING = ((1, 0.25), (0, 0.75), (-1, -1.25), (-2, 0.25))  # it on a thin film: offset in cells, factor
 SHIFT = ((0, 1.0),)
-CUT_ROLLING = 2.5  # makes the sticking slope of a plane strip independent of the cut (measured in the tests)
+CUT_ROLLING = 3.0  # makes the sticking slope of a plane strip independent of the cut (measured in the tests)
 CUT_SHIFT = 1.0
-THIN = 0.1  # thickness over cell width at which half of a film's compliance acts as if in series
+ENDLESS = 1e5  # width of a row over a cell's sides, as of a plane strip
+THIN = 0.05  # thickness over cell width at which half of a film's compliance acts as if in series
 LARGEST_KINDS = 8  # of rows, for which the preconditioner keeps inverses
 WHOLE = 0.6  # share of a cell inside from which the preconditioner takes it as whole
 NEIGHBOUR = 0.4  # weight of the next row in the preconditioner's rows; its square of the one after, and so on
@@ -43,15 +53,16 @@ NEIGHBOUR = 0.4  # weight of the next row in the preconditioner's rows; its squa
 class Operator:
     """Slip times dx of tractions (2, row, column), and what the preconditioner needs of it.
 
-    spectra : transforms of xx, yy, xy; padded : size of the transform; local : extra diagonal, and upstream :
-    factor of the next cell upstream, of cuts and films; diagonal : A_ii; active, whole : cells in the
-    contact, cells not cut by much; rows : Toeplitz coefficients of a row, shape (kind, 2, 2 columns - 1), and
-    inverses of their leading blocks; kind : which of them a row of the grid takes.
+    spectra : transforms of xx, yy, xy; padded : size of the transform; local : extra diagonal, cross : extra
+    xy in the cell, and upstream : factor of the next cell upstream, of cuts and films; diagonal : A_ii;
+    active, whole : cells in the contact, cells not cut by much; rows : Toeplitz coefficients of a row, shape
+    (kind, 2, 2 columns - 1), and inverses of their leading blocks; kind : which of them a row takes.
     """
 
     spectra: Complex
     padded: tuple[int, int]
     local: Array
+    cross: Array
     upstream: Array
     diagonal: Array
     active: Flags
@@ -72,16 +83,19 @@ def shift_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | No
 
 
 def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *, rolls: bool) -> Operator:
-    stencil, cut = (ROLLING, CUT_ROLLING) if rolls else (SHIFT, CUT_SHIFT)
+    stencil = ROLLING if rolls else SHIFT
     rows, columns = grid.shape
     padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
     table = influence(grid.shape, (grid.dy, grid.dx), pair_images(*bodies), stencil)[:3]
-    f, own = grid.fraction, table[:2, 0, columns - 1]
-    films = [unresolved_film(body, grid.dx) for body in bodies]
-    thin = sum(L * share for L, share in films) if rolls else 0.0
-    L = np.zeros(grid.shape) if compliance is None else compliance
-    film, upstream = rolling_film(f, L, thin) if rolls else (_inverse(f) * L, np.zeros(grid.shape))
-    local = (cut * (own - thin))[:, None, None] * np.where(f > 0.0, _inverse(f) - 1.0, 0.0) + film
+    f, L = grid.fraction, np.zeros(grid.shape) if compliance is None else compliance
+    if rolls:
+        thin = sum(film * share for film, share in (unresolved_film(body, grid.dx) for body in bodies))
+        _as_series(table, thin)
+        film, upstream = rolling_film(f, L, thin)
+        cut, cross = _rolling_cut(grid, bodies, thin)
+    else:
+        film, upstream = _inverse(f) * L, np.zeros(grid.shape)
+        cut, cross = CUT_SHIFT * table[:2, 0, columns - 1, None, None] * _missing(f), np.zeros(grid.shape)
     kinds, kind = np.unique(_row_compliance(L, f), return_inverse=True)
     near = NEIGHBOUR ** np.arange(1, rows)
     row = table[:2, 0] + 2.0 * np.einsum("j,cji->ci", near, table[:2, 1:])
@@ -91,15 +105,42 @@ def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *
     return Operator(
         spectra=spectrum(table, padded),
         padded=padded,
-        local=local,
+        local=cut + film,
+        cross=cross,
         upstream=upstream,
-        diagonal=own[:, None, None] + local,
+        diagonal=table[:2, 0, columns - 1, None, None] + cut + film,
         active=f > 0.0,
         whole=f >= WHOLE,
         rows=toeplitz,
         inverses=np.array([[leading_inverses(t) for t in pair] for pair in toeplitz]),
         kind=kind.astype(np.int64),
     )
+
+
+def _rolling_cut(grid: Grid, bodies: tuple[Body, Body], thin: float) -> tuple[Array, Array]:
+    """Extra diagonal, shape (2, row, column), and extra xy of cut cells [m/Pa]; films have their own."""
+    endless = ENDLESS * max(grid.dx, grid.dy)
+    normal, tangent = influence((1, 1), (endless, grid.dx), pair_images(*bodies), ROLLING)[:2, 0, 0]
+    normal, tangent = (D - dict(THIN_ROLLING)[0] * thin for D in (normal, tangent))
+    cos, sin = end_normals(grid)
+    size = CUT_ROLLING * cos * _missing(grid.fraction)
+    xx, yy = normal * cos**2 + tangent * sin**2, normal * sin**2 + tangent * cos**2
+    return np.stack([size * xx, size * yy]), size * (normal - tangent) * cos * sin
+
+
+def _as_series(table: Array, thin: float) -> None:
+    """Let the share `thin` of films in an influence table respond as in series, L and -L upstream, in place.
+
+    The rules of row ends are those of such a film.
+    """
+    origin = table.shape[2] // 2
+    for offset, factor in (*THIN_ROLLING, (0, -1.0), (-1, 1.0)):
+        table[:2, 0, origin + offset] -= factor * thin
+
+
+def _missing(fraction: Array) -> Array:
+    """1/f - 1 inside, 0 outside."""
+    return np.where(fraction > 0.0, _inverse(fraction) - 1.0, 0.0)
 
 
 def _inverse(fraction: Array) -> Array:
@@ -177,7 +218,8 @@ def _row_compliance(compliance: Array, fraction: Array) -> Array:
 
 def product(op: Operator, traction: Array) -> Array:
     """Slip times dx that tractions cause, shape (2, row, column) [m]."""
-    return with_local(_padded_product(op.spectra, op.padded, traction), traction, op.local, op.upstream)
+    displaced = _padded_product(op.spectra, op.padded, traction)
+    return with_local(displaced, traction, op.local, op.cross, op.upstream)
 
 
 def displacement(spectra: Complex, padded: tuple[int, int], traction: Array) -> Array:
@@ -204,7 +246,7 @@ def multiply(waves: Complex, spectra: Complex) -> None:
 
 
 @kernel
-def with_local(displaced: Array, traction: Array, local: Array, upstream: Array) -> Array:
+def with_local(displaced: Array, traction: Array, local: Array, cross: Array, upstream: Array) -> Array:
     """Corner of the padded product, with the terms of cut cells and films; shape (2, row, column)."""
     _, rows, columns = traction.shape
     total = np.empty_like(traction)
@@ -212,6 +254,7 @@ def with_local(displaced: Array, traction: Array, local: Array, upstream: Array)
         for j in range(rows):
             for i in range(columns):
                 total[c, j, i] = displaced[c, j, i] + local[c, j, i] * traction[c, j, i]
+                total[c, j, i] += cross[j, i] * traction[1 - c, j, i]
             for i in range(columns - 1):
                 total[c, j, i] += upstream[j, i] * traction[c, j, i + 1]
     return total
