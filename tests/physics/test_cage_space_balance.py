@@ -151,10 +151,12 @@ def test_the_ledger_knows_a_leaning_axis_and_gravity_along_it(plane, body):
 BACKWARD = in_space(
     replace(
         ON_A_LAND, cage_speed=-669.0, inner_speed=-1570.8, ball_count=7, land_clearance=3e-4, gravity=50.0,
+        guidance=Guidance.INNER,
         pocket_angles=(0.1, 1.0, 1.8, 2.9, 3.7, 4.5, 5.4), pocket_shape=PocketShape.CYLINDRICAL,
         orbital_cosines=(0.3,), orbital_sines=(-0.1,), unbalance=1e-6, ramp_time=1e-3, ramp_start=0.5,
     ),
     ball_spin=(4083.218, -1942.614, -3.53),
+    transverse_inertia=1.5e-5,
     axial_kick=0.2,
     tilt_kick=0.4,
     axial_gravity=3.0,
