@@ -147,8 +147,9 @@ def test_held_in_the_plane_it_moves_as_the_planar_cage(changes):
     there = follow(plane, ball_lead=LEADS, duration=turns, until=turns, **start)
     held = in_space(plane, **IN_PLANE, groove_damping=math.inf, groove_stiffness=0.0)
     here = course(held, turns, lead=LEADS, **start)
-    assert here.hits > 10
-    assert bool((here.land_force > 0.0).any()) is (plane.guidance is not Guidance.BALL)
+    assert here.hits > 5
+    pressed = np.asarray(here.books.looks)["land_max"][0] > 0.0
+    assert bool(pressed) is (plane.guidance is not Guidance.BALL)
     rows = len(there.position)  # a whirl that grows without limit ends early
     assert rows > 15
     turned = here.motion[:, 3] / plane.pitch_radius
