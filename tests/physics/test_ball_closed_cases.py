@@ -77,6 +77,16 @@ def test_a_ball_is_spun_up_by_the_driving_race():
     )
 
 
+def test_a_ball_with_creep_in_two_contacts():
+    """Contact angle 0: rates [3.5 S -+ sqrt(2.25 S^2 + 10 D^2)]/2m, u/F = (1/C_i + 1/C_o)/4 (E2)."""
+    C_i, C_o, m, R = 65.58149, 290.99772, 5.496616e-3, 5.55625e-3
+    S, D = C_i + C_o, C_i - C_o
+    slopes = -np.array(((S, R * D), (R * D, R**2 * S)))
+    found = modes(slopes, np.diag((m, 0.4 * m * R**2)))
+    assert found.rates.real == pytest.approx((32460.24, 194593.50), rel=1e-6)
+    assert 1.0 / found.relaxed == pytest.approx(0.25 * (1.0 / C_i + 1.0 / C_o), rel=1e-12)
+
+
 @pytest.mark.parametrize(("sense", "damping"), [(1.0, 190.0508), (-1.0, 245.0634)])
 def test_pocket_friction_of_a_ball_with_creep(sense, damping):
     """E2: C = 4/[(1 +- f)/C_i + (1 -+ f)/C_o] at no contact angle, + from the front, f .2; to the digits."""
