@@ -7,10 +7,10 @@ import numpy as np
 from cages import AT_REST, TURNING
 
 from separatrix.cage import PlanarCage
-from separatrix.cage.closed_forms import time_unit
+from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.space.ensemble import kick_speeds
 from separatrix.cage.space.history import MOTIONS, SOURCES
-from separatrix.cage.space.records import Books, Parts, body_of, books_for, land_strips, numbers, parts_of
+from separatrix.cage.space.records import Books, Parts, books_for, land_strips, numbers, parts_of
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
 from separatrix.cage.space_body import SpaceBody
 from separatrix.pocket_shape import PocketShape
@@ -107,7 +107,7 @@ def course(
     start[FIRST_LEAD:] = np.concatenate(
         [np.zeros(Z) if lead is None else lead, np.zeros(Z) if more is None else more, cage.ball_angles]
     )
-    T, M = time_unit(cage), cage.mass + body_of(cage).added_mass
+    T, M = time_unit(cage), moving_mass(cage)
     times, at = np.linspace(0.0, duration, samples), MOTIONS + len(SOURCES)
     rows = np.zeros((samples, at + 2 * Z + land_strips(cage)[0].size))
     hits = np.zeros(Z, np.int64)

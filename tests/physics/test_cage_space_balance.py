@@ -13,7 +13,9 @@ from space_cages import ROUND, course, in_space, ring
 
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import run_ensemble
+from separatrix.cage.space import ensemble
 from separatrix.cage.space.ensemble import turned_forward_in_space
+from separatrix.cage.space.history import SOURCES
 from separatrix.cage.space.records import ALONG, CONTACTS, GIVE, RUB_R, VX, VY, VZ
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance, StabilitySettings
@@ -126,16 +128,40 @@ def test_the_ledger_of_two_hundred_cages_closes():
     assert hits > 3000
 
 
+LEANS = {"dynamic_unbalance": 2e-3, "tilt_kick": 0.5}
+FALLS = {"axial_gravity": 300.0, "axial_kick": 0.3}
+
+
+@pytest.mark.parametrize("body", [LEANS, FALLS, LEANS | FALLS | {"added_mass": 5e-3}])
+@pytest.mark.parametrize("plane", [{}, {"guidance": Guidance.OUTER, "land_clearance": 1e-3}])
+def test_the_ledger_knows_a_leaning_axis_and_gravity_along_it(plane, body):
+    """20 ms in bores: 1e-9 of the work done, and gravity gives M g_z times the fall."""
+    cage = replace(ROUND, **plane)
+    cage = replace(cage, space=replace(cage.space, **body))
+    there = course(cage, 0.02, lead=1e-4 * np.sin(np.arange(13.0)))
+    assert there.hits > 30
+    assert there.imbalance < 1e-9
+    given = there.work[:, SOURCES.index("gravity")]
+    fallen = cage.mass * cage.space.axial_gravity * (there.motion[:, 2] - there.motion[0, 2])
+    assert given == pytest.approx(fallen, rel=1e-9, abs=1e-12 * there.gross)
+    long = run_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=2, duration=0.05))
+    assert long.energy_imbalance.max() < 1e-9
+
+
 BACKWARD = in_space(
     replace(
         ON_A_LAND, cage_speed=-669.0, inner_speed=-1570.8, ball_count=7, land_clearance=3e-4, gravity=50.0,
+        guidance=Guidance.INNER,
         pocket_angles=(0.1, 1.0, 1.8, 2.9, 3.7, 4.5, 5.4), pocket_shape=PocketShape.CYLINDRICAL,
-        orbital_cosines=(0.3,), orbital_sines=(-0.1,),
+        orbital_cosines=(0.3,), orbital_sines=(-0.1,), unbalance=1e-6, ramp_time=1e-3, ramp_start=0.5,
     ),
     ball_spin=(4083.218, -1942.614, -3.53),
+    transverse_inertia=1.5e-5,
     axial_kick=0.2,
     tilt_kick=0.4,
     axial_gravity=3.0,
+    dynamic_unbalance=1e-3,
+    added_mass=5e-3,
 )  # fmt: skip
 
 
@@ -151,11 +177,13 @@ def test_the_mirror_image_moves_as_the_bearing_does():
     assert -np.roll(here.lead[:, ::-1], 1, axis=1) == pytest.approx(there.lead, abs=1e-10)
 
 
-def test_any_number_of_threads_has_the_same_bytes():
-    """The whole evidence of an ensemble in space by one thread and by four."""
+def test_any_number_of_threads_has_the_same_bytes(monkeypatch):
+    """The whole evidence of an ensemble in space by one thread, and by four that take one run at a time."""
     settings = StabilitySettings(kicks=(0.1, 1.0), runs=8, duration=0.01)
     cage = replace(ROUND, guidance=Guidance.OUTER, land_clearance=1e-3)
-    one, four = (run_ensemble(cage, settings, jobs=jobs) for jobs in (1, 4))
+    one = run_ensemble(cage, settings)
+    monkeypatch.setattr(ensemble, "CHUNK_RADIANS", 0.0)
+    four = run_ensemble(cage, settings, jobs=4)
     for name in type(one).__dataclass_fields__:
         assert np.asarray(getattr(one, name)).tobytes() == np.asarray(getattr(four, name)).tobytes(), name
 

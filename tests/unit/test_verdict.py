@@ -18,8 +18,10 @@ from separatrix.cage import (
     whirl_probability,
     wilson_interval,
 )
-from separatrix.cage.closed_forms import drive_energy, room
-from separatrix.study import Guidance
+from separatrix.cage.closed_forms import axial_drive_energy, drive_energy, room
+from separatrix.cage.ending import run_limits
+from separatrix.cage.space_body import SpaceBody
+from separatrix.study import Guidance, PocketShape
 
 GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=4e-4)
 SETTLES, WHIRLS = RunOutcome.SETTLES, RunOutcome.WHIRLS
@@ -246,6 +248,32 @@ def test_gravity_unbalance_and_leading_balls_drive_too():
     extra = drive_energy(replace(GUIDED, **loads)) - drive_energy(GUIDED)
     expected = 4e-4 * (0.05 * 9.81 + 1e-6 * 670.0**2) + 0.5 * 0.1 * (2 * 0.05) ** 2
     assert extra == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
+    """2 w_z (M g_z + |J_p - J_t| Omega^2 delta / R), w_z = 0.3 mm in bores; the fluid's mass turns too.
+
+    Neither presses the cage on its land, and a cage whose axial motion nothing limits falls for ever.
+    """
+    body = SpaceBody(transverse_inertia=4e-5, ball_spin=(1.0, 0.0, 0.0), ball_diameter=0.011)
+    plain = replace(GUIDED, pocket_shape=PocketShape.CYLINDRICAL, space=body)
+    loads = {"axial_gravity": -9.81, "dynamic_unbalance": 1e-3}
+    loaded = replace(plain, space=replace(body, **loads))
+    tilting = abs(plain.moment_of_inertia - 4e-5) * 670.0**2 * 1e-3 / plain.pitch_radius
+    assert drive_energy(plain) == drive_energy(GUIDED)
+    extra = drive_energy(loaded) - drive_energy(plain)
+    assert extra == pytest.approx(6e-4 * (0.05 * 9.81 + tilting), rel=1e-9)
+    held = replace(body, **loads, is_tilt_held=True, is_axially_held=True)
+    assert axial_drive_energy(replace(plain, space=held)) == 0.0
+    assert axial_drive_energy(replace(loaded, pocket_shape=PocketShape.SQUARE)) == 0.0
+    wet = replace(plain, space=replace(body, added_mass=0.03))
+    assert drive_energy(wet) == pytest.approx(0.08 / 0.05 * drive_energy(plain), rel=1e-12)
+    # over the mass that moves, as the kernels count
+    assert run_limits(wet, 0.5, 0.3).drive == pytest.approx(
+        run_limits(plain, 0.5, 0.3).drive, rel=1e-12, abs=0.0
+    )
+    still = replace(loaded, cage_speed=0.0, inner_speed=0.0)
+    assert (run_limits(still, 0.5, 0.3).reach, run_limits(loaded, 0.5, 0.3).reach > 0.0) == (0.0, True)
 
 
 def test_the_room_is_the_land_or_the_pockets():

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from separatrix.cage.space_body import pocket_plays
+from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
 from separatrix.units import Hertz, Joule, Metre, Ratio, Second
 
@@ -119,6 +121,11 @@ def room(cage: PlanarCage) -> Metre:
     return cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
 
 
+def moving_mass(cage: PlanarCage) -> float:
+    """Mass that moves across the axis: of the cage, and in space of the fluid that moves with it [kg]."""
+    return cage.mass + (cage.space.added_mass if cage.space is not None else 0.0)
+
+
 def drive_energy(cage: PlanarCage) -> Joule:
     r"""Kinetic energy that the frame and the loads can give the cage over its room, without any kick [J].
 
@@ -126,14 +133,37 @@ def drive_energy(cage: PlanarCage) -> Joule:
 
     with the room :math:`w`: the depth of the centrifugal potential, which is also the energy, in the turning
     frame, of a cage that rests on its land at a place fixed in space; the fall across the room under
-    gravity and unbalance; and an impact of balls that lead and lag at speeds up to V.
+    gravity and unbalance; and an impact of balls that lead and lag at speeds up to V. In space the fluid
+    that moves with the cage counts in the first and the last M, and `axial_drive_energy` is added.
     """
-    w, M, speed = room(cage), cage.mass, cage.cage_speed
-    fall = 2.0 * w * (M * cage.gravity + cage.unbalance * speed**2)
+    w, M, speed = room(cage), moving_mass(cage), cage.cage_speed
+    fall = 2.0 * w * (cage.mass * cage.gravity + cage.unbalance * speed**2)
     pairs = zip(cage.orbital_cosines, cage.orbital_sines, strict=True)
     V = sum(math.hypot(*pair) for pair in pairs)
     struck = M + cage.moment_of_inertia / cage.pitch_radius**2
-    return 0.5 * M * (speed * w) ** 2 + fall + 0.5 * struck * (2.0 * V) ** 2
+    across = 0.5 * M * (speed * w) ** 2 + fall + 0.5 * struck * (2.0 * V) ** 2
+    return across + axial_drive_energy(cage)
+
+
+def axial_drive_energy(cage: PlanarCage) -> Joule:
+    r"""What gravity along the axis and dynamic unbalance can give a cage in space over its axial room [J].
+
+    .. math:: 2 w_z M |g_z| + 2 \frac{w_z}{R} |J_p - J_t| \Omega^2 \delta
+
+    with half the axial clearance :math:`w_z` of the pockets, and the tilt :math:`w_z/R` that it leaves. 0 in
+    the plane, and where no pocket limits the axial motion.
+    """
+    body = cage.space
+    if body is None:
+        return 0.0
+    around, _, beside = pocket_plays(cage, body)
+    w = beside if cage.pocket_shape is PocketShape.SQUARE else around
+    if math.isinf(w):
+        return 0.0
+    leaning = abs(cage.moment_of_inertia - body.transverse_inertia) * body.dynamic_unbalance
+    fall = 0.0 if body.is_axially_held else cage.mass * abs(body.axial_gravity)
+    tilting = 0.0 if body.is_tilt_held else leaning * cage.cage_speed**2 / cage.pitch_radius
+    return 2.0 * w * (fall + tilting)
 
 
 def drifts(cage: PlanarCage) -> bool:

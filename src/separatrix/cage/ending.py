@@ -11,7 +11,14 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from separatrix.cage.closed_forms import drifts, drive_energy, room, time_unit
+from separatrix.cage.closed_forms import (
+    axial_drive_energy,
+    drifts,
+    drive_energy,
+    moving_mass,
+    room,
+    time_unit,
+)
 from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.compiled import part
 
@@ -156,8 +163,9 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
     """
     unit, landless = time_unit(cage), math.isinf(cage.land_gap)
     beat, beats, looks = beat_of(unit, duration)
-    per_mass = unit**2 / cage.mass
+    per_mass = unit**2 / moving_mass(cage)
     drive = drive_energy(cage) * per_mass
+    is_moved_across = drive_energy(cage) > axial_drive_energy(cage)
     scale = energy_scale(cage, kick) * per_mass + drive
     turn = math.ceil(2.0 * math.pi / abs(cage.cage_speed) / (beat * beats)) if cage.cage_speed else 0
     pressed = 0.5 * cage.ball_cage_stiffness * cage.half_play**2 * per_mass
@@ -171,7 +179,7 @@ def run_limits(cage: PlanarCage, kick: MetrePerSecond, duration: Second, *, leas
         window=min(max(WINDOW, turn), looks),
         place=-1.0 if drifts(cage) else PLACE * room(cage),
         held=HELD * room(cage),
-        reach=0.0 if drive == 0.0 or landless else REACH * cage.land_gap,
+        reach=0.0 if landless or not is_moved_across else REACH * cage.land_gap,
         drifts=drifts(cage),
         far=FAR * cage.half_play if drifts(cage) and cage.half_play > 0.0 else math.inf,
         drive=drive,
@@ -201,7 +209,8 @@ def energy_scale(cage: PlanarCage, kick: MetrePerSecond) -> float:
     The kick's, and what the frame and gravity do over the way that the cage has.
     """
     way = 2.0 * cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
-    return cage.mass * (0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2 + cage.gravity * way)
+    moved = 0.5 * kick**2 + 0.5 * (cage.cage_speed * way) ** 2
+    return moving_mass(cage) * moved + cage.mass * cage.gravity * way
 
 
 @part

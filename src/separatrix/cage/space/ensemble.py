@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from numpy.random import Generator, Philox
 
-from separatrix.cage.closed_forms import time_unit
+from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.cage.ensemble import (
     CHUNK_RADIANS,
@@ -151,7 +151,7 @@ def run_rows(
         hits,
         heat,
     )
-    mass = cage.mass + body_of(cage).added_mass
+    mass = moving_mass(cage)
     for name in PER_MASS:
         evidence[name] *= mass
     heat *= mass / time_unit(cage) ** 2

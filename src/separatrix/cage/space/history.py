@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
-from separatrix.cage.closed_forms import time_unit
+from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.cage.history import MOST_SAMPLES
 from separatrix.cage.planar import Cause, RunOutcome
@@ -229,7 +229,7 @@ def _followed(
 
 def _history(cage: PlanarCage, start: Array, found: Followed, evidence: np.void) -> SpaceHistory:
     """Record of the rows that the kernel filled and of what it counted, back in SI units."""
-    T, R, Z, M = time_unit(cage), cage.pitch_radius, cage.ball_count, cage.mass + body_of(cage).added_mass
+    T, R, Z, M = time_unit(cage), cage.pitch_radius, cage.ball_count, moving_mass(cage)
     energy, at, (times, rows, look, hits, heat) = M / T**2, MOTIONS + len(SOURCES), found
     counted = {name: float(evidence[name]) for name in FROM_ENSEMBLE}
     counted["land_impulse"] = float(look["pressed"]) * M / T
@@ -280,7 +280,7 @@ def _history(cage: PlanarCage, start: Array, found: Followed, evidence: np.void)
 def geometric(cage: PlanarCage, rows: Array) -> tuple[Array, Array]:
     """Geometric centre and tilt of the cage, and their rates: x, y, a and b of each row, shape (time, 4)."""
     body, R = body_of(cage), cage.pitch_radius
-    e, lean = cage.unbalance / (cage.mass + body.added_mass), body.dynamic_unbalance * R
+    e, lean = cage.unbalance / moving_mass(cage), body.dynamic_unbalance * R
     cos, sin, turn = np.cos(rows[:, 3] / R), np.sin(rows[:, 3] / R), rows[:, 9] / R
     away = np.stack([-e * cos, -e * sin, lean * sin, -lean * cos], axis=1)
     rate = np.stack([e * sin * turn, -e * cos * turn, lean * cos * turn, lean * sin * turn], axis=1)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from separatrix.ball_traction import MOST_ELEMENTS
-from separatrix.cage.closed_forms import rebound_damping, time_unit
+from separatrix.cage.closed_forms import moving_mass, rebound_damping, time_unit
 from separatrix.cage.ending import Look, Memory
 from separatrix.cage.records import HARMONICS, POWERS, Evidence, Whole, dtype_of, records
 from separatrix.cage.space_body import SpaceBody, pocket_plays
@@ -272,7 +272,7 @@ def land_strips(cage: PlanarCage) -> tuple[Array, Array]:
 def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
     """Numbers of a cage as a record that kernels take by its address."""
     body, T, R = body_of(cage), time_unit(cage), cage.pitch_radius
-    M, D = cage.mass + body.added_mass, body.ball_diameter
+    M, D = moving_mass(cage), body.ball_diameter
     around, apart, beside = pocket_plays(cage, body)
     law, harmonics = cage.traction, len(cage.orbital_cosines)
     round_, spin = cage.pocket_shape is not PocketShape.SQUARE, [0.5 * D * T * w for w in body.ball_spin]
@@ -356,7 +356,7 @@ def fastest_in_space(cage: PlanarCage) -> float:
 
 def parts_of(cage: PlanarCage) -> Parts:
     """Room for the parts of a cage."""
-    T, M = time_unit(cage), cage.mass + body_of(cage).added_mass
+    T, M = time_unit(cage), moving_mass(cage)
     Z, angles, waves = cage.ball_count, np.array(cage.ball_angles), []
     for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
         c, s = np.cos(h * angles), np.sin(h * angles)
