@@ -126,10 +126,6 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
         CONFIG["CACHE_DIR"] = usual
 
 
-_INNER = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Options of what only kernels can call: the wrappers for Python took a tenth of the time to compile."""
-
-
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel that only kernels call."""
     return _compiled(function)
@@ -148,12 +144,12 @@ def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
     Called from a loop of a microsecond, the counting took a third of the time.
     """
-    return _compiled(function, **_INNER)
+    return _compiled(function, _nrt=False)
 
 
 def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile an inner kernel into those that call it."""
-    return _compiled(function, forceinline=True, **_INNER)
+    return _compiled(function, _nrt=False, forceinline=True)
 
 
 def _compiled(function: Callable[P, R], **options: bool | str) -> Callable[P, R]:

@@ -6,7 +6,6 @@ E4, E9, E10 and P1 to P4 are our own derivations and programs. Each test says it
 import math
 from dataclasses import replace
 
-import numba
 import numpy as np
 import pytest
 from cages import ON_A_LAND, TURNING, WAVES, follow
@@ -299,21 +298,15 @@ def test_two_lands_bear_a_tilted_cage():
     assert abs(moment) == pytest.approx(0.59733333, abs=5e-9)
 
 
-@numba.njit
-def pressed_by(p, parts, strip):
-    """Forces of one strip of the land on a cage that presses on it."""
-    dent_strip(p, parts, strip, 0)
-    dent_strip(p, parts, strip, 1)
-    press_strip(p, parts, strip, Pace(1.0, 0.0), 0)
-    return strip_forces(p, parts, strip, 0)
-
-
 def dented(cage, x, tilt):
     """Force along x and moment about y of the strips on a cage that sits there."""
     p, parts, R = numbers(cage, 0.5), parts_of(cage), cage.pitch_radius
     parts.cage[0, GX], parts.cage[0, GB] = x, tilt * R
     found = np.zeros(6)
     for i in range(parts.mode.size):
-        found += pressed_by(p, parts, i)
+        dent_strip(p, parts, i, 0)
+        dent_strip(p, parts, i, 1)
+        press_strip(p, parts, i, Pace(1.0, 0.0), 0)
+        found += strip_forces(p, parts, i, 0)
     unit = cage.mass / time_unit(cage) ** 2
     return found[0] * unit, found[5] * unit * R

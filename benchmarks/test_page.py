@@ -1,0 +1,75 @@
+"""How soon the local page answers what needs no new run, in Chromium: a view, a figure, a slider.
+
+Needs the extra `browser` and Chromium, as `make browser-test` does.
+"""
+
+import itertools
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+playwright_api = pytest.importorskip("playwright.sync_api", reason='needs the extra "browser"')
+
+from browser_tests.conftest import ARGUMENTS, CHROMIUM, STUDY, Server  # noqa: E402
+
+from separatrix.cli import main  # noqa: E402
+
+VERBS = (["rank"], ["map", "--points", "4", "--runs", "2"], ["simulate"])
+MOVE = """async (value) => {
+  const box = document.getElementById("explore"), before = box.dataset.updated;
+  const slider = box.querySelector('[data-key="film.thickness"]');
+  slider.value = value;
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  while (box.dataset.updated === before) await new Promise((done) => setTimeout(done, 5));
+}"""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    """The page of a folder with a ranked, mapped and simulated study."""
+    folder = tmp_path_factory.mktemp("studies")
+    (folder / "small.toml").write_text(STUDY, encoding="utf-8")
+    for verb, *options in VERBS:
+        place = str(folder / "small")
+        assert main([verb, str(folder / "small.toml"), "--out", place, "--quiet", *options]) == 0
+    made = Server(folder)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def page(server):
+    """A tab that has seen each figure once."""
+    with playwright_api.sync_playwright() as tool:
+        browser = tool.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        made = browser.new_page()
+        made.goto(server.link)
+        yield made
+        browser.close()
+
+
+def test_first_view(benchmark, page, server):
+    """The list of studies, drawn."""
+    benchmark(page.goto, server.address)
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        *("study/small.toml", "answer/rank/small.toml", "cage/small.toml", "explore/small.toml", "logs"),
+        *("plot/rank/candidates/small.toml", "plot/map/map/small.toml", "motion/small.toml"),
+    ],
+)
+def test_what_needs_no_run(benchmark, page, server, place):
+    """From request to answer."""
+    assert benchmark(page.request.get, f"{server.address}/{place}").ok
+
+
+def test_a_slider(benchmark, page, server):
+    """From the move to new numbers and figure; of two thicknesses in turn."""
+    page.goto(f"{server.address}/explore/small.toml")
+    page.get_by_text("The curve belongs to these values.").wait_for()
+    values = itertools.cycle((0.2, 0.4))
+    benchmark(lambda: page.evaluate(MOVE, next(values)))
