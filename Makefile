@@ -7,7 +7,8 @@ TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
 MAP := map cryogenic-turbopump --points 2 --runs 1 --jobs 1 --json --quiet
 RUN := simulate cryogenic-turbopump --json --quiet
-OTHERS := mobility cryogenic-turbopump --json --quiet
+CONTACTS := traction cryogenic-turbopump --json --quiet
+IMPACTS := mobility cryogenic-turbopump --json --quiet
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
@@ -20,8 +21,8 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(COMPILE) "$(MAP)" "$(RUN)" > /dev/null & \
-	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(OTHERS)" > /dev/null && wait $$!
+	@$(COMPILE) "$(MAP)" "$(RUN)" "$(CONTACTS)" > /dev/null & \
+	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(IMPACTS)" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .
@@ -50,5 +51,5 @@ clean:
 .venv/ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "separatrix needs Python 3.11 or later; name one: make PYTHON=python3.11")'
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --constraint constraints.txt --editable '.[dev]'
 	@touch $@

@@ -19,10 +19,10 @@ PACKAGE = Path(separatrix.__file__).parent
 SOME_KERNELS = """
 import json
 from separatrix.chain import hertz
-from separatrix.chain.traction import solve_strip, strip
+from separatrix.chain.traction import strip
 
-values = [*hertz.ellipse_shape(3.0, 0.0), *solve_strip(0.4, 0.3, nodes=20).shear.tolist()]
-stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.active_set)]
+values = [*hertz.ellipse_shape(3.0, 0.0), *strip.strip_influence(20, 0.3), *strip.node_pressure(20)]
+stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.node_pressure)]
 hits, misses = (sum(sum(getattr(s, name).values()) for s in stats) for name in ("cache_hits", "cache_misses"))
 print(json.dumps([values, hits, misses]))
 """
