@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -119,6 +120,8 @@ def test_the_cage_plays_by_the_keyboard(view, server, ranked):
     expect(play).to_have_text("Play")
     page.locator("#moment").focus()
     page.keyboard.press("End")
+    now, whole = re.match(r"([\d.]+) ms of ([\d.]+) ms", reading.inner_text()).groups()
+    assert float(now) == pytest.approx(float(whole), abs=0.5)  # the whole run is shown without decimals
     last, drawn = reading.inner_text(), page.evaluate("document.querySelector('#cage canvas').toDataURL()")
     page.locator("#enlarge").focus()
     page.keyboard.press("Home")

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import re
+import time
 
+import pytest
+from conftest import ended
 from playwright.sync_api import expect
 
 THICKNESS = "#f-film-thickness"
@@ -87,6 +91,21 @@ def test_the_second_of_two_tabs_learns_of_the_first(view, server):
     expect(two.locator(THICKNESS)).to_have_value("0.6")
     two.get_by_role("button", name="Discard the edits").click()
     expect(two.locator(THICKNESS)).to_have_value("0.5")
+
+
+@pytest.mark.parametrize("button", ["Run simulate", "Make the report"])
+def test_what_is_computed_is_what_was_typed(view, server, folder, button):
+    """Also by who clicks right after typing, while the edit is slow to arrive: the run waits for it."""
+    (folder / "typed.toml").write_text((folder / "small.toml").read_text().partition("[ranking]")[0])
+    page = view()
+    page.goto(f"{server.address}/study/typed.toml")
+    page.route("**/edit/**", lambda route: (time.sleep(0.5), route.continue_()))
+    page.fill(THICKNESS, "0.65 um")
+    page.get_by_role("button", name=button, exact=True).click()
+    ended(page, button.split()[-1])
+    verb = "simulate" if button.startswith("Run") else "bearing"
+    answer = json.loads((folder / "typed" / f"{verb}.json").read_text(encoding="utf-8"))
+    assert answer["study"]["film"]["thickness"]["value"] == pytest.approx(0.65e-6, rel=1e-12)
 
 
 def test_inherited_values_are_shown(view, server):

@@ -109,6 +109,13 @@ def save(study: Path) -> None:
         draft.replace(study)
 
 
+def save_to_run(study: Path, root: Path) -> None:
+    """Put the draft in the place of a study that is to be computed; one with faults is refused."""
+    if study.suffix == ".toml" and (faults := check(study, root).faults):
+        raise InputError(study.name, f"is not run: {faults[0].message}")
+    save(study)
+
+
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
     draft = draft_path(study)

@@ -85,9 +85,7 @@ def routes(page: Page) -> APIRouter:
     @router.post("/run/{name:path}")
     def run(name: str, sent: Form) -> Response:
         path, verb = page.folder.study(name), verb_named(sent.get("verb", ""))
-        if path.suffix == ".toml" and (faults := draft.check(path, page.folder.root).faults):
-            raise InputError(name, f"is not run: {faults[0].message}")
-        draft.save(path)
+        draft.save_to_run(path, page.folder.root)
         place = page.folder.answers(name)
         page.jobs.ask(verb.name, path, place, name=name, question=question_of(page, name, verb, sent))
         return page.html("jobs.html", jobs=page.jobs.all())

@@ -8,6 +8,7 @@ from typing import Any
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
 
+from separatrix.app import draft
 from separatrix.app.page import Page
 from separatrix.comparing.pair import compared
 from separatrix.comparing.saved import VERBS, Saved, read_answers
@@ -25,6 +26,7 @@ def routes(page: Page) -> APIRouter:
     @router.post("/report/{name:path}")
     def report(name: str) -> Response:
         path = page.folder.study(name)
+        draft.save_to_run(path, page.folder.root)
         page.jobs.ask(REPORT, path, page.folder.answers(name), name=name)
         return page.html("jobs.html", jobs=page.jobs.all())
 
