@@ -81,8 +81,12 @@ def test_jobs_hide_nothing(view, server, views, size):
         assert scroll["y"] + scroll["height"] <= jobs["y"] + 1, place
 
 
-def test_a_study_without_a_cage_says_what_it_needs(view, server, views):
+def test_a_study_without_a_cage_says_what_it_needs(view, server, folder):
     """Beside the verbs, and in place of the sliders."""
+    (folder / "cageless.toml").write_text('extends = "ball-218"\n', encoding="utf-8")
     page = view()
-    page.goto(f"{server.address}/explore/refused.toml")
-    expect(page.locator(".refusal")).to_contain_text("needs a unit of length")
+    page.goto(f"{server.address}/study/cageless.toml")
+    card = page.locator(".verb", has=page.get_by_role("heading", name="simulate", exact=True))
+    expect(card).to_contain_text("Needs the section")
+    page.goto(f"{server.address}/explore/cageless.toml")
+    expect(page.locator(".refusal")).to_contain_text("need the section [cage]")
