@@ -15,9 +15,10 @@ from raw_logs import anton_paar
 from test_cli_answers import SMALL
 
 from separatrix.app.files import Folder
-from separatrix.app.jobs import Jobs
-from separatrix.app.page import Page
+from separatrix.app.jobs import Job, Jobs
+from separatrix.app.page import TEMPLATES, Page
 from separatrix.app.server import application, made_ready
+from separatrix.app.worker import Task
 from separatrix.chain.solution import Solution, solve
 from separatrix.figures.space import is_in_space
 from separatrix.limits.map_parameters import varied
@@ -288,3 +289,19 @@ def test_a_dropped_log_is_read_and_its_cut_is_moved(page, root):
     assert page.put("/logs/test.txt", content=log).status_code == 200  # the same again
     assert page.put("/logs/test.txt", content=log + b" ").status_code == 422
     assert page.get("/log/test.txt?run_in=never").status_code == 422
+
+
+@pytest.mark.parametrize(("seconds", "is_told"), [(5.0, False), (20.0, True)])
+def test_who_waits_for_a_report_is_told_why(seconds, is_told, tmp_path):
+    """A new installation compiles for minutes, while the job says what it is at and no point is done."""
+    task = Task(number=1, verb="report", study=tmp_path / "a.toml", folder=tmp_path, root=tmp_path)
+    job = Job(
+        task=task,
+        study="a.toml",
+        title="report",
+        state="running",
+        message="Computing bearing for the report.",
+        started=time.monotonic() - seconds,
+    )
+    text = TEMPLATES.get_template("jobs.html").render(jobs=[job])
+    assert ("compiles the solver" in text) == is_told
