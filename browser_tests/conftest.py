@@ -101,7 +101,7 @@ def browser():
 @pytest.fixture
 def view(browser, server):
     """Return a function that makes a tab; no request of it leaves the machine, and nothing is refused."""
-    contexts, faults = [], []
+    contexts, faults = [], list[str]()
 
     def tab(*, width: int = 1280, height: int = 800, dark: bool = False, link: str = server.link):
         size, scheme = {"width": width, "height": height}, "dark" if dark else "light"
