@@ -13,8 +13,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason='needs the extra "browser"')
+from playwright import sync_api as playwright_api
 
 CHROMIUM = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
 QUIET = ("background-networking", "component-update", "gpu", "quic", "sync")

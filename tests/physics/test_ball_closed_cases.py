@@ -44,7 +44,8 @@ def loaded_ball() -> HeldBall:
 def test_a_ball_is_spun_up_by_the_driving_race():
     """E1: u = (10/7)(mu Q/m) t up to V/2 at 7 m V/(20 mu Q); heat is half the work, as in a ring.
 
-    1e-6: the outer race creeps by 1e-7 of V, and scipy's integrator keeps 1e-8.
+    Motion to 1e-6, energies to twice that: the outer race creeps by 1e-7 of V, the contacts curve by 1e-10 of
+    the radius, and scipy's integrator keeps 1e-8; the inputs' own numbers to the seven digits given.
     """
     ball, V = loaded_ball(), SPEED * (ORBIT - RADIUS)
     lightness = np.linalg.inv(ball.masses)[:2, :2]

@@ -131,8 +131,8 @@ def check(study: Path, root: Path) -> Checked:
     except InputError as error:
         faults = tuple(_faults(error, path, study))
         return Checked(text=text, study=None, faults=faults, inherited=inherited, offered=offered)
-    told = tuple(grouped(notes))
-    return Checked(text=text, study=found, faults=(), notes=told, inherited=inherited, offered=offered)
+    noted = tuple(grouped(notes))
+    return Checked(text=text, study=found, faults=(), notes=noted, inherited=inherited, offered=offered)
 
 
 def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, Any]], Offered]:

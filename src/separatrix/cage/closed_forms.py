@@ -17,7 +17,7 @@ import numpy as np
 from separatrix.cage.space_body import pocket_plays
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
-from separatrix.units import Hertz, Joule, Metre, Ratio, Second
+from separatrix.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -121,7 +121,7 @@ def room(cage: PlanarCage) -> Metre:
     return cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
 
 
-def moving_mass(cage: PlanarCage) -> float:
+def moving_mass(cage: PlanarCage) -> Kilogram:
     """Mass that moves across the axis: of the cage, and in space of the fluid that moves with it [kg]."""
     return cage.mass + (cage.space.added_mass if cage.space is not None else 0.0)
 

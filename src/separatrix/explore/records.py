@@ -92,7 +92,7 @@ class ConvergenceRow:
     name: str  # of the candidate
     environment: str  # empty: overall
     size: tuple[int, ...]  # numbers of bearings
-    probability_stable: Array  # from the first so many bearings
+    probability_stable: Array  # of the first `size` bearings
     probability_low: Array  # lower end of the 95 % interval
     probability_high: Array  # upper end of the 95 % interval
 
