@@ -1,7 +1,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 # A file of tests is one worker's, so that what its tests share is made once.
-TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile
+TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
 # Compiles all kernels once, before the tests: else each worker would compile the same. One process for the
 # plane and one for space, because what a process compiled already it does not compile again.
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
@@ -21,8 +21,8 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(COMPILE) "$(MAP)" "$(RUN)" "$(CONTACTS)" > /dev/null & \
-	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(IMPACTS)" > /dev/null && wait $$!
+	@$(COMPILE) "$(MAP)" "$(RUN)" > /dev/null & \
+	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(IMPACTS)" "$(CONTACTS)" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .

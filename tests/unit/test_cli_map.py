@@ -203,7 +203,7 @@ def test_a_second_call_takes_finished_runs_and_says_so(capsys):
         assert (json.loads(out) == first) == (points == "3")
 
 
-SLOW = ["map", "slow.toml", "--points", "16", "--jobs", "1", "--json"]
+SLOW = ["map", "slow.toml", "--points", "16", "--runs", "2", "--jobs", "1", "--json"]
 
 
 def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
