@@ -226,3 +226,20 @@ def test_what_cannot_be_compared_is_refused(folder, capsys, tmp_path, monkeypatc
         answer = json.loads(Path(rank).read_text()) | change
         Path("odd.json").write_text(json.dumps(answer))
         assert said in refused(capsys, "compare", "odd.json", rank, "--json")
+
+
+def test_two_studies_are_computed_and_reported(folder, capsys, tmp_path, monkeypatch):
+    """What each lacks goes into its folder; a fault of either comes before all work; or a folder."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("first", FEW), ("second", THIN)):
+        Path(f"{name}.toml").write_text(text)
+        shutil.copytree(folder / name, tmp_path / name)
+        Path(name, "bearing.json").unlink()
+    assert "third.toml does not exist" in refused(capsys, "report", "first.toml", "third.toml")
+    assert not Path("first/bearing.json").exists()
+    assert main(["report", "first.toml", "second.toml", "--quiet"]) == 0
+    assert all(Path(name, "bearing.json").exists() for name in ("first", "second"))
+    said = capsys.readouterr().out
+    assert said.startswith("1 input differs.")
+    assert main(["report", "first", "second.toml", "--quiet"]) == 0
+    assert capsys.readouterr().out == said

@@ -107,7 +107,7 @@ def _reproduce(
 def _report(
     asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=reporting.ASKED_HELP)],
     second: Annotated[
-        Path | None, typer.Argument(metavar="[FOLDER]", help=reporting.SECOND_HELP, show_default=False)
+        str | None, typer.Argument(metavar="[STUDY|FOLDER]", help=reporting.SECOND_HELP, show_default=False)
     ] = None,
     pdf: Annotated[bool, typer.Option("--pdf", help=reporting.PDF_HELP)] = False,
     json: Json = False,

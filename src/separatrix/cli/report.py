@@ -18,6 +18,7 @@ from separatrix.questions import verb_named
 from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
+    from separatrix.comparing.saved import Saved
     from separatrix.reporting.kept import Kept
     from separatrix.reporting.record import Report
     from separatrix.study import Study
@@ -26,11 +27,11 @@ HELP = "Everything on one study as a document: HTML, and PDF with --pdf."
 EPILOG = (
     "Of a folder: from the answers that it holds; nothing long is computed. Of a study: bearing, traction, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
-    "same inputs that are there already are taken. Of two folders, STUDY is the first: what changed, by more "
-    "than counting noise or not. The HTML needs no other file and no network."
+    "same inputs that are there already are taken. Of two, each a study, a folder, a .json or a .html file: "
+    "what changed, by more than counting noise or not. The HTML needs no other file and no network."
 )
 ASKED_HELP = "A study, or a folder of answers."
-SECOND_HELP = "Another folder of answers: the report is on what differs."
+SECOND_HELP = "Another one: the report is on what differs."
 OUT_HELP = "Folder of the report [default: that of the answers; report for two; none with --json]."
 TWO = "report"
 """Default folder of the report of two answers."""
@@ -40,6 +41,8 @@ CHAIN = ("bearing", "traction", "restitution")
 
 DAMAGE = (KeyError, IndexError, TypeError, AttributeError, ValueError)
 """What a document lacks that was edited, or is of another version."""
+
+UNFINISHED = "no report was written. Run the same command to resume."
 
 KEYS = ("name", "verdict", "rank", "margin", "probability_stable", "probability_low", "probability_high")
 
@@ -55,7 +58,7 @@ class ReportOptions:
     jobs: int
 
 
-def report(asked: str, second: Path | None, options: ReportOptions) -> int:
+def report(asked: str, second: str | None, options: ReportOptions) -> int:
     """Write the report of a study, of a folder, or of two answers, and return the exit status.
 
     Raises
@@ -74,8 +77,7 @@ def report(asked: str, second: Path | None, options: ReportOptions) -> int:
         typesetter()
     writes = options.out is not None or not options.json
     if second is not None:
-        _report_of_two(Path(asked), second, options, writes=writes)
-        return ANSWERED
+        return _report_of_two(asked, second, options, writes=writes)
     with contextlib.ExitStack() as stack:
         if Path(asked).is_dir() and asked not in shipped_studies():
             folder = (options.out or Path(asked)) if writes else None
@@ -89,7 +91,7 @@ def report(asked: str, second: Path | None, options: ReportOptions) -> int:
                 stack.enter_context(writable_folder(folder))
             kept, missing, complete = answers_of(study, folder, _computing(study, notes, folder, options))
             if not complete:
-                return interrupted("no report was written. Run the same command to resume.")
+                return interrupted(UNFINISHED)
             made = report_of(kept, missing)
         _deliver(made, folder, options)
     return ANSWERED
@@ -109,13 +111,44 @@ def _report_of_folder(folder: Path, options: ReportOptions) -> Report:
         raise InputError(str(folder), "holds an answer that is not complete", repr(error), cure) from error
 
 
-def _report_of_two(first: Path, second: Path, options: ReportOptions, *, writes: bool) -> None:
+def _report_of_two(first: str, second: str, options: ReportOptions, *, writes: bool) -> int:
     from separatrix.reporting.two import report_of_two
 
-    made = report_of_two(first, second)
     folder = (options.out or Path(TWO)) if writes else None
     with contextlib.nullcontext() if folder is None else writable_folder(folder):
-        _deliver(made, folder, options)
+        sides = [(asked, _read_side(asked)) for asked in (first, second)]  # a fault of either comes first
+        both = [_answers(asked, side, options, writes=writes) for asked, side in sides]
+        if not all(both):
+            return interrupted(UNFINISHED)
+        _deliver(report_of_two(*both), folder, options)
+    return ANSWERED
+
+
+def _read_side(asked: str) -> dict[str, Saved] | tuple[Study, list[str]]:
+    """Return the answers of one of two by verb, or its study with what was noted."""
+    from separatrix.comparing.saved import ENDINGS, read_answers
+    from separatrix.study_file import shipped_studies
+
+    path = Path(asked)
+    kept = path.suffix.casefold() in ENDINGS or (path.is_dir() and asked not in shipped_studies())
+    return read_answers(path) if kept else _read(asked)
+
+
+def _answers(
+    asked: str, side: dict[str, Saved] | tuple[Study, list[str]], options: ReportOptions, *, writes: bool
+) -> dict[str, Saved]:
+    """Return the answers of one of two; those of a study are computed, none if that was interrupted."""
+    from separatrix.comparing.saved import Saved
+    from separatrix.reporting.kept import answers_of
+
+    if isinstance(side, dict):
+        return side
+    study, notes = side
+    folder = Path(study.name) if writes else None
+    with contextlib.nullcontext() if folder is None else writable_folder(folder):
+        kept, _, complete = answers_of(study, folder, _computing(study, notes, folder, options))
+    both = ((verb, one.document, one.data) for verb, one in kept.items() if complete)
+    return {verb: Saved(path=asked, verb=verb, document=found, data=data) for verb, found, data in both}
 
 
 def _read(asked: str) -> tuple[Study, list[str]]:

@@ -23,6 +23,9 @@ VERBS = (
 )
 """Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
 
+ENDINGS = (".json", ".nc", ".html", ".htm")
+"""Endings of the files that hold answers: documents, datasets, reports."""
+
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
     rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
@@ -66,7 +69,7 @@ def read_answers(path: Path) -> dict[str, Saved]:
                 raise InputError(path_text(path / verb), "must be an answer of that verb", parts[0].verb)
             found[verb] = Saved(path=where, verb=verb, document=document, data=data)
         return found
-    if path.suffix.casefold() in (".html", ".htm"):
+    if path.suffix.casefold() in ENDINGS[2:]:
         match = REPORT.search(_bytes(path))
         if match is None:
             raise InputError(where, "is not a report with its answers in it", cure=_MAKE)

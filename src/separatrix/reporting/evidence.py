@@ -50,8 +50,10 @@ def _evidence(rank: Row) -> Iterator[Block]:
     yield Table(
         ("candidate", "motion", "growth rate [1/s] (95 %)", "whirl", "whirl ratio", "end energy", "rubbing"),
         tuple((str(row["name"]), *_motion(row)) for row in rows),
-        "Motion from the worst disturbance. Whirl: frequency seen from the balls; ratio: speed of the cage "
-        "centre about the axis over that of the ball set; rubbing: friction power on the land.",
+        "Motion from the worst disturbance. Growth rate: of the amplitude, from the middle of the runs to "
+        "their last fifth; about 0 once the cage has settled. Whirl: frequency seen from the balls; ratio: "
+        "speed of the cage centre about the axis over that of the ball set; rubbing: friction power on the "
+        "land.",
         left=2,
     )
     if any(row.get("largest_tilt") is not None for row in rows):

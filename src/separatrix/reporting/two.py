@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
 
 from separatrix.comparing.drawing import pictures
 from separatrix.comparing.pair import compared, pair_of
 from separatrix.comparing.records import Comparison, Noise, Row
-from separatrix.comparing.saved import Saved, read_answers
+from separatrix.comparing.saved import Saved
 from separatrix.comparing.text import EXACT, input_words, notes_of, pair_words, result_words, shown_rows
 from separatrix.reporting.pictures import picture_of
 from separatrix.reporting.record import Block, Facts, Paragraph, Report, Section, Table
@@ -19,15 +18,15 @@ MOST_ROWS = 40
 COUNTED = (Noise.BEYOND, Noise.WITHIN)
 
 
-def report_of_two(first: Path, second: Path) -> Report:
-    """Return the report of two answers of one verb, from folders, documents or reports.
+def report_of_two(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> Report:
+    """Return the report of two designs, each with its answers by verb: on the first verb that both have.
 
     Raises
     ------
     InputError
-        One of them is not an answer, or they share no verb.
+        They share no verb.
     """
-    one, other, also = pair_of(read_answers(first), read_answers(second))
+    one, other, also = pair_of(first, second)
     found = compared(one, other, also)
     titles = [answer.title for answer in found.answers]
     return Report(

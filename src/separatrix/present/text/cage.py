@@ -105,7 +105,7 @@ def orbit_facts(history: History, cage: PlanarCage) -> list[tuple[str, str]]:
     evenness = f"{number(spread / mean, 2)} (0: a circle about the axis)" if mean > 0.0 else "none"
     return [
         ("Largest offset", quantity(float(offset.max()), "m")),
-        ("Mean offset at the end", f"{quantity(mean, 'm')}, since {quantity(start, 's')}"),
+        ("Mean offset", f"{quantity(mean, 'm')}, from {quantity(start, 's')} to the end"),
         ("Relative spread", evenness),
         ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(cage))),
     ]
