@@ -10,8 +10,8 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer ContactCases bearing check compare map mobility rank restitution sensitivity simulate "
-    "solve_contact stability sweep traction",
+    "api": "Answer ContactCases bearing check compare map mobility rank report restitution "
+    "sensitivity simulate solve_contact stability sweep traction",
     "ball_traction": "BallTraction",
     "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
     "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
@@ -35,9 +35,10 @@ _PUBLIC = {
     "friction.reduction": "reduce_log",
     "friction.tribometer": "ReducedLogs tribometer",
     "ledger": "Ledger",
+    "reporting.record": "Report",
     "runner": "Interrupted Runner",
     "ranking": "Ranking",
-    "present": "dataset document load report save to_dataframe to_xarray",
+    "present": "dataset document load save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study": "BallBearing CageDesign Candidate ContactPressure Film Friction Guidance KinematicModel "
     "Material Operation PocketContact PocketShape PressureSlip Race RankingQuestion StabilitySettings Study "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
     from separatrix.comparing.records import Comparison
     from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
+    from separatrix.reporting.record import Report
 
 Record = TypeVar("Record")
 
@@ -76,9 +78,9 @@ class Answer(Generic[Record]):
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present import report
+        from separatrix.present import in_words
 
-        return report(self.verb, self.record, self.study, list(self.notes), full=full)
+        return in_words(self.verb, self.record, self.study, list(self.notes), full=full)
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
@@ -363,3 +365,35 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
         return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document(), data=data)}
 
     return compared(*pair_of(saved(first), saved(second)))
+
+
+def report(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Report:
+    """Everything on a study as one document; parameters are those of `stability`.
+
+    Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
+    """
+    from separatrix.reporting.content import report_of
+    from separatrix.reporting.kept import Kept, answers_of
+
+    asked = study if isinstance(study, Study) else read_study(study)
+    how: dict[str, Any] = {"jobs": jobs, "folder": folder, "cluster": cluster, "progress": progress}
+    verb_of: dict[str, Callable[..., Answer[Any]]] = {
+        "bearing": bearing,
+        "traction": traction,
+        "restitution": restitution,
+        "stability": partial(stability, **how),
+        "rank": partial(rank, **how),
+    }
+
+    def compute(verb: str) -> Kept:
+        return Kept((answer := verb_of[verb](asked)).document(), answer.to_xarray())
+
+    kept, missing, _ = answers_of(asked, None, compute)
+    return report_of(kept, missing)

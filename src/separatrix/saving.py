@@ -14,7 +14,7 @@ from separatrix.figures.animation import animate
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_page import write_page
 from separatrix.plain_text import harmless
-from separatrix.present import dataset, report, save
+from separatrix.present import dataset, in_words, save
 from separatrix.staged import staged
 from separatrix.workbook import results_workbook
 from separatrix.workbook_looks import add_table, new_workbook, text_for_cell, workbook_bytes
@@ -60,7 +60,7 @@ def save_answer(
     verb = str(found["verb"])
     asked = (verb, record, study, list(found["warnings"]))
     with staged(folder) as stage:
-        for suffix, content in ((".json", written(found)), (".txt", report(*asked, full=True))):
+        for suffix, content in ((".json", written(found)), (".txt", in_words(*asked, full=True))):
             (stage / f"{verb}{suffix}").write_text(harmless(content), encoding="utf-8")
         if verb == "rank":
             results_workbook(found, stage / "rank.xlsx")

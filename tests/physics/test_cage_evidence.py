@@ -26,6 +26,7 @@ HELD = replace(
 CAGES = {
     "land": HELD,
     "backward": replace(HELD, cage_speed=-670.0, inner_speed=-1570.0),
+    "no land": replace(HELD, guidance=Guidance.BALL, land_clearance=None, ball_cage_friction=0.02),
     "no land, at rest": replace(HELD, guidance=Guidance.BALL, land_clearance=None, cage_speed=0.0),
     "Hertz": replace(HELD, hertz_coefficient=3e8),
 }
@@ -76,7 +77,8 @@ def told(cage, ours):
     end = round(ours.judged_until / look)
     n, half = end // 5, end // 2 - end // 5 // 2
     last = between(ours, ours.judged_from, ours.judged_until)
-    drift = max(n, min(end, limits.window) // 2)
+    roams = math.isinf(cage.land_gap) and cage.cage_speed != 0.0
+    drift = max(n, min(end, limits.window) // 2 if roams else min(limits.window // 2, end // 4))
     halfway, fifth = (between(ours, look * a, look * (a + n)) for a in (half, end - n))
     before, after = (between(ours, look * (end - a * drift), look * (end - (a - 1) * drift)) for a in (2, 1))
     (x, y), (vx, vy) = ours.position.T, ours.velocity.T
@@ -89,7 +91,10 @@ def told(cage, ours):
     weight = 2 * math.pi * mean(ours, speed**2, last) * np.ptp(ours.time[last])
     whirl, either_way = np.sum(turning) / weight, np.sum(np.abs(turning)) / weight
     sense = 1 if cage.cage_speed >= 0.0 else -1
-    ends = [math.hypot(mean(ours, x, rows), mean(ours, y, rows)) for rows in (before, after)]
+    ends = [
+        math.hypot(mean(ours, x, rows), mean(ours, y, rows)) if roams else mean(ours, r, rows)
+        for rows in (before, after)
+    ]
     whole = between(ours, 0.0, ours.judged_until)
     return [
         ("end_energy", mean(ours, energy, last), near),

@@ -1,8 +1,10 @@
 """The verbs as Python functions: text, tables, arrays and figure, equal to the command line's."""
 
 import copy
+import html
 import json
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -121,3 +123,17 @@ def test_a_study_that_lacks_a_section_is_refused(tmp_path):
         with pytest.raises(InputError, match=r"\[cage\]"):
             api.restitution(study)
     assert np.isfinite(api.bearing(study).to_dataframe()["load_inner"]).all()
+
+
+def test_a_report_of_a_study_is_a_document(small):
+    """What the verbs answer, in one page; a progress that is asked for is told."""
+    told = []
+    bare = separatrix.read_study(small)
+    bare = replace(bare, ranking=None)
+    found = separatrix.report(bare, jobs=1, progress=lambda done, total: told.append((done, total)))
+    assert [*found.documents] == ["bearing", "traction", "restitution", "stability"]
+    assert told[-1][0] == told[-1][1] > 0
+    assert found.documents["bearing"]["balls"] == separatrix.bearing(bare).document()["balls"]
+    assert found.summary().splitlines() == list(found.lead)
+    assert found.lead[0] in html.unescape(found.html())
+    assert found.pdf().startswith(b"%PDF-")

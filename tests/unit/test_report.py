@@ -9,7 +9,7 @@ import pytest
 
 from separatrix.cage import CageMotion, Judgement, KickCount, Verdict
 from separatrix.chain.pocket import PocketConditions
-from separatrix.present import report, whereabouts
+from separatrix.present import in_words, whereabouts
 from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
@@ -132,7 +132,7 @@ def found(*rows, names=("air",)) -> Ranking:
 def text(*rows, names=("air",), **options) -> str:
     """Return the printed ranking."""
     answer = SimpleNamespace(ranking=found(*rows, names=names))
-    return report("rank", answer, STUDY, ["A note."], **options)
+    return in_words("rank", answer, STUDY, ["A note."], **options)
 
 
 def test_tied_ranks_are_marked():

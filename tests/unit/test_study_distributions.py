@@ -14,7 +14,7 @@ from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Unif
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
 from separatrix.limits.map_parameters import varied
-from separatrix.present import report
+from separatrix.present import in_words
 from separatrix.ranking.lowest import measured
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (
@@ -225,14 +225,14 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = report("check", CheckAnswer(static=None), study, [])
+    shown = in_words("check", CheckAnswer(static=None), study, [])
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
     from separatrix.chain.solution import solve
 
-    told = report("bearing", solve(study).bearing, study, [])
+    told = in_words("bearing", solve(study).bearing, study, [])
     assert "An uncertain input is at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = report("bearing", solve(certain).bearing, certain, [])
+    told = in_words("bearing", solve(certain).bearing, certain, [])
     assert "uncertain" not in told
 
 

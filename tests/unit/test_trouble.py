@@ -17,7 +17,7 @@ from separatrix.cage import Cause, RunOutcome, Verdict, judge, run_ensemble, sim
 from separatrix.chain.restitution import damping_for
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.present import document, report
+from separatrix.present import document, in_words
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
 
@@ -141,7 +141,7 @@ def test_an_unresolved_run_says_so():
     history = replace(history, outcome=RunOutcome.UNRESOLVED, cause=Cause.IMPACTS)
     answer = SimulationAnswer(solution=solve(asked), cage=solve(asked).cage, history=history, kick=0.5, run=0)
     found = document("simulate", answer, asked, [])
-    said = " ".join(report("simulate", answer, asked, []).split())
+    said = " ".join(in_words("simulate", answer, asked, []).split())
     assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "IMPACTS")
     assert "UNRESOLVED" in said
     assert "The run does not show where the motion ends." in said

@@ -194,9 +194,7 @@ def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report
     from separatrix.notes import grouped, noted_warnings
     from separatrix.questions import computed, verb_named
     from separatrix.reporting.content import report_of
-    from separatrix.reporting.html import html
     from separatrix.reporting.kept import Kept, answers_of, keep
-    from separatrix.reporting.pdf import pdf
     from separatrix.staged import staged
 
     def compute(verb: str) -> Kept:
@@ -214,9 +212,9 @@ def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report
         return INTERRUPTED
     send(Report(number=task.number, message="Writing the report."))
     made = report_of(found, missing)
-    contents = {"report.html": html(made).encode()}
+    contents = {"report.html": made.html().encode()}
     if find_spec("typst") is not None:
-        contents["report.pdf"] = pdf(made)
+        contents["report.pdf"] = made.pdf()
     with staged(task.folder) as stage:
         for name, content in contents.items():
             (stage / name).write_bytes(content)

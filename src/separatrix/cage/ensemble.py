@@ -84,7 +84,7 @@ class Ensemble:
         Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
         squared offset, over the last part; positive as the ball set turns [rad/s].
     drift_rate : ndarray
-        Growth rate of the mean offset between the last two fifths of the run [1/s].
+        Growth rate of the mean offset late in the run, of a cage free to drift that of its mean place [1/s].
     whirl_frequency, whirl_direction : ndarray
         Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
         its sense: 1 forward (as the ball set turns), -1 backward, 0 none.

@@ -147,25 +147,30 @@ def watch(
 
 
 @part
-def offset_of(looks: Sequence[Look], first: int, last: int) -> float:
-    """Distance of the mean place in some looks from the axis, times their time."""
-    x = y = 0.0
+def offset_of(looks: Sequence[Look], first: int, last: int, limits: Limits) -> float:
+    """Offset in some looks, times their time: see `drift_rate`."""
+    x = y = offset = 0.0
     for i in range(first, last):
         x += looks[i].mean_x
         y += looks[i].mean_y
-    return float(np.hypot(x, y))
+        offset += looks[i].offset
+    return float(np.hypot(x, y)) if limits.drifts else offset
 
 
 @part
-def drift_rate(looks: Sequence[Look], end: int, window: int) -> float:
+def drift_rate(looks: Sequence[Look], end: int, limits: Limits) -> float:
     """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset.
 
     Between the halves of the window by which a short run was judged: before it the kick still had its effect.
+    A cage that is free to drift creeps under a fast whirl, which the distance of its mean place leaves out.
+    Any other goes round on its land or swings about its place, so that its mean distance tells; of a run that
+    is all window, the last half only, for the first has the kick.
     """
-    n = max(end // FEWEST_LOOKS, min(end, window) // 2)
+    half = min(end, limits.window) // 2
+    n = max(end // FEWEST_LOOKS, half if limits.drifts else min(half, max(1, end // 4)))
     if n == 0:
         return 0.0
-    last, before = offset_of(looks, end - n, end), offset_of(looks, end - 2 * n, end - n)
+    last, before = offset_of(looks, end - n, end, limits), offset_of(looks, end - 2 * n, end - n, limits)
     return float(np.log(last / before) / n) if last > 0.0 and before > 0.0 else 0.0
 
 
@@ -249,7 +254,7 @@ def enter_looks(
     out.largest_offset, out.land_impacts = np.sqrt(farthest), int(land_hits)
     out.followed = end * length * p.unit
     out.growth_rate = growth(looks, end, length, start) / p.unit
-    out.drift_rate = drift_rate(looks, end, limits.window) / (length * p.unit)
+    out.drift_rate = drift_rate(looks, end, limits) / (length * p.unit)
     unit_force = 1.0 / p.unit**2
     out.largest_contact_force, out.largest_land_force = force * unit_force, land_force * unit_force
     enter_end(p, looks, end, length, limits, out)

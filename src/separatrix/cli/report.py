@@ -210,12 +210,11 @@ def _computing(
 
 def _deliver(found: Report, folder: Path | None, options: ReportOptions) -> None:
     """Write the files, then print the answer and where they are."""
-    from separatrix.reporting.html import html
-    from separatrix.reporting.pdf import pdf
-
     files: list[Path] = []
     if folder is not None:
-        contents = {"report.html": html(found).encode()} | ({"report.pdf": pdf(found)} if options.pdf else {})
+        contents = {"report.html": found.html().encode()} | (
+            {"report.pdf": found.pdf()} if options.pdf else {}
+        )
         with staged(folder) as stage:
             for name, content in contents.items():
                 (stage / name).write_bytes(content)

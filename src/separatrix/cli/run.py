@@ -98,14 +98,14 @@ def _deliver(
     verb: Verb, record: object, study: Study, notes: list[str], folder: Path | None, options: Options
 ) -> None:
     """Write the answer, then the files, which take as long again, and say where they are."""
-    from separatrix.present import document, report, whereabouts
+    from separatrix.present import document, in_words, whereabouts
 
     found = document(verb.name, record, study, notes)
     asked = (verb.name, record, study, list(found["warnings"]))
     if options.json:
         answer(json.dumps(found, indent=1, allow_nan=False) + "\n")
     else:
-        answer(report(*asked, full=options.full, quiet=options.quiet))
+        answer(in_words(*asked, full=options.full, quiet=options.quiet))
     if folder is None:
         return
     from separatrix.saving import save_answer

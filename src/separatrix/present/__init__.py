@@ -1,4 +1,4 @@
-"""Answers as plain data (`document`), as labelled arrays and tables, as text (`report`), and as files."""
+"""Answers as plain data (`document`), as labelled arrays and tables, as text (`in_words`), and as files."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from separatrix.present.arrays import dataset, load, save, to_dataframe, to_xarray
     from separatrix.present.json import NotFiniteError, document, plain
-    from separatrix.present.text.report import report, whereabouts
+    from separatrix.present.text.answer import in_words, whereabouts
 
 _HOME = {
     "json": "NotFiniteError document plain",
     "arrays": "dataset load save to_dataframe to_xarray",
-    "text.report": "report whereabouts",
+    "text.answer": "in_words whereabouts",
 }
 """Module -> its public names."""
 
@@ -21,9 +21,9 @@ __all__ = [
     "NotFiniteError",
     "dataset",
     "document",
+    "in_words",
     "load",
     "plain",
-    "report",
     "save",
     "to_dataframe",
     "to_xarray",

@@ -93,6 +93,22 @@ class Report:
         blocks = self.sections[0].blocks
         return tuple(one.text for one in blocks if isinstance(one, Paragraph) and one.kind == "lead")
 
+    def summary(self) -> str:
+        """The answer, a sentence a line."""
+        return "\n".join(self.lead)
+
+    def html(self) -> str:
+        """One HTML file, as text, that needs no other file and no network."""
+        from separatrix.reporting.html import html
+
+        return html(self)
+
+    def pdf(self) -> bytes:
+        """The same as PDF; needs the extra ``pdf``."""
+        from separatrix.reporting.pdf import pdf
+
+        return pdf(self)
+
 
 def as_data(report: Report) -> dict[str, Any]:
     """Return a report as plain data: text, tables and captions, without its pictures and documents."""

@@ -55,7 +55,7 @@ DRAWS = ("check", "rank", "sensitivity")
 """Verbs that show uncertain inputs as what they are."""
 
 
-def report(
+def in_words(
     verb: str, answer: object, study: Study, notes: Sequence[str], *, full: bool = False, quiet: bool = False
 ) -> str:
     """Return the answer as text, ASCII but for names in the study.
