@@ -18,16 +18,17 @@ COLOURS = [[0.0, "#0072B2"], [0.5, "#f0f0f0"], [1.0, "#D55E00"]]
 LINE = 80
 """Letters of a line of the words under the pointer."""
 
-GAP = 0.15
-"""Share of its height that is left free below a panel."""
+GAP, WIDE_GAP = 0.15, 0.35
+"""Share of its height that is left free below a panel; with the label of an x axis there."""
 
 
 def spec(*plots: Plot) -> Spec:
-    """Return the figure of a plot, or of several one below the other over the x axis of the first.
+    """Return the figure of a plot, or of several one below the other: over one x axis if they have one label.
 
     Colours of text and paper are set by the page, light or dark.
     """
     first, count = plots[0], len(plots)
+    own_x = len({plot.x_label for plot in plots}) > 1
     layout: Spec = {
         "title": {"text": _plain(first.title), "font": {"size": 15}, "x": 0.01, "xanchor": "left"},
         "xaxis": _axis(first.x_label, is_log=first.x_log) | {"anchor": f"y{count}" if count > 1 else "y"},
@@ -41,9 +42,12 @@ def spec(*plots: Plot) -> Spec:
         number = str(place) if place > 1 else ""  # Plotly counts so
         layout[f"yaxis{number}"] = axis = _axis(plot.y_label, is_log=plot.y_log)
         if count > 1:
-            top, foot = 1.0 - (place - 1) / count, 1.0 - (place - GAP) / count
+            top, foot = 1.0 - (place - 1) / count, 1.0 - (place - (WIDE_GAP if own_x else GAP)) / count
             axis["domain"] = [foot if place < count else 0.0, top]
             layout[f"legend{number}"] = {"x": 1.01, "y": top, "yanchor": "top", "font": {"size": 11}}
+        if own_x:
+            layout[f"xaxis{number}"] = _axis(plot.x_label, is_log=plot.x_log) | {"anchor": f"y{number}"}
+            axis["anchor"] = f"x{number}"
         if plot.y_names:
             names = [_plain(name) for name in plot.y_names]
             axis |= {"tickvals": [*range(len(names))], "ticktext": names, "automargin": True}
@@ -51,6 +55,7 @@ def spec(*plots: Plot) -> Spec:
             if one.kind == "upright":
                 layout["shapes"].append(_upright(one))
             own = {"yaxis": f"y{number}", "legend": f"legend{number}"}
+            own |= {"xaxis": f"x{number}"} if own_x else {}
             data += [trace | own for trace in _traces(one, across=bool(plot.y_names))]
     return {"data": data, "layout": layout}
 

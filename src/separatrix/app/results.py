@@ -18,7 +18,7 @@ from separatrix.app.page import Page, form_of
 from separatrix.app.plotly import spec
 from separatrix.errors import InputError
 from separatrix.figures.envelope import has_envelope
-from separatrix.figures.envelope_hover import envelope_plots
+from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_page import view as space_view
@@ -34,7 +34,7 @@ PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "stability": {"curve": stability_plot},
     "rank": {"curve": stability_plot, "candidates": candidates_plot},
     "map": {"map": map_plot},
-    "sweep": {"envelope": envelope_plots},
+    "sweep": {"envelope": envelope_plots, "cases": sweep_plots},
 }
 """Verb -> its figures to hover over, each one plot or several panels."""
 
@@ -148,9 +148,11 @@ def routes(page: Page) -> APIRouter:
 
 
 def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
-    """Return the names of the figures to hover over; a sweep may have no envelope."""
-    if verb == "sweep" and (data is None or not has_envelope(data)):
-        return []
+    """Return the names of the figures to hover over; a sweep without an envelope has its cases."""
+    if verb == "sweep":
+        if data is None or "case" not in data.sizes:
+            return []
+        return ["envelope" if has_envelope(data) else "cases"]
     return [*PLOTS.get(verb, {})]
 
 

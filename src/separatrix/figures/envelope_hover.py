@@ -9,7 +9,8 @@ import xarray as xr
 
 from separatrix.figures.envelope import ORDERS, Place, column, has_duty, places, worst
 from separatrix.figures.hover import Plot, Series, floats, plain
-from separatrix.figures.map import axis_label, is_proportional
+from separatrix.figures.map import MOST_PANELS, axis_label, axis_values, is_proportional
+from separatrix.figures.stability import ETA_LABEL
 from separatrix.figures.style import BLACK, BLUE, GREY, VERDICT_COLOURS, VERMILION
 from separatrix.present.text.tables import interval, number, significant
 from separatrix.units import Array, format_quantity
@@ -40,6 +41,28 @@ def envelope_plots(data: xr.Dataset) -> tuple[Plot, ...]:
             y_log=label.startswith("frequency"),
         )
         for label, series in drawn
+    )
+
+
+def sweep_plots(data: xr.Dataset) -> tuple[Plot, ...]:
+    """Return the panels of a sweep of several parameters, as `figures.sweep` draws them: cases by verdict."""
+    eta, verdict = data["restitution_factor"].values.astype(float), data["verdict"].values.astype(str)
+    rows = zip(_names(data), eta, verdict, strict=True)
+    texts = [f"{name}: restitution factor {number(e, 3)}{v and f', {v}'}" for name, e, v in rows]
+    groups = [("cases", "", BLACK), *((v, v, c) for v, c in VERDICT_COLOURS.items())]
+    return tuple(
+        Plot(
+            title="Restitution factor of every case",
+            x_label=plain(axis_label(data, name, name)),
+            y_label=plain(ETA_LABEL),
+            series=tuple(
+                _series(words, np.where(verdict == known, eta, np.nan), texts, (at, False), colour)
+                for words, known, colour in groups
+                if (verdict == known).any()
+            ),
+        )
+        for name in map(str, data["parameter"].values[:MOST_PANELS])
+        for at in [axis_values(data, name)]
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from separatrix.figures import draw
 from separatrix.figures.drawing import bearing_drawing, guesses
-from separatrix.figures.envelope_hover import envelope_plots
+from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
 from separatrix.figures.hover import candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.ranking import file_name, own_environment
 from separatrix.figures.style import journal, settled
@@ -58,8 +58,9 @@ def _targets(name: str, figure: Figure, data: xr.Dataset) -> Iterator[Target]:
     elif name == "traction-curves":
         for axes, race in zip(figure.axes, ("inner race", "outer race"), strict=False):
             found += places(axes, traction_plot(data), MOST_TARGETS // 2, race)
-    elif name == "envelope":
-        for axes, plot in zip(figure.axes, envelope_plots(data), strict=True):
+    elif name in ("envelope", "sweep"):
+        plots = envelope_plots(data) if name == "envelope" else sweep_plots(data)
+        for axes, plot in zip(figure.axes, plots, strict=False):  # a place without a panel is hidden
             found += places(axes, plot, MOST_TARGETS)
     for x, y, text in found:
         yield Target(round(x, 1), round(y, 1), radius, text)
