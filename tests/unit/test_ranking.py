@@ -153,6 +153,11 @@ def test_the_papers_word_is_printed_where_it_differs():
         ((0.7, 0.1, 0.9), Verdict.STABLE, "So it is."),
         ((0.0, 0.0, 0.0), Verdict.UNSTABLE, "Stable at no restitution factor above 0. So it is."),
         ((1.0, 1.0, 1.0), Verdict.STABLE, "Stable at any restitution factor. So it is."),
+        (
+            (1.0, 1.0, 1.0),
+            Verdict.UNDECIDED,
+            "Pocket friction starts no whirl at any restitution factor. So it is.",
+        ),
     ],
 )
 def test_a_reason_without_a_threshold_says_so(threshold, verdict, said):

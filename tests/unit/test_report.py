@@ -14,6 +14,7 @@ from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
 from separatrix.ranking import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
+from separatrix.reporting.first_page import verdict_sentences
 from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study
 
@@ -231,12 +232,27 @@ def test_candidates_with_one_reason_share_it():
             "2 materials tie for first in air (A, B): STABLE, UNDECIDED. They tolerate a restitution factor "
             "up to 0.60; this bearing and their pockets have 0.30 to 0.40 (margin +0.20 to +0.30).",
         ),
+        (
+            [row("A", 1, Verdict.UNDECIDED), row("B", 2)],
+            "A ranks first in air: UNDECIDED. It tolerates a restitution factor up to 0.60; this bearing "
+            "with its pocket has 0.30 (margin +0.30). A: So it is. The others: STABLE B.",
+        ),
         ([MISSING], "No candidate was ranked in air."),
     ],
 )
 def test_the_answer_in_short(rows, words):
-    """Who is first, with the verdict and the margin, and what the others are; nobody if none was measured."""
+    """Who is first, with verdict and margin, why if undecided, and the others; nobody if none was measured."""
     assert ranking.in_short(found(*rows)) == words
+
+
+def test_the_report_says_why_the_first_is_undecided():
+    """With all of its reason, in the sentence of its margin."""
+    numbers = {"restitution_threshold": 0.6, "restitution_factor": 0.3, "margin": 0.3, "rank": 1, "name": "A"}
+    numbers |= {"restitution_threshold_low": 0.5, "restitution_threshold_high": 0.7, "reason": "So it is."}
+    for verdict, ends in (("UNDECIDED", "+0.30. A: So it is."), ("STABLE", "a margin of +0.30.")):
+        rows = [numbers | {"verdict": verdict}]
+        answer = {"environment": "air", "environments": [{"name": "air", "materials": rows}]}
+        assert verdict_sentences(answer)[1].endswith(ends)
 
 
 def test_a_ranking_fits_a_screen():

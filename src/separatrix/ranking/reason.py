@@ -33,7 +33,9 @@ def not_finite(judgement: Judgement) -> str:
 
 def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
     """Return what decides a verdict in words; friction, threshold and margin stand beside it as numbers."""
-    ends = {0.0: "Stable at no restitution factor above 0.", 1.0: "Stable at any restitution factor."}
+    stable = judgement.verdict is Verdict.STABLE
+    always = "Stable at any" if stable else "Pocket friction starts no whirl at any"
+    ends = {0.0: "Stable at no restitution factor above 0.", 1.0: f"{always} restitution factor."}
     other = disagreement(threshold.value, judgement.verdict)
     return " ".join(part for part in (ends.get(threshold.value), judgement.reason, other) if part)
 

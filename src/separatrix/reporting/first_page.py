@@ -77,7 +77,7 @@ def _evidence(row: Row) -> tuple[str, ...]:
 
 
 def verdict_sentences(rank: Row) -> list[str]:
-    """Return the answer of a ranking in three sentences: the first, its margin, the others."""
+    """Return the answer of a ranking: the first, its margin and why it is undecided if it is, the others."""
     rows, place = own_rows(rank), rank["environment"]
     first = [row for row in rows if row.get("rank") == 1]
     if not first:
@@ -100,6 +100,8 @@ def verdict_sentences(rank: Row) -> list[str]:
         f"{'The cage' if len(first) == 1 else 'Their cages'} {up_to}; this bearing and film have {etas}, "
         f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
     )
+    if first[0]["verdict"] == "UNDECIDED":
+        by_it += f" {first[0]['name']}: {first[0]['reason']}"
     others = grouped((verdict(row), row["name"]) for row in rows if row not in first)
     rest = "; ".join(f"{word} {', '.join(who)}" for word, who in others.items())
     return [lead, by_it, f"The others: {rest}." if rest else "There is no other candidate."]

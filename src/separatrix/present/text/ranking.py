@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from separatrix.cage import Verdict
 from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
 from separatrix.present.text.second import by_the_other_ball
@@ -223,7 +224,7 @@ def reasons(rows: Sequence[Row]) -> list[str]:
 
 
 def in_short(found: Ranking) -> str:
-    """Return the answer in three sentences: who is first here, with what margin, and what the others are."""
+    """Return the answer: who is first here, with what margin, why if undecided, and what the others are."""
     rows, place = headline(found), found.environment
     first = [row for row in rows if isinstance(row, Ranked) and row.rank == 1]
     if not first:
@@ -240,7 +241,9 @@ def in_short(found: Ranking) -> str:
     margins = _span([row.margin for row in first], "{:+.2f}")
     others = grouped((verdict_word(row), row.name) for row in rows if row not in first)
     rest = f" The others: {_by_verdict(others)}." if others else ""
-    return f"{lead} {it} a restitution factor up to {limits}; {pocket} {etas} (margin {margins}).{rest}"
+    is_open = first[0].judgement.verdict is Verdict.UNDECIDED
+    why = f" {first[0].name}: {first[0].judgement.reason}" if is_open else ""
+    return f"{lead} {it} a restitution factor up to {limits}; {pocket} {etas} (margin {margins}).{why}{rest}"
 
 
 def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
