@@ -241,7 +241,7 @@ def test_candidates_with_one_reason_share_it():
     ],
 )
 def test_the_answer_in_short(rows, words):
-    """Who is first, with verdict and margin, why if undecided, and the others; nobody if none was measured."""
+    """Who is first, with verdict and margin, why if undecided, and others; nobody if none was measured."""
     assert ranking.in_short(found(*rows)) == words
 
 
