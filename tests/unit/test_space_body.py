@@ -8,9 +8,12 @@ from cages import ON_A_LAND, TURNING
 from space_cages import IN_PLANE, ROUND, in_space
 
 from separatrix.cage_design import CageDesign, MotionModel, PocketContact
+from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
+from separatrix.present import plain
 from separatrix.study import Guidance
+from separatrix.study_file import read_study
 
 BODY = [
     ({"transverse_inertia": 0.0}, "transverse_inertia must be > 0"),
@@ -97,3 +100,17 @@ def test_the_lever_of_friction_is_the_radius_of_the_ball_unless_it_is_given():
     """Half the ball's diameter, or the given one."""
     assert ROUND.space.lever == pytest.approx(11.1125e-3 / 2.0, rel=1e-15)
     assert in_space(TURNING, **IN_PLANE).space.lever == 0.0
+
+
+@pytest.mark.parametrize(
+    ("shape", "along", "play"),
+    [("SQUARE", None, 3e-4), ("CYLINDRICAL", None, 3e-4), ("ELONGATED", 2e-4, 1e-4)],
+)
+def test_the_cage_of_a_study_in_space_has_finite_numbers_only(shape, along, play):
+    """Whatever its pockets: a number that is not finite would be null in the answer."""
+    study = read_study("cryogenic-turbopump")
+    pockets = {"pocket_shape": PocketShape[shape], "pocket_axial_clearance": along, "pocket_clearance": 6e-4}
+    design = replace(study.cage, motion=MotionModel.SPACE, **pockets)
+    body = solve(replace(study, cage=design)).cage_with(0.1).space
+    assert body.axial_play == pytest.approx(play)
+    assert plain(body, "body")["axial_play"] == body.axial_play  # plain refuses what is not finite

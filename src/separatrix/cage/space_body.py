@@ -46,7 +46,7 @@ class SpaceBody:
     friction_lever : float or None
         Distance of the pocket's friction from the pocket's centre [m]; None: half the ball's diameter.
     axial_play : float
-        Half the clearance along the axis of a square pocket [m].
+        Half the clearance of a pocket along the axis [m]; that of a bore follows from its diameter.
     groove_damping, groove_stiffness : float
         Of a ball that is pushed along its grooves: c_g [N s/m] and k_g [N/m]. An infinite damping holds it.
     pivot_speed : float

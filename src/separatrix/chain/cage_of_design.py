@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cage import PlanarCage
 from separatrix.cage.space_body import SpaceBody
 from separatrix.errors import ValidityWarning
-from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance
 from separatrix.units import MetrePerSecond, NewtonPerMetre, format_quantity
 
@@ -56,14 +55,13 @@ def space_body(
     depth = impact_speed * math.sqrt(inertia.mass / 2.0 / stiffness)
     radius = math.sqrt(bearing.ball_diameter / 2.0 * depth)
     spacing = design.land_spacing or 0.0
-    square = design.pocket_shape is PocketShape.SQUARE
     outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
     land = design.land_diameter or outer
     return SpaceBody(
         transverse_inertia=inertia.transverse_inertia,
         ball_spin=(float(spin[0]), float(spin[1]), float(spin[2])),
         ball_diameter=bearing.ball_diameter,
-        axial_play=design.pocket_clearance / 2.0 if square else math.inf,
+        axial_play=(design.pocket_axial_clearance or design.pocket_clearance) / 2.0,
         groove_damping=mobility.linear.groove_damping,
         groove_stiffness=mobility.linear.groove_stiffness,
         pivot_speed=8.0 / (3.0 * math.pi) * radius * math.hypot(*spin),

@@ -131,13 +131,7 @@ def _limits(rows: Any, data: xr.Dataset) -> None:
 
 def axial_play(data: xr.Dataset) -> float | None:
     """Half the clearance of the pockets along the axis [m]; None if it is not known."""
-    shape = str(data["cage_pocket_shape"].values)
-    if shape == "square":
-        play = float(data["cage_space_axial_play"])
-    elif shape == "elongated":
-        play = 0.5 * float(data["cage_pocket_axial_clearance"])
-    else:
-        play = 0.5 * float(data["cage_pocket_clearance"])
+    play = float(data["cage_space_axial_play"])
     return play if np.isfinite(play) and play > 0.0 else None
 
 
