@@ -183,7 +183,7 @@ def slopes_table():
             s = traction_slope(problem(ellipse, friction, film_compliance=compliance), creep)
             say(share, s.slope, s.slope_error, value, percent([s.slope], [value]))
     print("## own pressure, outer race, mu 0.1")
-    films = ((0.5, 0.46, 1, 11.97), (0.5, 0.46, 3, 8.87), (4, 0.38, 3, 13.97), (4, 0.38, 10, 12.63))
+    films = ((0.5, 0.46, 1, 11.989), (0.5, 0.46, 3, 8.877), (4, 0.38, 3, 13.957), (4, 0.38, 10, 12.642))
     for E, nu, h, ref in films:
         film = Layer(thickness=h * 1e-6, solid=solid(E * 1e9, nu))
         s = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
