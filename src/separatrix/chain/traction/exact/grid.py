@@ -17,6 +17,8 @@ from separatrix.compiled import kernel, part
 from separatrix.units import Array, Metre, Pascal
 
 MEAN_SHAPE = 0.72  # mean over largest pressure of a row, between pi/4 of Hertz and 2/3 of a thin soft film
+CELLS = 40  # columns, and rows, of a contact that is not longer than wide
+LONGEST = 8.0  # length over width up to which the numbers of columns and rows change (measured in the tests)
 SHORTEST_ROW = 6  # cells of a row from which its pressure tells its ends
 LENGTH_HALVINGS, END_HALVINGS = 20, 24  # leave 1e-5 of the logarithm of the length, 1e-7 cells of the end
 SMALLEST_FRACTION = 1e-3  # of a cell's length; cells with less inside are left out
@@ -42,6 +44,20 @@ class Grid:
     def cell_area(self) -> float:
         """Area of a whole cell [m2]."""
         return self.dx * self.dy
+
+
+def cell_counts(
+    columns: int | None, rows: int | None, *, semi_minor: Metre, semi_major: Metre
+) -> tuple[int, int]:
+    """Columns and rows as given, or of 1600 cells.
+
+    These are 40 x 40. In a contact longer than wide the columns are 40 times length over width to the power
+    1/3: columns resolve its ends, rows its sides. Their errors in the spin moment have opposite signs, and
+    with these numbers nearly the same size.
+    """
+    ratio = min(max(semi_minor / semi_major, 1.0), LONGEST)
+    usual = round(CELLS * ratio ** (1.0 / 3.0))
+    return usual if columns is None else columns, round(CELLS**2 / usual) if rows is None else rows
 
 
 def elliptic_grid(*, semi_minor: Metre, semi_major: Metre, columns: int, rows: int) -> Grid:
