@@ -156,7 +156,7 @@ def test_the_origin_of_the_grid_does_not_matter(b, nu, count, parts):
 def test_usual_cells_of_long_contacts(b, moment):
     """C33 at nu 0.5, where it is smallest: half the error of as many cells in a square, or less.
 
-    The moments are of 80 and 160 columns and rows, extrapolated. Errors: 0.4, 0.5, 2.0 and 0.8, 1.8, 5.1 %.
+    The moments are of 80 and 160 columns and rows, extrapolated. Errors: 0.4, 0.5, 1.4 and 0.8, 1.8, 5.1 %.
     """
     errors = []
     for count in (None, 40):
@@ -164,4 +164,4 @@ def test_usual_cells_of_long_contacts(b, moment):
         found = kalker(made, phi=-1e-6, tolerance=1e-7).spin_moment / 1e-6 / b**2
         errors.append(abs(found / moment - 1.0))
     assert errors[0] < 0.55 * errors[1]
-    assert errors[0] < 0.025
+    assert errors[0] < 0.015
