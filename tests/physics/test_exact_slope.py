@@ -78,6 +78,7 @@ def test_slopes_of_a_bearing(mu, inner, outer):
         (None, 0.0, 0.0),
         (None, 0.1, 0.0),
         (Layer(thickness=1e-6, solid=solid(0.5e9, 0.46)), 0.0013, 0.0),
+        (Layer(thickness=2e-6, solid=solid(0.5e9, 0.46)), 0.0, 0.0),
         (Layer(thickness=5e-6, solid=solid(4e9, 0.38)), 0.0137, 0.0186),
     ],
 )
