@@ -164,7 +164,8 @@ def unresolved_film(body: Body, dx: Metre) -> tuple[float, Ratio]:
     """Compliance of a body's films [m/Pa] and the share that the cells see as a film in series.
 
     Films thinner than a cell respond as one does, and need its rules at the row ends: without them the
-    sticking slope is up to 0.8 cells too high, with them 0.2 (measured in the tests).
+    sticking slope is up to 0.8 cells too high, 0.2 on average over the cuts; with them 0.4 and 0.1 (the
+    average is measured in the tests).
     """
     h = sum(layer.thickness for layer in body.layers)
     if h == 0.0:
