@@ -48,9 +48,6 @@ PUBLISHED = {
 }
 
 
-LONG = {2.0: (48, 33), 5.0: (67, 24)}  # columns and rows of contacts longer than wide: 1600 cells
-
-
 def coefficients(b, nu, columns, rows):
     """C11, C22, C23 from the force, C23 from the moment, C33."""
     made, e = contact(b, nu, columns=columns, rows=rows, friction=1e6), 1e-6
@@ -71,34 +68,36 @@ def coefficients(b, nu, columns, rows):
 
 @pytest.mark.parametrize("row", GALIN, ids=lambda row: f"{row[0]:g}-{row[1]:g}")
 def test_kalkers_coefficients(row):
-    """1600 cells: 0.3 %, as asked of them. Published, to three digits: 1.1 %.
+    """The usual grid of 1600 cells: 0.3 %, as asked of them. Published, to three digits: 1.1 %.
 
-    40 x 40, and more columns than rows in contacts longer than wide. On 40 x 40 the grid leaves of these 0.10
-    (2:1) and 0.22 % (5:1); of C33, a small difference of two moments, 0.54 and 2.45 %.
+    It is 40 x 40, 50 x 32 (2:1) or 68 x 24 (5:1). On 40 x 40 the long contacts are 0.10 (2:1) and 0.22 %
+    (5:1) off; C33, a small difference of two moments, 0.54 and 2.45 %.
     """
     b, nu, *exact = row
-    fine = coefficients(b, nu, *LONG.get(b, (40, 40)))
+    fine = coefficients(b, nu, None, None)
     assert fine[2] == pytest.approx(fine[3], rel=1e-5)  # C23 = -C32
     values = np.delete(fine, 3)
     assert values == pytest.approx(exact, rel=3e-3)
     if (b, nu) in PUBLISHED:
         assert values == pytest.approx(PUBLISHED[b, nu], rel=0.011)
-    if b in LONG:
+    if b > 1.0:
         square = np.delete(coefficients(b, nu, 40, 40), 3)
         assert square[:3] == pytest.approx(exact[:3], rel=2.5e-3)
         assert square[3] == pytest.approx(exact[3], rel=6e-3 if b == 2.0 else 2.5e-2)
 
 
-EXTRAPOLATED = [(row, 40) for row in GALIN if row[0] < 0.5] + [
-    (row, 80) for row in GALIN if 0.5 <= row[0] <= 2.0
-]
+EXTRAPOLATED = [(row, 40 if row[0] < 0.5 else 80) for row in GALIN]
 
 
 @pytest.mark.parametrize(("row", "cells"), EXTRAPOLATED, ids=lambda x: f"{x}"[:12])
 def test_kalkers_coefficients_extrapolated(row, cells):
-    """All four to 0.1 % as asked, from 40 and 80 cells; wider than a half from 80 and 160."""
+    """All four to 0.1 % as asked, from 40 and 80 cells; b/a from a half on from 80 and 160.
+
+    The stencil is of second order, and so is the extrapolation. The first order leaves 0.2 % of C33 at 5:1,
+    whose error falls by 3.8 from 40 to 80 cells.
+    """
     b, nu, *exact = row
-    best = 2.0 * coefficients(b, nu, 2 * cells, 2 * cells) - coefficients(b, nu, cells, cells)
+    best = (4.0 * coefficients(b, nu, 2 * cells, 2 * cells) - coefficients(b, nu, cells, cells)) / 3.0
     assert np.delete(best, 3) == pytest.approx(exact, rel=1e-3)
 
 

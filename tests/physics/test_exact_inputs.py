@@ -1,4 +1,4 @@
-"""What the exact contact refuses: each in one line with its place, rule and value."""
+"""What the exact contact refuses, each in one line with its place, rule and value; what may be left out."""
 
 import math
 from dataclasses import replace
@@ -25,6 +25,9 @@ from separatrix.chain.traction.exact import (
     transient,
     worn_band,
 )
+from separatrix.chain.traction.exact.grid import cell_counts
+from separatrix.contact_file import read_contact
+from separatrix.contact_file.question import rolling_cases
 from separatrix.errors import InputError
 
 STEEL = Body(base=solid(200e9, 0.3))
@@ -216,3 +219,37 @@ def test_the_valid_ones_are_solved():
     """The contact from which the others depart."""
     assert math.isfinite(slipping(longitudinal=1e-4).force)
     assert math.isfinite(slope().slope)
+
+
+LONG = """
+[contact]
+load = "300 N"
+semi_axis_rolling = "0.5 mm"
+semi_axis_lateral = "0.1 mm"
+[body_1]
+material = "440C"
+[body_2]
+material = "440C"
+[friction]
+coefficient = 0.1
+[motion]
+longitudinal = 0.001
+"""
+
+
+def test_cells_that_are_left_out(tmp_path):
+    """40 x 40, more columns in contacts longer than wide, up to 8:1, in a file and from Python.
+
+    Given numbers stay.
+    """
+    counts = [cell_counts(None, None, semi_minor=b, semi_major=1.0) for b in (0.1, 1.0, 5.0, 8.0, 100.0)]
+    assert counts == [(40, 40), (40, 40), (68, 24), (80, 20), (80, 20)]
+    assert cell_counts(12, 16, semi_minor=5.0, semi_major=1.0) == (12, 16)
+    file = tmp_path / "long.toml"
+    file.write_text(LONG)
+    setup = read_contact(file).cases[0].setup
+    assert (setup.columns, setup.rows) == (68, 24)
+    again = rolling_cases(setup.problem).cases[0].setup
+    assert again.contact().grid.shape == rolling_contact(setup.problem).grid.shape == (24, 68)
+    file.write_text(LONG + "[grid]\ncolumns = 40\n")
+    assert read_contact(file).cases[0].setup.columns == 40

@@ -89,28 +89,33 @@ def cauchy_slope(coated, n=160):
 def test_plane_layer(ratio, nu, expected):
     """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988), by the equation of its slope.
 
-    0.3 % at 40 columns, 0.05 % at 160. `expected` was computed before, with other quadratures: its four
-    decimals, of which the softest film's are short by one.
+    0.34 % at 40 columns, 0.05 % at 160: 0.5 % was asked. `expected` was computed before, with other
+    quadratures: its four decimals, of which the softest film's are short by one.
     """
     bare = math.pi / 2.0 / (1.0 - 0.285)
     for h, value in zip((0.03, 0.1, 0.3, 1.0), expected, strict=True):
         coated = body(0.285, (ratio, nu, h))
         exact = cauchy_slope(coated) / bare
         assert exact == pytest.approx(value, abs=1.5e-4)
-        for columns, tolerance in ((40, 3.2e-3), (160, 5e-4)):
+        for columns, tolerance in ((40, 3.5e-3), (160, 5e-4)):
             base = strip_force(columns, (body(0.285), body(0.285)))
             found = strip_force(columns, (body(0.285), coated)) / base
             assert found == pytest.approx(exact, rel=tolerance)
 
 
-@pytest.mark.parametrize("h", [0.001, 0.003, 0.01])
-def test_films_thinner_than_a_cell(h):
-    """Soft film: sticking slope at 20 and 160 columns differs by less than 0.3 over the columns.
+CUTS = (1.0, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125)
 
-    Without the rules of the row ends it is 0.8.
+
+@pytest.mark.parametrize("h", [0.001, 0.003, 0.007, 0.013])
+def test_films_thinner_than_a_cell(h):
+    """Soft film: sticking slope of 28 columns, mean over cuts, to 0.13/28 of that of 224 columns.
+
+    A contact of many rows has every cut. It is 0.10 at most; without the rules of the row ends 0.2 (the
+    thinnest film), with these rules up to a twentieth of a column 0.19 (the two thickest).
     """
     bodies = body(0.285), body(0.285, (0.00215, 0.46, h))
-    assert strip_force(20, bodies) == pytest.approx(strip_force(160, bodies), rel=0.3 / 20)
+    found, fine = (np.mean([strip_force(n, bodies, fraction=f) for f in CUTS]) for n in (28, 224))
+    assert found == pytest.approx(fine, rel=0.13 / 28)
 
 
 def creep_of_unlike_bodies(columns, friction=1e-4):

@@ -78,6 +78,7 @@ def test_slopes_of_a_bearing(mu, inner, outer):
         (None, 0.0, 0.0),
         (None, 0.1, 0.0),
         (Layer(thickness=1e-6, solid=solid(0.5e9, 0.46)), 0.0013, 0.0),
+        (Layer(thickness=2e-6, solid=solid(0.5e9, 0.46)), 0.0, 0.0),
         (Layer(thickness=5e-6, solid=solid(4e9, 0.38)), 0.0137, 0.0186),
     ],
 )
@@ -114,14 +115,14 @@ def test_slopes_of_thin_films_do_not_depend_on_the_columns():
 def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
     """3 um of 0.5 GPa: pressure down to 1060 MPa, slope of the outer race from 6.3 to 8.9.
 
-    8.87 is the slope on twice the cells and pressures on 200 x 480 cells; 0.6 %. With the row ends by the
-    root law alone, which a soft film does not follow, it is 5 % lower.
+    8.877 is the slope on 128 columns and 160 rows; 0.5 %. With the row ends by the root law alone, which a
+    soft film does not follow, it is 5 % lower.
     """
     film = Layer(thickness=3e-6, solid=solid(0.5e9, 0.46))
     hertz = traction_slope(problem(OUTER[0], film=film), OUTER[1])
     own = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
     assert hertz.slope == pytest.approx(6.25, rel=0.01)
-    assert own.slope == pytest.approx(8.87, rel=6e-3)
+    assert own.slope == pytest.approx(8.877, rel=5e-3)
     assert own.solution.max_pressure == pytest.approx(1064e6, rel=5e-3)
     bodies = BARE, Body(base=STEEL, layers=(film,))
     assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
@@ -130,13 +131,13 @@ def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
 @pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
 @pytest.mark.parametrize(
     ("E", "nu", "thickness", "converged"),
-    [(0.5, 0.46, 1, 11.967), (0.5, 0.46, 3, 8.871), (4.0, 0.38, 3, 13.961), (4.0, 0.38, 10, 12.627)],
+    [(0.5, 0.46, 1, 11.989), (0.5, 0.46, 3, 8.877), (4.0, 0.38, 3, 13.957), (4.0, 0.38, 10, 12.642)],
 )
-def test_the_slope_error_of_own_pressure(E, nu, thickness, converged):
-    """Bounds the difference to 56 columns and 128 rows, 0.9 % at most."""
+def test_slopes_of_own_pressure(E, nu, thickness, converged):
+    """To 0.5 %, as asked, of the slope on 128 columns and 160 rows, and to the error reported."""
     film = Layer(thickness=thickness * 1e-6, solid=solid(E * 1e9, nu))
     found = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
-    assert abs(found.slope - converged) < min(found.slope_error, 9e-3 * converged)
+    assert abs(found.slope - converged) < min(found.slope_error, 5e-3 * converged)
     assert found.slope_error < 0.03 * found.slope
 
 

@@ -20,7 +20,7 @@ from separatrix.chain.traction.exact.contact import (
     gap_contact,
     rolling_contact,
 )
-from separatrix.chain.traction.exact.grid import Grid
+from separatrix.chain.traction.exact.grid import CELLS, Grid, cell_counts
 from separatrix.chain.traction.exact.slope import RaceSlope
 from separatrix.errors import InputError
 from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
@@ -78,8 +78,8 @@ class ContactSetup:
     """
 
     problem: ContactProblem
-    columns: int = 40
-    rows: int = 40
+    columns: int = CELLS
+    rows: int = CELLS
     gap: Gap | None = None
     is_two_way: bool = False
 
@@ -201,8 +201,8 @@ def rolling_cases(
     lateral: ArrayLike = 0.0,
     spin: ArrayLike = 0.0,
     curvature: ArrayLike = 0.0,
-    columns: int = 40,
-    rows: int = 40,
+    columns: int | None = None,
+    rows: int | None = None,
     slope: bool = False,
     title: str = "contact",
 ) -> ContactQuestion:
@@ -218,7 +218,8 @@ def rolling_cases(
     spin, curvature : array_like
         Coefficients of y and y^2 in the longitudinal creep [1/m, 1/m2]; Kalker's spin is -spin.
     columns, rows : int
-        Cells along rolling and across.
+        Cells along rolling and across; left out, 40 each, and more columns than rows in contacts longer than
+        wide.
     slope : bool
         Also the slope of the traction curve at free rolling, under the spin and curvature of the first case.
     title : str
@@ -241,6 +242,8 @@ def rolling_cases(
         raise InputError(
             "rolling_cases", "needs creeps that can be broadcast to each other", shapes
         ) from None
+    b, a = problem.ellipse.semi_minor, problem.ellipse.semi_major
+    columns, rows = cell_counts(columns, rows, semi_minor=b, semi_major=a)
     setup = ContactSetup(problem=problem, columns=columns, rows=rows)
     cases = tuple(
         ContactCase(

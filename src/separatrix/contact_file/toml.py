@@ -13,6 +13,7 @@ from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes, ellipse_of_c
 from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import LARGEST_CREEP, LARGEST_SIDE, ContactProblem
 from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
+from separatrix.chain.traction.exact.grid import cell_counts
 from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.chain.traction.profile import Profile
 from separatrix.contact_file.keys import LAYER, MOTIONS, SECTIONS
@@ -112,9 +113,9 @@ def read_contact_toml(path: Path) -> ContactQuestion:
     if is_two_way and not (problem.own_pressure and problem.coupled and motion is Motion.ROLLING):
         rule = "needs own = true, coupled = true and steady rolling"
         file.problems.append(InputError("[pressure] two_way", rule))
-    setup = ContactSetup(
-        problem=problem, columns=grid.get("columns", 40), rows=grid.get("rows", 40), is_two_way=is_two_way
-    )
+    b, a = ellipse.semi_minor, ellipse.semi_major
+    columns, rows = cell_counts(grid.get("columns"), grid.get("rows"), semi_minor=b, semi_major=a)
+    setup = ContactSetup(problem=problem, columns=columns, rows=rows, is_two_way=is_two_way)
     with noted(file.problems):
         _check_size(problem, moves)
     file.refuse()

@@ -24,7 +24,13 @@ from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells, rough_compliance
 from separatrix.chain.traction.exact.coupling import pressure_slip
 from separatrix.chain.traction.exact.flexibility import Body
-from separatrix.chain.traction.exact.grid import Grid, elliptic_grid, elliptic_pressure, pressed_grid
+from separatrix.chain.traction.exact.grid import (
+    Grid,
+    cell_counts,
+    elliptic_grid,
+    elliptic_pressure,
+    pressed_grid,
+)
 from separatrix.chain.traction.exact.images import pair_images
 from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
 from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
@@ -132,8 +138,12 @@ class ContactSolution:
         return -self.force / self.load
 
 
-def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 40) -> RollingContact:
+def rolling_contact(
+    problem: ContactProblem, *, columns: int | None = None, rows: int | None = None
+) -> RollingContact:
     """Put a problem on a grid of `columns` along rolling and `rows` across.
+
+    Left out, they are 40 each, and more columns than rows in contacts longer than wide (`cell_counts`).
 
     Raises
     ------
@@ -146,16 +156,17 @@ def rolling_contact(problem: ContactProblem, *, columns: int = 40, rows: int = 4
     ValidityWarning
         The film is compressed by more than a tenth: it is not linearly elastic there.
     """
+    ellipse, bodies = problem.ellipse, problem.bodies
+    b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
+    columns, rows = cell_counts(columns, rows, semi_minor=b, semi_major=a)
     for name, count in (("columns", columns), ("rows", rows)):
         if not SMALLEST_SIDE <= count <= LARGEST_SIDE or count != int(count):
             rule = f"must be a whole number and lie from {SMALLEST_SIDE} to {LARGEST_SIDE}"
             raise InputError(f"rolling_contact: {name}", rule, f"{count}")
-    ellipse, bodies = problem.ellipse, problem.bodies
     _check_layers(problem)
     if problem.own_pressure:
         grid, pressure, _ = pressed_contact(ellipse, bodies, columns=columns, rows=rows)
     else:
-        b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
     return contact_on(problem, grid, pressure)

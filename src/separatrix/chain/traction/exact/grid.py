@@ -13,9 +13,14 @@ from typing import Annotated
 
 import numpy as np
 
+from separatrix.compiled import kernel, part
 from separatrix.units import Array, Metre, Pascal
 
 MEAN_SHAPE = 0.72  # mean over largest pressure of a row, between pi/4 of Hertz and 2/3 of a thin soft film
+CELLS = 40  # columns, and rows, of a contact that is not longer than wide
+LONGEST = 8.0  # length over width up to which the numbers of columns and rows change (measured in the tests)
+SHORTEST_ROW = 6  # cells of a row from which its pressure tells its ends
+LENGTH_HALVINGS, END_HALVINGS = 20, 24  # leave 1e-5 of the logarithm of the length, 1e-7 cells of the end
 SMALLEST_FRACTION = 1e-3  # of a cell's length; cells with less inside are left out
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -39,6 +44,20 @@ class Grid:
     def cell_area(self) -> float:
         """Area of a whole cell [m2]."""
         return self.dx * self.dy
+
+
+def cell_counts(
+    columns: int | None, rows: int | None, *, semi_minor: Metre, semi_major: Metre
+) -> tuple[int, int]:
+    """Columns and rows as given, or of 1600 cells.
+
+    These are 40 x 40. In a contact longer than wide the columns are 40 times length over width to the power
+    1/3: columns resolve its ends, rows its sides. Their errors in the spin moment have opposite signs, and
+    with these numbers nearly the same size.
+    """
+    ratio = min(max(semi_minor / semi_major, 1.0), LONGEST)
+    usual = round(CELLS * ratio ** (1.0 / 3.0))
+    return usual if columns is None else columns, round(CELLS**2 / usual) if rows is None else rows
 
 
 def elliptic_grid(*, semi_minor: Metre, semi_major: Metre, columns: int, rows: int) -> Grid:
@@ -105,13 +124,12 @@ def pressed_grid(
     A single row, of a contact in the plane, needs its width.
 
     Each cell is made of `refined` x `refined` cells of the pressure. Towards the end of a row of these the
-    pressure falls with the root of the distance, under a thin soft film with the distance itself: the end is
-    between where the straight lines through the last p^2 and through the last p vanish, by how well each
-    meets the next cell. Rows of fewer than six cells have the length that their mean
-    pressure gives.
+    pressure falls with the root of the distance d, under a soft film with d itself over a length l: the end
+    and l are those of d/sqrt(d + l) with the forces on the outer cells. Rows of fewer than six cells have the
+    length that their mean pressure gives.
     """
     n, fine = refined, float(x[1] - x[0])
-    ends = np.array([_row_ends(x, row, fine) for row in pressure])
+    ends = row_ends(np.ascontiguousarray(x), np.ascontiguousarray(pressure))
     blocks = pressure.reshape(y.size // n, n, x.size // n, n)
     x, y, p = x.reshape(-1, n).mean(axis=1), y.reshape(-1, n).mean(axis=1), blocks.mean(axis=(1, 3))
     shares = _inside(x, n * fine, ends[:, 0], ends[:, 1]).reshape(y.size, n, x.size).mean(axis=1)
@@ -124,30 +142,68 @@ def pressed_grid(
     return grid, kept * (p.sum() / kept.sum())
 
 
-def _row_ends(x: Array, pressure: Array, dx: Metre) -> tuple[Metre, Metre]:
-    """Ends of the contact in one row, from its pressure [m]."""
-    inside = np.flatnonzero(pressure)
-    if inside.size == 0:
-        return 0.0, 0.0
-    first, last = inside[0], inside[-1]
-    p = pressure
-    if inside.size < 6:
-        half, middle = dx * p.sum() / (2.0 * MEAN_SHAPE * p.max()), float((x * p).sum() / p.sum())
-        return max(middle - half, x[first] - 0.5 * dx), min(middle + half, x[last] + 0.5 * dx)
-    return (
-        float(x[first + 1] - dx * _steps_to_zero(p[first + 1], p[first + 2], p[first + 3])),
-        float(x[last - 1] + dx * _steps_to_zero(p[last - 1], p[last - 2], p[last - 3])),
-    )
+@kernel
+def row_ends(x: Array, pressure: Array) -> Array:
+    """First and last end of the contact in each row of cells at x, shape (row, 2) [m]."""
+    rows, columns = pressure.shape
+    ends, dx = np.zeros((rows, 2)), x[1] - x[0]
+    for j in range(rows):
+        p = pressure[j]
+        first, last = 0, columns - 1
+        while first < columns and p[first] == 0.0:
+            first += 1
+        if first == columns:
+            continue
+        while p[last] == 0.0:
+            last -= 1
+        if last - first < SHORTEST_ROW - 1:
+            half, middle = 0.5 * dx * p.sum() / (MEAN_SHAPE * p.max()), (x * p).sum() / p.sum()
+            ends[j, 0] = max(middle - half, x[first] - 0.5 * dx)
+            ends[j, 1] = min(middle + half, x[last] + 0.5 * dx)
+            continue
+        reach = _reach(p[first] + p[first + 1], p[first + 2], p[first + 3])
+        ends[j, 0] = x[first] + dx * (1.5 - reach)
+        reach = _reach(p[last] + p[last - 1], p[last - 2], p[last - 3])
+        ends[j, 1] = x[last] - dx * (1.5 - reach)
+    return ends
 
 
-def _steps_to_zero(outer: float, middle: float, inner: float) -> float:
-    """Cells from the outer one to the end: at least to its own edge, at most to that of the next cell."""
-    if middle <= outer:
-        return 1.5
-    root, line = outer**2 / (middle**2 - outer**2), outer / (middle - outer)
-    by_root, by_line = (
-        np.sqrt(2.0 * middle**2 - outer**2),
-        2.0 * middle - outer,
-    )  # what they expect further in
-    share = np.clip((inner - by_root) / (by_line - by_root), 0.0, 1.0)
-    return float(np.clip(root + share * (line - root), 0.5, 1.5))
+@part
+def _reach(outer: float, middle: float, inner: float) -> float:
+    """Cells from the inner edge of the two outer cells to the end, by d/sqrt(d + l).
+
+    The forces on the two outer cells, the next one and the one after decide end and l. The end is inside the
+    outermost cell or beyond it, but not beyond the middle of the next, which does not touch.
+    """
+    low, high = -4.0, 4.0  # logarithm of l, in cells
+    for _ in range(LENGTH_HALVINGS):
+        way = 0.5 * (low + high)
+        length = 10.0**way
+        end = _end(middle / outer, length)
+        met = _edge_force(end + 2.0, length) - _edge_force(end + 1.0, length)
+        if met * outer < inner * _edge_force(end, length):
+            low = way
+        else:
+            high = way
+    return _end(middle / outer, 10.0 ** (0.5 * (low + high)))
+
+
+@part
+def _end(ratio: float, length: float) -> float:
+    """Place of the end at which a cell beyond it takes this ratio of the force up to it; within bounds."""
+    low, high = 1.0, 2.5
+    for _ in range(END_HALVINGS):
+        way = 0.5 * (low + high)
+        force = _edge_force(way, length)
+        if _edge_force(way + 1.0, length) - force > ratio * force:
+            low = way
+        else:
+            high = way
+    return 0.5 * (low + high)
+
+
+@part
+def _edge_force(d: float, length: float) -> float:
+    """Integral of d/sqrt(d + l) from the end to d, times 3/2."""
+    root, corner = math.sqrt(d + length), math.sqrt(length)
+    return (d / (root + corner)) ** 2 * (root + 2.0 * corner)

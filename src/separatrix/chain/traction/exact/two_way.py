@@ -22,7 +22,7 @@ from separatrix.chain.traction.exact.contact import (
     rigid_slip,
     solve,
 )
-from separatrix.chain.traction.exact.grid import Grid, pressed_grid
+from separatrix.chain.traction.exact.grid import Grid, cell_counts, pressed_grid
 from separatrix.chain.traction.exact.images import Images, influence, pair_images
 from separatrix.chain.traction.exact.normal import REFINED, press_in_box, pressed_box, touches_edge
 from separatrix.chain.traction.exact.operator import SHIFT, Complex, spectrum
@@ -41,8 +41,8 @@ def solve_two_way(
     lateral: Ratio = 0.0,
     spin: PerMetre = 0.0,
     curvature: PerMetre2 = 0.0,
-    columns: int = 40,
-    rows: int = 40,
+    columns: int | None = None,
+    rows: int | None = None,
 ) -> tuple[RollingContact, ContactSolution]:
     """Contact and solution under creeps, pressure and tractions each under the other.
 
@@ -60,6 +60,8 @@ def solve_two_way(
         raise InputError("solve_two_way: problem", "must have own_pressure and coupled", got)
     creeps = {"longitudinal": longitudinal, "lateral": lateral, "spin": spin, "curvature": curvature}
     images = pair_images(*problem.bodies)
+    b, a = problem.ellipse.semi_minor, problem.ellipse.semi_major
+    columns, rows = cell_counts(columns, rows, semi_minor=b, semi_major=a)
     x, y, pressing = pressed_box(problem.ellipse, images, columns=columns, rows=rows, room=ROOM)
     waves, change = None, np.inf
     for passes in range(1, LARGEST_PASSES + 1):
