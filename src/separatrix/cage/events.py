@@ -160,8 +160,8 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
             fall -= sign * gone_at(p, balls, room.felt[5], j)
             early += bend_of(p, balls, room.felt[EARLY_BOUND], j)
             late += bend_of(p, balls, room.felt[LATE_BOUND], j)
-        deepest = larger(deepest, top(start, rise, middle, turn, early))
-        deepest = larger(deepest, top(middle, turn, last, fall, late))
+        most = larger(top(start, rise, middle, turn, early), top(middle, turn, last, fall, late))
+        room.depths[i], deepest = most, larger(deepest, most)
         at = (start, rise, middle, turn, last, fall)
         filled = enqueue(room, filled, 0, j, at, early, late, noise)
     return filled, deepest
@@ -179,13 +179,14 @@ def leave_own(p: Coefficients, balls: Balls, count: int, size: float, room: Room
         if p.hertz != 0.0:
             at = (start, 0.0, start, 0.0, start, 0.0)
             filled, deepest = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
+            room.depths[i] = np.inf
             continue
         copy_column(balls.depth[:, j], c)
         _, b, d, e, f, g = knots(c)
         at = (start, sign * b, sign * d + grip, sign * e, sign * f + grip, sign * g)
         early, late = bends(c)
-        deepest = larger(deepest, top(at[0], at[1], at[2], at[3], early))
-        deepest = larger(deepest, top(at[2], at[3], at[4], at[5], late))
+        most = larger(top(at[0], at[1], at[2], at[3], early), top(at[2], at[3], at[4], at[5], late))
+        room.depths[i], deepest = most, larger(deepest, most)
         filled = enqueue(room, filled, 0, j, at, early, late, noise)
     return filled, deepest
 
@@ -377,6 +378,7 @@ def pocket_change(
 ) -> tuple[float, int, int, float]:
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
+        room.depths[:] = np.inf
         return 1.0, NOTHING, -1, np.inf
     filled, deepest, count = 0, 0.0, state.touching
     if count > 0:
