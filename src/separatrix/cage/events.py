@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from separatrix.cage.law import learn_ways
 from separatrix.cage.records import (
     AT_END,
     EARLY_BOUND,
@@ -270,6 +271,8 @@ def meet_balls(
         return filled
     for i in range(state.coasting if inertial else 0):
         room.beyond[balls.coasting[i]] = np.inf
+    if inertial and state.coasting > 0:
+        learn_ways(balls.moving, state.touching, state.touching + state.coasting)
     size = abs(s[0]) + abs(x[0]) + abs(y[0])
     for j in range(balls.play.size):
         if balls.side[j] != 0 or room.beyond[j] < p.onset:
@@ -287,7 +290,7 @@ def meet_balls(
             early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
             late += bend_of(p, balls, room.gone[LATE_BOUND], j)
         if inertial and balls.own_speed[j] != 0.0:
-            _, one, two, three, four, five, more, later = way_knots(balls, j, room.c)
+            _, one, two, three, four, five, more, later = way_knots(balls, j)
             b, c, d, e, f = b - one, c - two, d - three, e - four, f - five
             early, late = early + more, late + later
         for side in (1, -1):

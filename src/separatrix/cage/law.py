@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 
 from separatrix.cage.records import (
+    AT_KNOTS,
     BENT,
     CREEP,
+    EARLY_BOUND,
     FOURTH,
     GRIP,
     IS_LINEAR,
     LANES,
+    LATE_BOUND,
     ORDER,
     PLACE,
     POWERS,
@@ -25,7 +28,7 @@ from separatrix.cage.records import (
     Coefficients,
     Pace,
 )
-from separatrix.cage.series import AFTER
+from separatrix.cage.series import AFTER, EARLY, HALF_SLOPES, HALVES, LATE
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -160,6 +163,34 @@ def grip_term(
     r0, r1 = grip[n, 0] + slope * r0, grip[n, 1] + slope * r1
     r2, r3 = grip[n, 2] + slope * r2, grip[n, 3] + slope * r3
     grip[n, 0], grip[n, 1], grip[n, 2], grip[n, 3] = r0, r1, r2, r3
+
+
+@inner_kernel
+def learn_ways(moving: Array, count: int, used: int) -> None:
+    """Knots of the ways of the balls that coast (`series.knots`), and bounds of what bends them."""
+    for b in range(count // LANES, blocks(used)):
+        c, at = moving[b, WAY], moving[b, AT_KNOTS]
+        m0, m1, m2, m3 = c[0, 0], c[0, 1], c[0, 2], c[0, 3]
+        l0, l1, l2, l3 = m0, m1, m2, m3
+        t0 = t1 = t2 = t3 = f0 = f1 = f2 = f3 = e0 = e1 = e2 = e3 = g0 = g1 = g2 = g3 = 0.0
+        for n in range(1, ORDER + 1):
+            half, turn, fall, early, late = HALVES[n], HALF_SLOPES[n], 0.5 * n, EARLY[n], LATE[n]
+            a0, a1, a2, a3 = c[n, 0], c[n, 1], c[n, 2], c[n, 3]
+            m0, m1, m2, m3 = m0 + half * a0, m1 + half * a1, m2 + half * a2, m3 + half * a3
+            t0, t1, t2, t3 = t0 + turn * a0, t1 + turn * a1, t2 + turn * a2, t3 + turn * a3
+            l0, l1, l2, l3 = l0 + a0, l1 + a1, l2 + a2, l3 + a3
+            f0, f1, f2, f3 = f0 + fall * a0, f1 + fall * a1, f2 + fall * a2, f3 + fall * a3
+            a0, a1, a2, a3 = abs(a0), abs(a1), abs(a2), abs(a3)
+            e0, e1, e2, e3 = e0 + early * a0, e1 + early * a1, e2 + early * a2, e3 + early * a3
+            g0, g1, g2, g3 = g0 + late * a0, g1 + late * a1, g2 + late * a2, g3 + late * a3
+        at[0, 0], at[0, 1], at[0, 2], at[0, 3] = c[0, 0], c[0, 1], c[0, 2], c[0, 3]
+        at[1, 0], at[1, 1], at[1, 2], at[1, 3] = 0.5 * c[1, 0], 0.5 * c[1, 1], 0.5 * c[1, 2], 0.5 * c[1, 3]
+        at[2, 0], at[2, 1], at[2, 2], at[2, 3] = m0, m1, m2, m3
+        at[3, 0], at[3, 1], at[3, 2], at[3, 3] = t0, t1, t2, t3
+        at[4, 0], at[4, 1], at[4, 2], at[4, 3] = l0, l1, l2, l3
+        at[5, 0], at[5, 1], at[5, 2], at[5, 3] = f0, f1, f2, f3
+        at[EARLY_BOUND, 0], at[EARLY_BOUND, 1], at[EARLY_BOUND, 2], at[EARLY_BOUND, 3] = e0, e1, e2, e3
+        at[LATE_BOUND, 0], at[LATE_BOUND, 1], at[LATE_BOUND, 2], at[LATE_BOUND, 3] = g0, g1, g2, g3
 
 
 @inlined_kernel

@@ -32,10 +32,11 @@ KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
 """Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
-SPEED, WAY, TRACTION, CREEP, SQUARE, FOURTH, GRIP, DEPTH, PLACE, BENT = range(10)
+SPEED, WAY, TRACTION, CREEP, SQUARE, FOURTH, GRIP, DEPTH, PLACE, AT_KNOTS, BENT = range(11)
 """Series of a ball with inertia: u, what it goes by u while it coasts, F(u) / m_e, the creep u / lambda, its
 square and fourth power, F over the creep, its penetration, and from `BENT` on (1 + (creep / v_i)^n)^(-1/n) of
-each element. `PLACE` is not a series, but has four rows:"""
+each element. Not series: `AT_KNOTS`, six knots of the way and two bounds, as `KNOT_ROWS`; and `PLACE`, with
+four rows:"""
 
 IS_TOUCHED, COSINE, SINE, IS_LINEAR = range(4)
 """1 in touch, else 0; the direction of its pocket; 1 where all of the block slow down by a linear law."""

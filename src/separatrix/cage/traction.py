@@ -11,6 +11,7 @@ from __future__ import annotations
 from separatrix.cage.law import LAST_ROW, blocks, coast, lanes_at
 from separatrix.cage.records import (
     AT_END,
+    AT_KNOTS,
     COSINE,
     DEPTH,
     IS_TOUCHED,
@@ -31,7 +32,7 @@ from separatrix.cage.records import (
     State,
     Whole,
 )
-from separatrix.cage.series import AFTER, Place, bends, centre, copy_column, gone_at, knots, value
+from separatrix.cage.series import AFTER, Place, centre, gone_at, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -40,12 +41,6 @@ from separatrix.units import Array
 def moving_at(balls: Balls, quantity: int, slot: int, t: float) -> float:
     """Value at a time of a series of a ball that moves."""
     return value(balls.moving[slot // LANES, quantity, :, slot % LANES], t)
-
-
-@inner_kernel
-def copy_moving(balls: Balls, quantity: int, slot: int, c: Array) -> None:
-    """Copy a series of a ball that moves."""
-    copy_column(balls.moving[slot // LANES, quantity, :, slot % LANES], c)
 
 
 @inner_kernel
@@ -236,14 +231,10 @@ def way_at(balls: Balls, j: int, t: float) -> float:
 
 
 @inner_kernel
-def way_knots(
-    balls: Balls, j: int, c: Array
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """Knots of the way that a ball coasts, and bounds of what bends it."""
-    copy_moving(balls, WAY, balls.slot[j], c)
-    a, b, d, e, f, g = knots(c)
-    early, late = bends(c)
-    return a, b, d, e, f, g, early, late
+def way_knots(balls: Balls, j: int) -> tuple[float, float, float, float, float, float, float, float]:
+    """Knots of the way that a ball coasts, and bounds of what bends it, by `learn_ways`."""
+    at, m = balls.moving[balls.slot[j] // LANES, AT_KNOTS], balls.slot[j] % LANES
+    return at[0, m], at[1, m], at[2, m], at[3, m], at[4, m], at[5, m], at[6, m], at[7, m]
 
 
 @inner_kernel
