@@ -162,3 +162,37 @@ def test_processes_that_compile_at_once_share_a_folder(tmp_path):
     version = f".py{sys.version_info[0]}{sys.version_info[1]}"
     assert len(kept) >= 3
     assert all(version in name and name.endswith(".1.nbc") for name in kept)  # of one signature each
+
+
+def test_only_kernels_are_compiled_side_by_side(monkeypatch):
+    """The setting is on while a kernel is compiled, and as before afterwards: it is not ours to change."""
+    monkeypatch.setattr(compiled, "_FOLDER", None)
+    seen = []
+
+    def twice(value):
+        return value + value
+
+    usual = compiled.CONFIG["SLP_VECTORIZE"]
+    monkeypatch.setattr(compiled, "_compiled", _spied(compiled._compiled, seen))
+    kernel = compiled.kernel(twice)
+    assert compiled.CONFIG["SLP_VECTORIZE"] == usual
+    assert kernel(1.5) == 3.0
+    assert seen == [1]
+    assert compiled.CONFIG["SLP_VECTORIZE"] == usual
+
+
+def _spied(compile_, seen):
+    """As `compile_`, and note the setting whenever numba compiles."""
+
+    def spied(function, **options):
+        made = compile_(function, **options)
+        build = made.compile
+
+        def noted(signature):
+            seen.append(compiled.CONFIG["SLP_VECTORIZE"])
+            return build(signature)
+
+        made.compile = noted
+        return made
+
+    return spied

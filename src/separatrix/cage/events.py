@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from separatrix.cage.law import learn_ways
 from separatrix.cage.records import (
     AT_END,
     EARLY_BOUND,
@@ -160,8 +161,8 @@ def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room
             fall -= sign * gone_at(p, balls, room.felt[5], j)
             early += bend_of(p, balls, room.felt[EARLY_BOUND], j)
             late += bend_of(p, balls, room.felt[LATE_BOUND], j)
-        deepest = larger(deepest, top(start, rise, middle, turn, early))
-        deepest = larger(deepest, top(middle, turn, last, fall, late))
+        most = larger(top(start, rise, middle, turn, early), top(middle, turn, last, fall, late))
+        room.depths[i], deepest = most, larger(deepest, most)
         at = (start, rise, middle, turn, last, fall)
         filled = enqueue(room, filled, 0, j, at, early, late, noise)
     return filled, deepest
@@ -179,13 +180,14 @@ def leave_own(p: Coefficients, balls: Balls, count: int, size: float, room: Room
         if p.hertz != 0.0:
             at = (start, 0.0, start, 0.0, start, 0.0)
             filled, deepest = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
+            room.depths[i] = np.inf
             continue
         copy_column(balls.depth[:, j], c)
         _, b, d, e, f, g = knots(c)
         at = (start, sign * b, sign * d + grip, sign * e, sign * f + grip, sign * g)
         early, late = bends(c)
-        deepest = larger(deepest, top(at[0], at[1], at[2], at[3], early))
-        deepest = larger(deepest, top(at[2], at[3], at[4], at[5], late))
+        most = larger(top(at[0], at[1], at[2], at[3], early), top(at[2], at[3], at[4], at[5], late))
+        room.depths[i], deepest = most, larger(deepest, most)
         filled = enqueue(room, filled, 0, j, at, early, late, noise)
     return filled, deepest
 
@@ -269,6 +271,8 @@ def meet_balls(
         return filled
     for i in range(state.coasting if inertial else 0):
         room.beyond[balls.coasting[i]] = np.inf
+    if inertial and state.coasting > 0:
+        learn_ways(balls.moving, state.touching, state.touching + state.coasting)
     size = abs(s[0]) + abs(x[0]) + abs(y[0])
     for j in range(balls.play.size):
         if balls.side[j] != 0 or room.beyond[j] < p.onset:
@@ -286,7 +290,7 @@ def meet_balls(
             early += bend_of(p, balls, room.gone[EARLY_BOUND], j)
             late += bend_of(p, balls, room.gone[LATE_BOUND], j)
         if inertial and balls.own_speed[j] != 0.0:
-            _, one, two, three, four, five, more, later = way_knots(balls, j, room.c)
+            _, one, two, three, four, five, more, later = way_knots(balls, j)
             b, c, d, e, f = b - one, c - two, d - three, e - four, f - five
             early, late = early + more, late + later
         for side in (1, -1):
@@ -377,6 +381,7 @@ def pocket_change(
 ) -> tuple[float, int, int, float]:
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
     if p.gripped:
+        room.depths[:] = np.inf
         return 1.0, NOTHING, -1, np.inf
     filled, deepest, count = 0, 0.0, state.touching
     if count > 0:

@@ -95,7 +95,7 @@ def balls_of(cage: PlanarCage) -> Balls:
     side, touching = np.zeros((2, count), np.int64)
     depth, force = np.zeros((2, POWERS, count))
     coasting, slot = np.zeros((2, count), np.int64)
-    moving = np.zeros((-(-count // LANES), BENT + MOST_ELEMENTS, POWERS * LANES))
+    moving = np.zeros((-(-count // LANES), BENT + MOST_ELEMENTS, POWERS, LANES))
     common = (cosine, sine, play, lead, penetration, drive, side, touching, depth, force)
     return Balls(*common, np.zeros(count), coasting, slot, moving)
 

@@ -16,7 +16,7 @@ from separatrix.cage.events import (
     TOUCH,
     pocket_change,
 )
-from separatrix.cage.evidence import enter_step, enter_work, record
+from separatrix.cage.evidence import enter_step, record
 from separatrix.cage.expand import expand
 from separatrix.cage.land import land_change, land_geometry, slide_speed
 from separatrix.cage.records import (
@@ -30,15 +30,17 @@ from separatrix.cage.records import (
     Coefficients,
     Ledger,
     Pace,
+    Points,
     Room,
     Samples,
     Series,
     State,
     Whole,
 )
-from separatrix.cage.series import ROUNDING, Motion, centre, fourths, grip_at, knots, motion_at, slope, value
+from separatrix.cage.series import ROUNDING, centre, fourths, knots, slope, value
 from separatrix.cage.step import longest_step
 from separatrix.cage.traction import begin_moving, dropped, move_balls, rescale_balls
+from separatrix.cage.work import LAST, enter_work
 from separatrix.compiled import inlined_kernel, inner_kernel
 
 HOLD = 1e-9
@@ -196,18 +198,19 @@ def finish_step(
     now: Pace,
     h: float,
     end: float,
-    after: Motion,
+    at: Points,
     ledger: Ledger,
 ) -> None:
-    """State at the end of a step, from its series."""
-    state.x, state.y, state.vx, state.vy, state.s, state.vs = after
+    """State at the end of a step, from its series and its motion by `place_points`."""
+    state.x, state.y, state.s = at.x[LAST], at.y[LAST], value(w.s, end)
+    state.vx, state.vy, state.vs = at.vx[LAST], at.vy[LAST], at.vs[LAST]
     state.clock += end * h
     if p.own:
         for i in range(state.touching):
             j = balls.touching[i]
             balls.penetration[j] = value(balls.depth[:, j], end)
     elif state.touching > 0:
-        ex, ey, es, kept = grip_at(w, end)
+        ex, ey, es, kept = at.ex[LAST], at.ey[LAST], at.es[LAST], at.kept[LAST]
         for i in range(state.touching):
             j = balls.touching[i]
             q = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
@@ -312,9 +315,8 @@ def advance(
         if len(samples.row) > state.rows:
             record(p, balls, w, state, now, h, end, ledger, samples, room)
         enter_work(p, balls, w, state, now, h, end, ledger, room)
-        after = motion_at(w, end)
-        enter_step(p, balls, w, state, deepest, h, end, after, look, room)
-        finish_step(p, balls, w, state, now, h, end, after, ledger)
+        enter_step(p, balls, w, state, deepest, h, end, look, room)
+        finish_step(p, balls, w, state, now, h, end, room.points, ledger)
         done = length if kind == NOTHING and h == length - done else done + end * h
         if kind == TOUCH:
             meet_ball(p, balls, state, ball, hits)

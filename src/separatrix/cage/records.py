@@ -32,9 +32,14 @@ KNOT_ROWS, EARLY_BOUND, LATE_BOUND, AT_END = 9, 6, 7, 8
 """Rows of knots of a wave: its six knots (`series.knots`), bounds of the fourth derivative in
 each half of the step, and the value at an event."""
 
-SPEED, WAY, TRACTION, CREEP, SQUARE, FOURTH, GRIP, BENT = range(8)
+SPEED, WAY, TRACTION, CREEP, SQUARE, FOURTH, GRIP, DEPTH, PLACE, AT_KNOTS, BENT = range(11)
 """Series of a ball with inertia: u, what it goes by u while it coasts, F(u) / m_e, the creep u / lambda, its
-square and fourth power, F over the creep, and from `BENT` on (1 + (creep / v_i)^n)^(-1/n) of each element."""
+square and fourth power, F over the creep, its penetration, and from `BENT` on (1 + (creep / v_i)^n)^(-1/n) of
+each element. Not series: `AT_KNOTS`, six knots of the way and two bounds, as `KNOT_ROWS`; and `PLACE`, with
+four rows:"""
+
+IS_TOUCHED, COSINE, SINE, IS_LINEAR = range(4)
+"""1 in touch, else 0; the direction of its pocket; 1 where all of the block slow down by a linear law."""
 
 LANES = 4
 """Balls whose series are made side by side."""
@@ -161,7 +166,7 @@ class Balls(NamedTuple):
     own_speed: Array  # u_j, speed of a ball with inertia beyond its free orbit; 0: it rests there
     coasting: Whole  # balls that move there and touch nothing, `State.coasting` of them
     slot: Whole  # place of a ball that moves so in `moving`: those in touch, then those that coast
-    moving: Array  # series of their motion, shape (block, quantity, power and lane)
+    moving: Array  # series of their motion, shape (block, quantity, power, lane)
 
 
 class Pace(NamedTuple):
@@ -289,26 +294,53 @@ class Sums:
     drive: Array
 
 
+class Points:
+    """The motion at the points of a step (`work`), side by side; and power there times the point's weight."""
+
+    SIZE = 12
+
+    t: Array
+    x: Array
+    y: Array
+    vx: Array
+    vy: Array
+    vs: Array
+    ex: Array
+    ey: Array
+    es: Array
+    kept: Array
+    gx: Array
+    gy: Array
+    gvx: Array  # velocity of the geometric centre
+    gvy: Array
+    rubbing: Array  # of friction in the pockets, of the races' dampers, of the turning of the frame
+    yielding: Array
+    driving: Array
+
+
 class Room(NamedTuple):
     """Where `advance` keeps what it needs within a step."""
 
     sums: Sums
+    points: Points
     c: Array  # a series, shape (power,)
     work: Ledger
     felt: Array  # knots of the waves, shape (KNOT_ROWS, wave)
     gone: Array
     beyond: Array  # shape (ball,)
+    depths: Array  # bound of the penetration of each ball in touch, shape (ball,)
     queue: Sequence[Candidate]
     lobes: Array  # powers of the lobes, shape (power, 2 lobe)
 
 
 @cache
 def dtype_of(kind: Hashable) -> np.dtype[np.void]:
-    """Type of the structured array of a record; an array within it has the length `WAVES`."""
+    """Type of the structured array of a record; an array within it has the length `WAVES`, or its `SIZE`."""
+    length = getattr(kind, "SIZE", WAVES)
     fields: list[tuple[str, object, tuple[int, ...]]] = []
     for name, hint in get_type_hints(kind).items():
         whole = {int: np.int64, bool: np.bool_}.get(hint, np.float64)
-        fields.append((name, whole, (WAVES,) if hint == Array else ()))
+        fields.append((name, whole, (length,) if hint == Array else ()))
     return np.dtype(fields)
 
 
@@ -337,11 +369,13 @@ def room_for(balls: int, lobes: int) -> Room:
     """Room for the steps of a cage with this number of balls, and of lobes of its land."""
     return Room(
         sums=records(Sums, 1)[0],
+        points=records(Points, 1)[0],
         c=np.zeros(ORDER + 1),
         work=records(Ledger, 1)[0],
         felt=np.zeros((KNOT_ROWS, WAVES)),
         gone=np.zeros((KNOT_ROWS, WAVES)),
         beyond=np.zeros(balls),
+        depths=np.zeros(balls),
         queue=records(Candidate, 2 * balls),
         lobes=np.zeros((POWERS, 2 * lobes)),
     )

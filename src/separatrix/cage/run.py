@@ -24,7 +24,7 @@ from separatrix.cage.ending import (
     mean_energy,
     with_cause,
 )
-from separatrix.cage.evidence import pocket_energy, total_work
+from separatrix.cage.evidence import pocket_energy
 from separatrix.cage.motion import advance, kinetic, land_energy
 from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.cage.records import (
@@ -43,6 +43,7 @@ from separatrix.cage.records import (
     series,
 )
 from separatrix.cage.traction import ball_energy
+from separatrix.cage.work import total_work
 from separatrix.compiled import kernel, part, unfolded
 from separatrix.units import Array
 

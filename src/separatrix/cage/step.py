@@ -13,6 +13,7 @@ PRECISION, HERTZ_PRECISION = 2.0**-34, 2.0**-40
 series about its beginning, so that near it the terms fall slowly."""
 
 LONGEST = 1e6
+"""Step in space where nothing limits it."""
 
 RELAXED = 4.0
 """Longest step with linear pockets in touch, in units of the time in which they yield."""
@@ -39,8 +40,8 @@ def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
 
 
 @inlined_kernel
-def step_length(p: Coefficients, balls: Balls, w: Series, state: State) -> float:
-    """Time for which the last terms of the series stay below `PRECISION` of the speeds.
+def step_length(p: Coefficients, balls: Balls, w: Series, state: State, most: float) -> float:
+    """Time, up to the most, for which the last terms of the series stay below `PRECISION` of the speeds.
 
     Of the speeds themselves, and of those that each pocket alone would give: forces of several pockets may
     balance, so that the cage does not feel that they relax.
@@ -58,11 +59,12 @@ def step_length(p: Coefficients, balls: Balls, w: Series, state: State) -> float
         speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
     scale = (HERTZ_PRECISION if p.hertz != 0.0 else PRECISION) * speed
     # |v_n| h^n = scale, for the last two terms
-    h = LONGEST
-    if last > 0.0:
-        h = min(h, (scale / last) ** (1.0 / ORDER))
-    if before > 0.0:
-        h = min(h, (scale / before) ** (1.0 / (ORDER - 1)))
+    h, power = most, most ** (ORDER - 1)
+    if last * power * h > scale:
+        h = (scale / last) ** (1.0 / ORDER)
+        power = h ** (ORDER - 1)
+    if before * power > scale:
+        h = (scale / before) ** (1.0 / (ORDER - 1))
     return h
 
 
@@ -83,7 +85,7 @@ def distance_step(p: Coefficients, w: Series, share: float) -> float:
 @inlined_kernel
 def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
     """Time for which the series may be used: their own, and up to the next time at which something is due."""
-    h = min(step_length(p, balls, w, state), left)
+    h = left
     if state.touching > 0 and not p.own:
         # What is left of a penetration and what is new cancel: of more than this too little is left.
         h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
@@ -94,4 +96,4 @@ def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pa
         h = min(h, p.ramp_time - state.clock)
     if state.land == RELEASED or (state.land == CLEAR and p.roundness != 0.0):
         h = min(h, distance_step(p, w, now.share))
-    return h
+    return step_length(p, balls, w, state, h)

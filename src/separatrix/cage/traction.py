@@ -8,18 +8,18 @@ that no pocket touches coasts by itself until it is at rest in its free orbit.
 
 from __future__ import annotations
 
-import math
-
+from separatrix.cage.law import LAST_ROW, blocks, coast, lanes_at
 from separatrix.cage.records import (
     AT_END,
-    BENT,
-    CREEP,
-    FOURTH,
-    GRIP,
+    AT_KNOTS,
+    COSINE,
+    DEPTH,
+    IS_TOUCHED,
     LANES,
     ORDER,
+    PLACE,
+    SINE,
     SPEED,
-    SQUARE,
     TRACTION,
     WAY,
     Balls,
@@ -32,7 +32,7 @@ from separatrix.cage.records import (
     State,
     Whole,
 )
-from separatrix.cage.series import AFTER, Place, bends, centre, copy_column, gone_at, knots, value
+from separatrix.cage.series import AFTER, Place, centre, gone_at, value
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -40,116 +40,66 @@ from separatrix.units import Array
 @inner_kernel
 def moving_at(balls: Balls, quantity: int, slot: int, t: float) -> float:
     """Value at a time of a series of a ball that moves."""
-    return value(balls.moving[slot // LANES, quantity, slot % LANES :: LANES], t)
-
-
-@inner_kernel
-def copy_moving(balls: Balls, quantity: int, slot: int, c: Array) -> None:
-    """Copy a series of a ball that moves."""
-    copy_column(balls.moving[slot // LANES, quantity, slot % LANES :: LANES], c)
+    return value(balls.moving[slot // LANES, quantity, :, slot % LANES], t)
 
 
 @inner_kernel
 def begin_moving(balls: Balls, state: State) -> None:
-    """Give the balls that move a slot each, and their speeds there; slots that fill a block are at rest."""
+    """Give the balls that move a slot each, and their speeds there; slots that fill a block are at rest.
+
+    First those in touch, then those that coast, the last to leave first: slow ones share blocks.
+    """
     count = state.touching
     used = count + state.coasting
     for b in range(blocks(used)):
-        speed, way = balls.moving[b, SPEED], balls.moving[b, WAY]
+        speed, way, place = balls.moving[b, SPEED], balls.moving[b, WAY], balls.moving[b, PLACE]
+        depth = balls.moving[b, DEPTH]
         for m in range(LANES):
             i = b * LANES + m
-            speed[m] = way[m] = 0.0
-            if i < used:
-                j = balls.touching[i] if i < count else balls.coasting[i - count]
-                balls.slot[j], speed[m] = i, balls.own_speed[j]
+            speed[0, m] = way[0, m] = depth[0, m] = 0.0
+            place[IS_TOUCHED, m] = place[COSINE, m] = place[SINE, m] = 0.0
+            if i < count:
+                j = balls.touching[i]
+                place[IS_TOUCHED, m], place[COSINE, m], place[SINE, m] = 1.0, balls.cosine[j], balls.sine[j]
+                balls.slot[j], speed[0, m], depth[0, m] = i, balls.own_speed[j], balls.penetration[j]
+            elif i < used:
+                j = balls.coasting[used - 1 - i]
+                balls.slot[j], speed[0, m] = i, balls.own_speed[j]
 
 
 @inlined_kernel
-def blocks(used: int) -> int:
-    """Number of blocks of `LANES` slots for this number of balls."""
-    return (used + LANES - 1) // LANES
-
-
-@inner_kernel
-def coast(p: Coefficients, moving: Array, used: int, now: Pace, n: int) -> None:
-    """Coefficient n of the traction on balls that move, over their mass; n + 1 of their speeds and ways.
-
-    As if none were touched; speeds are known up to n.
-    """
-    share, after, first = 1.0 / now.share, AFTER[n], LANES * n
-    for b in range(blocks(used)):
-        speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
-        creep, square, grip = moving[b, CREEP], moving[b, SQUARE], moving[b, GRIP]
-        for m in range(first, first + LANES):
-            # lambda c = u with lambda = lambda_0 + lambda' t
-            u = speed[m]
-            if n > 0:
-                u -= now.rise * creep[m - LANES]
-            creep[m] = u * share
-        f0, f1, f2, f3 = (p.damper * creep[first], p.damper * creep[first + 1], p.damper * creep[first + 2],
-                          p.damper * creep[first + 3])  # fmt: skip
-        if p.elements > 0:
-            square_term(creep, square, n)
-            if p.sharp:
-                fourth = moving[b, FOURTH]
-                square_term(square, fourth, n)
-                square = fourth
-            for m in range(first, first + LANES):
-                grip[m] = 0.0
-            for e in range(p.elements):
-                grip_term(p.bends[e], p.slopes[e], p.power, square, moving[b, BENT + e], grip, n)
-            # Four sums side by side: each waits for its own terms only
-            k = first
-            for i in range(0, first + LANES, LANES):
-                f0, f1 = f0 + creep[i] * grip[k], f1 + creep[i + 1] * grip[k + 1]
-                f2, f3 = f2 + creep[i + 2] * grip[k + 2], f3 + creep[i + 3] * grip[k + 3]
-                k -= LANES
-        traction[first], traction[first + 1], traction[first + 2], traction[first + 3] = f0, f1, f2, f3
-        for m in range(first, first + LANES):
-            speed[m + LANES] = -traction[m] * after
-            way[m + LANES] = speed[m] * after
-
-
-@inlined_kernel
-def square_term(c: Array, square: Array, n: int) -> None:
-    """Coefficient n of the squares of series, a block of them."""
-    r0 = r1 = r2 = r3 = 0.0
-    first = k = LANES * n
-    for i in range(0, LANES * ((n + 1) // 2), LANES):
-        r0, r1 = r0 + c[i] * c[k], r1 + c[i + 1] * c[k + 1]
-        r2, r3 = r2 + c[i + 2] * c[k + 2], r3 + c[i + 3] * c[k + 3]
-        k -= LANES
-    square[first], square[first + 1], square[first + 2], square[first + 3] = 2 * r0, 2 * r1, 2 * r2, 2 * r3
-    if n % 2 == 0:
-        for m in range(LANES):
-            square[first + m] += c[k + m] * c[k + m]
-
-
-@inlined_kernel
-def grip_term(
-    bend: float, slope: float, power: float, square: Array, bent: Array, grip: Array, n: int
-) -> None:
-    """Add coefficient n of slope (1 + bend square)^-power to those of `grip`, a block of them."""
-    first = k = LANES * n
-    if n == 0:
-        for m in range(LANES):
-            root = math.sqrt(1.0 + bend * square[m])
-            bent[m] = 1.0 / (root if power == 0.5 else math.sqrt(root))
-            grip[m] += slope * bent[m]
-        return
-    # g = w^-a has w dg/dt = -a g dw/dt, whence n w_0 g_n = -sum_(i<n) (a (n - i) + i) w_(n-i) g_i
-    r0 = r1 = r2 = r3 = 0.0
-    factor = -power * n
-    for i in range(0, first, LANES):
-        r0, r1 = r0 + factor * square[k] * bent[i], r1 + factor * square[k + 1] * bent[i + 1]
-        r2, r3 = r2 + factor * square[k + 2] * bent[i + 2], r3 + factor * square[k + 3] * bent[i + 3]
-        factor -= 1.0 - power
-        k -= LANES
-    bent[first], bent[first + 1], bent[first + 2], bent[first + 3] = r0, r1, r2, r3
-    for m in range(LANES):
-        per = bent[m] * bent[m]  # 1/w_0 = g_0^(1/a)
-        bent[first + m] *= bend * (per if power == 0.5 else per * per) * AFTER[n - 1]
-        grip[first + m] += slope * bent[first + m]
+def push_balls(p: Coefficients, balls: Balls, w: Series, count: int, n: int) -> tuple[float, float, float]:
+    """Coefficient n of the forces of linear pockets on balls with inertia, as `own_forces`."""
+    gx, gy = centre(p, w)
+    dx, dy, ds, after = gx[n + 1], gy[n + 1], w[n + 1].s, AFTER[n]
+    push, k = p.lightness, p.stiffness
+    for b in range(blocks(count)):
+        speed, depth, place = balls.moving[b, SPEED], balls.moving[b, DEPTH], balls.moving[b, PLACE]
+        f0, f1, f2, f3 = k * depth[n, 0], k * depth[n, 1], k * depth[n, 2], k * depth[n, 3]
+        u0, u1, u2, u3 = speed[n, 0], speed[n, 1], speed[n, 2], speed[n, 3]
+        # m_e du_j/dt = N_j - F(u_j), and dq_j/dt = d(place_j)/dt - u_j, less the free speed
+        v0, v1 = speed[n + 1, 0] + push * f0 * after, speed[n + 1, 1] + push * f1 * after
+        v2, v3 = speed[n + 1, 2] + push * f2 * after, speed[n + 1, 3] + push * f3 * after
+        q0 = dy * place[COSINE, 0] - dx * place[SINE, 0] + ds - u0 * after
+        q1 = dy * place[COSINE, 1] - dx * place[SINE, 1] + ds - u1 * after
+        q2 = dy * place[COSINE, 2] - dx * place[SINE, 2] + ds - u2 * after
+        q3 = dy * place[COSINE, 3] - dx * place[SINE, 3] + ds - u3 * after
+        q0, q1 = q0 * place[IS_TOUCHED, 0], q1 * place[IS_TOUCHED, 1]
+        q2, q3 = q2 * place[IS_TOUCHED, 2], q3 * place[IS_TOUCHED, 3]
+        speed[n + 1, 0], speed[n + 1, 1], speed[n + 1, 2], speed[n + 1, 3] = v0, v1, v2, v3
+        depth[n + 1, 0], depth[n + 1, 1], depth[n + 1, 2], depth[n + 1, 3] = q0, q1, q2, q3
+    sum_cos = sum_sin = total = 0.0
+    for i in range(count):
+        j, b, m = balls.touching[i], i // LANES, i % LANES
+        force = k * balls.moving[b, DEPTH, n, m]
+        for wave in range(2 * p.harmonics):
+            balls.moving[b, DEPTH, n + 1, m] -= balls.drive[wave, j] * w[n + 1].gone[wave]
+        balls.force[n, j], balls.depth[n + 1, j] = force, balls.moving[b, DEPTH, n + 1, m]
+        sum_cos += force * balls.cosine[j]
+        sum_sin += force * balls.sine[j]
+        total += force
+    w[n].ex, w[n].ey = sum_cos, sum_sin
+    return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
 
 
 @inner_kernel
@@ -161,7 +111,9 @@ def own_forces(
     sum_cos = sum_sin = total = 0.0
     after, count = 1.0 / (n + 1), state.touching
     if p.inertial:
-        coast(p, balls.moving, count + state.coasting, now, n)
+        coast(p, balls.moving, count, count + state.coasting, now, n)
+        if p.hertz == 0.0:
+            return push_balls(p, balls, w, count, n)
     for i in range(count):
         j = balls.touching[i]
         # N_j = K |q_j|^1.5 sign q_j, or k q_j
@@ -169,9 +121,9 @@ def own_forces(
         balls.force[n, j] = force
         if p.inertial:
             # m_e du_j/dt = N_j - F(u_j), and dq_j/dt = d(place_j)/dt - u_j, less the free speed
-            speed, at = balls.moving[i // LANES, SPEED], LANES * n + i % LANES
-            give = speed[at]
-            speed[at + LANES] += p.lightness * force * after
+            speed, lane = balls.moving[i // LANES, SPEED], i % LANES
+            give = speed[n, lane]
+            speed[n + 1, lane] += p.lightness * force * after
         else:
             # dq_j/dt = d(place_j)/dt - N_j / C_mu, less the free speed
             give = p.yielding * now.share * force
@@ -212,8 +164,8 @@ def fastest_ball(moving: Array, used: int) -> tuple[float, float, float]:
     for b in range(blocks(used)):
         u = moving[b, SPEED]
         for m in range(LANES):
-            speed, last = max(speed, abs(u[m])), max(last, abs(u[LANES * ORDER + m]))
-            before = max(before, abs(u[LANES * (ORDER - 1) + m]))
+            speed, last = max(speed, abs(u[0, m])), max(last, abs(u[ORDER, m]))
+            before = max(before, abs(u[ORDER - 1, m]))
     return speed, last, before
 
 
@@ -227,11 +179,11 @@ def rescale_balls(w: Series, moving: Array, used: int, h: float) -> None:
     for b in range(blocks(used)):
         speed, way, traction = moving[b, SPEED], moving[b, WAY], moving[b, TRACTION]
         power = h
-        for n in range(LANES, LANES * (ORDER + 1), LANES):
-            for m in range(n, n + LANES):
-                speed[m] *= power
-                way[m] *= power
-                traction[m] *= power
+        for n in range(1, ORDER + 1):
+            for m in range(LANES):
+                speed[n, m] *= power
+                way[n, m] *= power
+                traction[n, m] *= power
             power *= h
 
 
@@ -239,13 +191,18 @@ def rescale_balls(w: Series, moving: Array, used: int, h: float) -> None:
 def move_balls(p: Coefficients, balls: Balls, state: State, end: float, share: float, ledger: Ledger) -> None:
     """Speeds and places of the balls at the end of a step; one that is about at rest is put there."""
     count = state.touching
+    used = count + state.coasting
+    for b in range(blocks(used)):
+        lanes_at(balls.moving[b, SPEED], end)
+        lanes_at(balls.moving[b, WAY], end)
     for i in range(count):
-        balls.own_speed[balls.touching[i]] = moving_at(balls, SPEED, i, end)
+        balls.own_speed[balls.touching[i]] = balls.moving[i // LANES, SPEED, LAST_ROW, i % LANES]
     kept = 0
     for i in range(state.coasting):
         j = balls.coasting[i]
-        balls.lead[j] += moving_at(balls, WAY, count + i, end)
-        u = moving_at(balls, SPEED, count + i, end)
+        block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
+        balls.lead[j] += balls.moving[block, WAY, LAST_ROW, lane]
+        u = balls.moving[block, SPEED, LAST_ROW, lane]
         if abs(u) > p.coast_end:
             balls.own_speed[j] = u
             balls.coasting[kept] = j
@@ -264,7 +221,7 @@ def subtract_way(balls: Balls, j: int, c: Array) -> None:
     if balls.own_speed[j] != 0.0:
         block, lane = balls.slot[j] // LANES, balls.slot[j] % LANES
         for n in range(1, ORDER + 1):
-            c[n] -= balls.moving[block, WAY, LANES * n + lane]
+            c[n] -= balls.moving[block, WAY, n, lane]
 
 
 @inner_kernel
@@ -274,14 +231,10 @@ def way_at(balls: Balls, j: int, t: float) -> float:
 
 
 @inner_kernel
-def way_knots(
-    balls: Balls, j: int, c: Array
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """Knots of the way that a ball coasts, and bounds of what bends it."""
-    copy_moving(balls, WAY, balls.slot[j], c)
-    a, b, d, e, f, g = knots(c)
-    early, late = bends(c)
-    return a, b, d, e, f, g, early, late
+def way_knots(balls: Balls, j: int) -> tuple[float, float, float, float, float, float, float, float]:
+    """Knots of the way that a ball coasts, and bounds of what bends it, by `learn_ways`."""
+    at, m = balls.moving[balls.slot[j] // LANES, AT_KNOTS], balls.slot[j] % LANES
+    return at[0, m], at[1, m], at[2, m], at[3, m], at[4, m], at[5, m], at[6, m], at[7, m]
 
 
 @inner_kernel
@@ -325,20 +278,3 @@ def ball_energy(p: Coefficients, balls: Balls, state: State) -> float:
             squares += balls.own_speed[balls.coasting[i]] ** 2
         squares *= 0.5 / p.lightness
     return squares
-
-
-@inner_kernel
-def traction_power(p: Coefficients, moving: Array, used: int, t: float) -> float:
-    """Power that the races take from the balls that move at a time, over the mass of the cage."""
-    total = 0.0
-    for b in range(blocks(used)):
-        speed, traction = moving[b, SPEED], moving[b, TRACTION]
-        u0 = u1 = u2 = u3 = f0 = f1 = f2 = f3 = 0.0
-        for n in range(LANES * ORDER, -1, -LANES):
-            u0, f0 = u0 * t + speed[n], f0 * t + traction[n]
-            u1, f1 = u1 * t + speed[n + 1], f1 * t + traction[n + 1]
-            u2, f2 = u2 * t + speed[n + 2], f2 * t + traction[n + 2]
-            u3, f3 = u3 * t + speed[n + 3], f3 * t + traction[n + 3]
-        # F(u) u
-        total += u0 * f0 + u1 * f1 + u2 * f2 + u3 * f3
-    return total / p.lightness

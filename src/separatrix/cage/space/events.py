@@ -48,11 +48,18 @@ NOTHING, LEAVE, MEET, REGION, STRIP = range(5)
 @inner_kernel
 def at_time(c: Array, last: int, t: float, columns: int, out: Array) -> None:
     """Values at a time of the first columns of an array of series, which end at a power."""
-    for k in range(columns):
-        out[k] = c[last, k]
-    for n in range(last - 1, -1, -1):
-        for k in range(columns):
-            out[k] = out[k] * t + c[n, k]
+    whole = columns - columns % 4
+    for k in range(0, whole, 4):
+        a0, a1, a2, a3 = c[last, k], c[last, k + 1], c[last, k + 2], c[last, k + 3]
+        for n in range(last - 1, -1, -1):
+            a0, a1 = a0 * t + c[n, k], a1 * t + c[n, k + 1]
+            a2, a3 = a2 * t + c[n, k + 2], a3 * t + c[n, k + 3]
+        out[k], out[k + 1], out[k + 2], out[k + 3] = a0, a1, a2, a3
+    for k in range(whole, columns):
+        a0 = c[last, k]
+        for n in range(last - 1, -1, -1):
+            a0 = a0 * t + c[n, k]
+        out[k] = a0
 
 
 @inner_kernel

@@ -8,8 +8,8 @@ surface on the pocket: outward :math:`h(O_t p_z - O_z p_t) - v_r`, and across th
 :math:`\hat q = (-p_t, p_z)`, :math:`-h O_r - v\cdot\hat q`, with the ball's spin O and :math:`h = D/2`. The
 ball's own speed of fractions of a metre a second is left out there.
 
-All sums of a coefficient that do not wait for each other are taken in one loop over the lower ones; what
-its own value adds follows.
+All sums of a coefficient that do not wait for each other are taken in one loop over pairs of the lower ones,
+m and n - m, which are read once; the middle one, if n is even, and what its own value adds follow.
 """
 
 from __future__ import annotations
@@ -123,21 +123,25 @@ def expand_round(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
         push_z, push_t = push * pz, push * pt
         across = ball[0, CZ] * pt - ball[0, CT] * pz
     else:
-        zz = tt = ff = back_z = back_t = axial = along = push_z = push_t = 0.0
-        for m in range(1, n):
-            k = n - m
-            zz += c[m, HERE_Z] * c[k, HERE_Z]
-            tt += c[m, HERE_T] * c[k, HERE_T]
-            ff += c[m, FAR] * c[k, FAR]
-            back_z += c[m, FAR] * c[k, PZ]
-            back_t += c[m, FAR] * c[k, PT]
-            axial += ball[m, CZ] * c[k, PT]
-            along += ball[m, CT] * c[k, PZ]
-            push_z += c[m, PUSH] * c[k, PZ]
-            push_t += c[m, PUSH] * c[k, PT]
+        half = back_z = back_t = axial = along = push_z = push_t = 0.0
+        for m in range(1, (n + 1) // 2):
+            a, b, u, v = c[m], c[n - m], ball[m], ball[n - m]
+            half += a[HERE_Z] * b[HERE_Z] + a[HERE_T] * b[HERE_T] - a[FAR] * b[FAR]
+            back_z += a[FAR] * b[PZ] + b[FAR] * a[PZ]
+            back_t += a[FAR] * b[PT] + b[FAR] * a[PT]
+            axial += u[CZ] * b[PT] + v[CZ] * a[PT]
+            along += u[CT] * b[PZ] + v[CT] * a[PZ]
+            push_z += a[PUSH] * b[PZ] + b[PUSH] * a[PZ]
+            push_t += a[PUSH] * b[PT] + b[PUSH] * a[PT]
+        if n % 2 == 0:
+            a, u = c[n // 2], ball[n // 2]
+            half += 0.5 * (a[HERE_Z] * a[HERE_Z] + a[HERE_T] * a[HERE_T] - a[FAR] * a[FAR])
+            back_z, back_t = back_z + a[FAR] * a[PZ], back_t + a[FAR] * a[PT]
+            axial, along = axial + u[CZ] * a[PT], along + u[CT] * a[PZ]
+            push_z, push_t = push_z + a[PUSH] * a[PZ], push_t + a[PUSH] * a[PT]
         # |w|^2 = w_z^2 + w_t^2 and |w| p = -w
         per, z0, t0 = c[0, PER_FAR], c[0, PZ], c[0, PT]
-        far = (c[0, HERE_Z] * z + c[0, HERE_T] * t + 0.5 * (zz + tt - ff)) * per
+        far = (c[0, HERE_Z] * z + c[0, HERE_T] * t + half) * per
         pz, pt, depth = -(z + back_z + far * z0) * per, -(t + back_t + far * t0) * per, far
         push = p.stiffness * depth
         push_z += c[0, PUSH] * pz + push * z0
@@ -154,12 +158,16 @@ def expand_round(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
         across -= p.spin_r * now[n]
     rub(p, c, push, out, across, n)
     rub_z = rub_t = spin = lean = 0.0
-    for m in range(n + 1):
-        z, t = c[n - m, PZ], c[n - m, PT]
-        rub_z += c[m, RUB_Q] * t
-        rub_t += c[m, RUB_Q] * z
-        spin += c[m, RUB_R] * t
-        lean += c[m, RUB_R] * z
+    for m in range((n + 1) // 2):
+        a, b = c[m], c[n - m]
+        rub_z += a[RUB_Q] * b[PT] + b[RUB_Q] * a[PT]
+        rub_t += a[RUB_Q] * b[PZ] + b[RUB_Q] * a[PZ]
+        spin += a[RUB_R] * b[PT] + b[RUB_R] * a[PT]
+        lean += a[RUB_R] * b[PZ] + b[RUB_R] * a[PZ]
+    if n % 2 == 0:
+        a = c[n // 2]
+        rub_z, rub_t = rub_z + a[RUB_Q] * a[PT], rub_t + a[RUB_Q] * a[PZ]
+        spin, lean = spin + a[RUB_R] * a[PT], lean + a[RUB_R] * a[PZ]
     c[n, FZ], c[n, FT], c[n, SPIN], c[n, LEAN] = push_z - rub_z, push_t + rub_t, -spin, lean
 
 
@@ -173,17 +181,20 @@ def rub(p: Numbers, c: Array, push: float, out: float, across: float, n: int) ->
         c[0, SLIDE], c[0, PER_SLIDE], c[0, SHARE] = size, 1.0 / size, share
         c[0, RUB_R], c[0, RUB_Q] = share * out, share * across
         return
-    rr = qq = vv = lag = rub_r = rub_q = 0.0
-    for m in range(1, n):
-        k = n - m
-        rr += c[m, SLIDE_R] * c[k, SLIDE_R]
-        qq += c[m, SLIDE_Q] * c[k, SLIDE_Q]
-        vv += c[m, SLIDE] * c[k, SLIDE]
-        lag += c[m, SLIDE] * c[k, SHARE]
-        rub_r += c[m, SHARE] * c[k, SLIDE_R]
-        rub_q += c[m, SHARE] * c[k, SLIDE_Q]
+    half = lag = rub_r = rub_q = 0.0
+    for m in range(1, (n + 1) // 2):
+        a, b = c[m], c[n - m]
+        half += a[SLIDE_R] * b[SLIDE_R] + a[SLIDE_Q] * b[SLIDE_Q] - a[SLIDE] * b[SLIDE]
+        lag += a[SLIDE] * b[SHARE] + b[SLIDE] * a[SHARE]
+        rub_r += a[SHARE] * b[SLIDE_R] + b[SHARE] * a[SLIDE_R]
+        rub_q += a[SHARE] * b[SLIDE_Q] + b[SHARE] * a[SLIDE_Q]
+    if n % 2 == 0:
+        a = c[n // 2]
+        half += 0.5 * (a[SLIDE_R] * a[SLIDE_R] + a[SLIDE_Q] * a[SLIDE_Q] - a[SLIDE] * a[SLIDE])
+        lag += a[SLIDE] * a[SHARE]
+        rub_r, rub_q = rub_r + a[SHARE] * a[SLIDE_R], rub_q + a[SHARE] * a[SLIDE_Q]
     first, per = c[0, SLIDE_R] * out + c[0, SLIDE_Q] * across, c[0, PER_SLIDE]
-    size = (first + 0.5 * (rr + qq - vv)) * per
+    size = (first + half) * per
     share = (p.friction * push - lag - size * c[0, SHARE]) * per
     c[n, SLIDE], c[n, SHARE] = size, share
     c[n, RUB_R] = rub_r + c[0, SHARE] * out + share * c[0, SLIDE_R]
