@@ -23,7 +23,7 @@ def test_the_orbit_of_a_run_is_read_from_the_part_by_which_it_is_judged():
     )
     lines = dict(orbit_facts(run, CAGE))
     assert lines["Largest offset"] == "1 m"
-    assert lines["Mean offset "] == "4 mm, from 800 ms to the end"
+    assert lines["Mean offset"] == "4 mm, from 800 ms to the end"
     assert lines["Relative spread"] == "0.25 (0: a circle about the axis)"
     assert lines["Drift rate"] == "1.97 1/s"
 
