@@ -2,13 +2,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 # A file of tests is one worker's, so that what its tests share is made once.
 TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
-# Compiles all kernels once, before the tests: else each worker would compile the same. One process for the
-# plane and one for space, because what a process compiled already it does not compile again.
+# Compiles all kernels once, before the tests: else each worker would compile the same. One process begins with
+# those of the chain and of the cage in space, the other with those of the cage in the plane, which need no chain.
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
-MAP := map cryogenic-turbopump --points 2 --runs 1 --jobs 1 --json --quiet
-RUN := simulate cryogenic-turbopump --json --quiet
-CONTACTS := traction cryogenic-turbopump --json --quiet
-IMPACTS := mobility cryogenic-turbopump --json --quiet
+CASE := cryogenic-turbopump --json --quiet
+SPACE := map $(CASE) --points 2 --runs 1 --jobs 1 --motion space
+PLANE := from cages import TURNING as cage; from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble; \
+  few = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3); run_ensemble(cage, few); run_hard_ensemble(cage, few)
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
@@ -21,8 +21,8 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(COMPILE) "$(MAP)" "$(RUN)" > /dev/null & \
-	$(COMPILE) "$(MAP) --motion space" "$(RUN) --motion space" "$(IMPACTS)" "$(CONTACTS)" > /dev/null && wait $$!
+	@$(COMPILE) "$(SPACE)" "simulate $(CASE) --motion space" "mobility $(CASE)" > /dev/null & \
+	PYTHONPATH=tests/physics $(BIN)/python -c '$(PLANE)' && $(COMPILE) "traction $(CASE)" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .
