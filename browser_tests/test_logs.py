@@ -46,6 +46,25 @@ def test_a_log_is_dropped_and_its_cut_moved(view, server, folder):
     expect(page.locator("#message .refusal")).to_contain_text("100 kg")
 
 
+AT_ONCE = """document.body.addEventListener("htmx:afterSwap", () => {
+  const form = document.querySelector("#log form");
+  form.elements.run_in.value = "100 m";
+  form.requestSubmit();
+}, { once: true })"""
+
+
+def test_a_form_that_is_sent_as_soon_as_it_is_there_does_not_leave_the_page(view, server):
+    """Before htmx has taken it up, which it does a moment after it has put it into the page."""
+    page = view()
+    page.goto(f"{server.address}/logs")
+    page.evaluate(DROP, ["first.txt", list(_log())])
+    expect(page.locator("#log pre.answer")).to_contain_text("first.txt")
+    page.evaluate(AT_ONCE)
+    page.get_by_role("button", name="first.txt").click()
+    expect(page.locator(".test p").first).to_contain_text("ends at 100")
+    assert page.url == f"{server.address}/logs"
+
+
 def test_a_friction_file_is_written_or_refused(view, server, folder):
     """Logs that do not state their materials are refused with the cure; no file is written."""
     page = view()

@@ -195,10 +195,11 @@ def test_python_compares_answers_and_files(folder):
 
 def test_two_curves_are_drawn_together(folder, tmp_path):
     """Of rankings with their margins: a row for each material; without the arrays it is refused."""
-    for name in ("first", "second"):
+    data = separatrix.rank(folder / "first.toml", jobs=2).to_xarray()
+    for name, times in (("first", 1.0), ("second", 1.1)):
         (tmp_path / name).mkdir()
-        answer = separatrix.rank(folder / f"{name}.toml", jobs=2)
-        separatrix.save(answer.to_xarray(), tmp_path / name / "rank.nc")
+        data["critical_friction"].values[:] *= times
+        separatrix.save(data, tmp_path / name / "rank.nc")
     one, other = (read_answers(tmp_path / name)["rank"] for name in ("first", "second"))
     ((name, figure),) = pictures(one, other)
     assert name == "comparison"
@@ -229,7 +230,7 @@ def test_what_cannot_be_compared_is_refused(folder, capsys, tmp_path, monkeypatc
 
 
 def test_two_studies_are_computed_and_reported(folder, capsys, tmp_path, monkeypatch):
-    """What each lacks goes into its folder; a fault of either comes before all work; or a folder."""
+    """What each lacks goes into its folder; a fault of either comes before all work."""
     monkeypatch.chdir(tmp_path)
     for name, text in (("first", FEW), ("second", THIN)):
         Path(f"{name}.toml").write_text(text)
@@ -239,7 +240,4 @@ def test_two_studies_are_computed_and_reported(folder, capsys, tmp_path, monkeyp
     assert not Path("first/bearing.json").exists()
     assert main(["report", "first.toml", "second.toml", "--quiet"]) == 0
     assert all(Path(name, "bearing.json").exists() for name in ("first", "second"))
-    said = capsys.readouterr().out
-    assert said.startswith("1 input differs.")
-    assert main(["report", "first", "second.toml", "--quiet"]) == 0
-    assert capsys.readouterr().out == said
+    assert capsys.readouterr().out.startswith("1 input differs.")

@@ -144,9 +144,8 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
     assert value_hits_misses() == [4, 1, 0]
     edit("cage/records.py", "HARMONICS = 4", "HARMONICS = 3")
     assert value_hits_misses() == [3, 0, 1]
-    for name in ("cage/planar.py", "study.py"):
-        (package / name).write_text((package / name).read_text() + "\nADDED = 1\n")
-        assert value_hits_misses() == [3, 0, 1]
+    (package / "study.py").write_text((package / "study.py").read_text() + "\nADDED = 1\n")
+    assert value_hits_misses() == [3, 0, 1]
 
 
 @pytest.mark.slow

@@ -3,6 +3,12 @@
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
+// htmx takes up what it has put into the page some 20 ms later.
+// A form that is sent before that would leave the page.
+document.addEventListener("submit", (event) => {
+  if (event.target.matches("[hx-get], [hx-post]")) htmx.process(event.target);
+}, true);
+
 function looks() {
   const style = getComputedStyle(document.documentElement);
   const of = (name) => style.getPropertyValue(name).trim();
