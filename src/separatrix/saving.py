@@ -36,6 +36,7 @@ def save_answer(
     study: Study,
     found: Document,
     *,
+    pictures: bool = True,
     animation: str | None = None,
     progress: Progress | None = None,
 ) -> None:
@@ -49,6 +50,8 @@ def save_answer(
         The answer and what was asked.
     found : dict
         The answer as `present.document` makes it.
+    pictures : bool
+        Whether the figures are written, too.
     animation : str, optional
         ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` hears how far it is.
 
@@ -69,7 +72,8 @@ def save_answer(
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
         data = dataset(*asked)
         save(data, stage / f"{verb}.nc")
-        figures.save_all(figures.draw(verb, data), stage)
+        if pictures:
+            figures.save_all(figures.draw(verb, data), stage)
         if verb == "sweep":
             _write_tables(data, stage)
         if verb == "simulate" and is_in_space(data):

@@ -112,13 +112,13 @@ def answers(kept: Kept, study: Study) -> bool:
 
 
 def keep(verb: str, made: Computed, notes: list[str], folder: Path | None) -> Kept:
-    """Return a computed answer; its files are written if there is a folder."""
+    """Return a computed answer; its files are written if there is a folder, its figures are in the report."""
     from separatrix.present import dataset, document
     from separatrix.saving import save_answer
 
     found = document(verb, made.record, made.study, notes)
     if folder is not None:
-        save_answer(folder, made.record, made.study, found)
+        save_answer(folder, made.record, made.study, found, pictures=False)
     return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
 
 
