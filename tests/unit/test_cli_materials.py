@@ -6,7 +6,9 @@ import sys
 
 import pytest
 
+import separatrix
 from separatrix.cli import main
+from separatrix.errors import InputError
 
 OURS = """\
 title = "Our lab"
@@ -217,3 +219,17 @@ def test_nothing_calls_out_and_help_stays_light(folder):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, text=True)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["verb"] == "materials list"
+
+
+def test_python_has_the_same_library(folder, ask):
+    """`materials()` says what the command prints; its table has a row for each number."""
+    films = separatrix.materials("film")
+    assert films.summary() == ask("list", "--kind", "film")
+    assert films.document()["materials"] == json.loads(ask("list", "--kind", "film", "--json"))["materials"]
+    ours = films.to_dataframe().query("name == 'Our film' and property == 'elastic_modulus'")
+    assert [*ours["value"]] == [2e9, 0.4e9]
+    assert [*ours["confidence"]] == ["measured", "guess"]
+    (found,) = separatrix.materials().show("Our film", temperature=290.0)
+    assert found.taken["elastic_modulus"] == 1
+    with pytest.raises(InputError, match="is not a record of the library"):
+        films.find("Our cage")

@@ -28,8 +28,12 @@ def test_it_returns_what_the_command_prints(folder, capsys):
     """The same numbers, tests in the order of the numbers in their names, progress up to its total."""
     steps = []
     found = separatrix.tribometer(folder, progress=lambda done, total: steps.append((done, total)))
+    assert main(["tribometer", str(folder)]) == 0
+    assert capsys.readouterr().out == found.summary()
     assert main(["tribometer", str(folder), "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)["tests"]
+    document = json.loads(capsys.readouterr().out)
+    assert document == found.document()
+    printed = document["tests"]
     assert [test.source for test in found.tests] == ["a2.csv", "a10.csv"]
     assert [test.friction for test in found.tests] == [test["friction"] for test in printed]
     assert [log.rows for log in found.logs] == [400, 400]
@@ -44,6 +48,18 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     (test,) = found.friction_tests
     assert (test.material, test.environment, test.run_in_end) == ("Armalon", "air, 440C", 60.0)
     assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
+
+
+def test_its_tables_and_pages_are_those_of_a_test(folder):
+    """One row for each test; the series and the page of a test by its source; another source is refused."""
+    found = separatrix.tribometer(folder)
+    table = found.to_dataframe()
+    assert [*table["source"]] == ["a2.csv", "a10.csv"]
+    assert [*table["friction"]] == [test.friction for test in found.tests]
+    assert found.to_xarray("a10.csv").attrs["title"] == "a10.csv"
+    assert "a10.csv" in "".join(text.get_text() for text in found.plot("a10.csv").texts)
+    with pytest.raises(InputError, match="is not a test of these logs"):
+        found.plot("a3.csv")
 
 
 @pytest.mark.parametrize(

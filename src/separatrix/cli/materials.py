@@ -14,7 +14,7 @@ from separatrix.cli.verbs import Json
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
-    from separatrix.library import Content, FrictionTable, Library, Record
+    from separatrix.library import Content
     from separatrix.present.text.materials import Shown
 
 KIND_HELP = "bearing material, cage material, film, fluid, friction table."
@@ -45,18 +45,10 @@ def application() -> typer.Typer:
 
 
 def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> None:
-    from separatrix.present.text.materials import listed
+    from separatrix.data_answers import materials
 
-    known = _library(library)
-    records = [record for name in _kinds(kind) for record in known.records(name).values()]
-    _deliver(
-        "list",
-        {
-            "libraries": [file.plain() for file in known.files],
-            "materials": [record.plain() for record in records],
-        },
-        None if json else listed(records),
-    )
+    found = materials(kind, libraries=library or ())
+    _deliver("list", found.document(), None if json else found.summary())
 
 
 def _show(
@@ -67,14 +59,16 @@ def _show(
     library: Libraries = None,
     json: Json = False,
 ) -> None:
+    from separatrix.data_answers import materials
     from separatrix.present.text.materials import shown
 
-    found = _found(_library(library), name, kind)
-    at = None if temperature is None else _quantity(temperature, "K", "--temperature", 1e-3, 5000.0)
-    under = None if pressure is None else _quantity(pressure, "Pa", "--pressure", 1e-3, 1e11)
-    if under is not None and (at is None or all(record.kind != "fluid" for record in found)):
-        raise InputError("--pressure", "is for a fluid, together with --temperature")
-    views = [_shown(record, at, under) for record in found]
+    views = materials(kind, libraries=library or ()).show(
+        name,
+        temperature=None
+        if temperature is None
+        else _quantity(temperature, "K", "--temperature", 1e-3, 5000.0),
+        pressure=None if pressure is None else _quantity(pressure, "Pa", "--pressure", 1e-3, 1e11),
+    )
     _deliver("show", {"records": [_plain(one) for one in views]}, None if json else shown(views))
 
 
@@ -126,49 +120,6 @@ def _summary(verb: str, content: Content, library: str | None, *, as_json: bool)
     _deliver(verb, document, None if as_json else text)
 
 
-def _library(named: list[str] | None) -> Library:
-    """The shipped library with those of the current folder and those named."""
-    from separatrix.library import beside, library_files, with_files
-
-    paths = beside(Path())
-    for name in named or ():
-        if not name or not Path(name).exists():
-            raise InputError("--library", "does not name a file or folder", f'"{name}"')
-        paths += library_files(Path(name))
-    return with_files(paths)
-
-
-def _kinds(kind: str | None) -> tuple[str, ...]:
-    from separatrix.library import KINDS
-    from separatrix.toml_values import nearest
-    from separatrix.units import shown
-
-    if kind is None:
-        return KINDS
-    spelled = kind.strip().casefold().replace("_", " ")
-    found = tuple(known for known in KINDS if spelled in (known, f"{known}s"))
-    if not found:
-        raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, KINDS))
-    return found
-
-
-def _found(library: Library, name: str, kind: str | None) -> list[Record | FrictionTable]:
-    """Records of that name, of every kind or of one; a fluid also by another name of it."""
-    from separatrix.toml_values import nearest
-    from separatrix.units import shown
-
-    kinds = _kinds(kind)
-    found = [records[name] for records in map(library.records, kinds) if name in records]
-    fluid = library.fluid(name) if "fluid" in kinds and not found else None
-    if fluid is not None:
-        return [fluid]
-    if not found:
-        rule = f"is not a {kind or 'record'} of the library"
-        names = [known for each in kinds for known in library.names(each)]
-        raise InputError("NAME", rule, shown(name), nearest(name, names))
-    return found
-
-
 def _quantity(text: str, unit: str, option: str, low: float, high: float) -> float:
     from separatrix.units import format_quantity, parse, shown
 
@@ -177,23 +128,6 @@ def _quantity(text: str, unit: str, option: str, low: float, high: float) -> flo
         rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
         raise InputError(option, rule, shown(text))
     return value
-
-
-def _shown(record: Record | FrictionTable, temperature: float | None, pressure: float | None) -> Shown:
-    """The record; at a temperature with what serves there, or with the state of a fluid."""
-    from separatrix.library import Record, as_material
-    from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state, other_phase
-    from separatrix.present.text.materials import Shown
-
-    if temperature is None or not isinstance(record, Record):
-        return Shown(record=record)
-    if record.kind != "fluid":
-        material = as_material(record, temperature)
-        taken = (material.record or {}).get("taken", {})
-        return Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
-    state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
-    cautions = [*contradictions(record.plain(), temperature), *other_phase(record, state)]
-    return Shown(record=record, state=state, cautions=cautions)
 
 
 def _plain(one: Shown) -> dict[str, Any]:

@@ -65,30 +65,7 @@ def tribometer(
     jobs: int = 1,
     progress: Progress | None = None,
 ) -> ReducedLogs:
-    """Read logs of tribometers and reduce each test to its steady friction.
-
-    Parameters
-    ----------
-    paths : path or sequence of paths
-        Logs, each of one or several tests, or folders of them.
-    column_map : ColumnMap or path, optional
-        What the files do not state themselves.
-    run_in : str, optional
-        Where running-in ends in all of them, such as ``"10 min"``; else as in the map, else as detected.
-    join : bool
-        Whether all logs of a folder are parts of one test.
-    complete : bool
-        Whether a test that a friction file cannot keep is refused.
-    jobs : int
-        Threads. The answer does not depend on it.
-    progress : callable, optional
-        Called with the number of steps done and their total.
-
-    Raises
-    ------
-    InputError
-        A file is wrong: the first one, and how many others are.
-    """
+    """Read logs of tribometers and reduce each test to its steady friction, as `separatrix.tribometer`."""
     files = _files([paths] if isinstance(paths, (str, Path)) else paths)
     chosen = read_column_map(column_map) if isinstance(column_map, (str, Path)) else column_map or ColumnMap()
     idle = chosen.unused(files)
