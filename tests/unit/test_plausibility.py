@@ -9,7 +9,13 @@ import pytest
 from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.ranking.plausible import Moved, beyond_motion, pocket_pressure, transmitted_force
+from separatrix.ranking.plausible import (
+    Moved,
+    beyond_motion,
+    pocket_pressure,
+    transmitted_force,
+    within_a_turn,
+)
 from separatrix.study import BallBearing, Operation, Study
 from separatrix.study_file import read_study
 from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
@@ -110,6 +116,23 @@ STATE = solve(SHIPPED)
 def test_races_transmit_friction_times_both_loads():
     """The shipped bearing: f_BT (Q_i + Q_o) = 95.7 N, as another program has it."""
     assert transmitted_force(STATE) == pytest.approx(95.7, abs=0.05)  # its last digit
+
+
+def test_a_kick_faster_than_the_balls_slide_and_runs_within_a_turn_are_noted():
+    """Balls of the shipped bearing slide at 25.1 m/s, its cage turns in 9.39 ms."""
+
+    def notes(**settings):
+        study = replace(SHIPPED, stability=replace(SHIPPED.stability, **settings))
+        state = replace(STATE, study=study)
+        return [*beyond_motion(state, [ROW]), *within_a_turn(state)]
+
+    (note,) = notes(kicks=(0.1, 25.2))
+    assert "25.2 m/s, is faster than the balls slide in their pockets, 25.1 m/s" in note
+    assert notes(kicks=(25.0,)) == []
+    (note,) = notes(duration=9.3e-3)
+    assert "Runs of 9.3 ms are 0.99 turns of the cage" in note
+    assert 'duration = "9.39 ms"' in note
+    assert notes(duration=9.4e-3) == []
 
 
 def test_a_force_beyond_the_races_or_an_offset_beyond_the_land_is_noted():

@@ -39,7 +39,7 @@ from separatrix.explore.records import (
 from separatrix.explore.shares import sobol_shares
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
-from separatrix.ranking.plausible import Moved, beyond_motion
+from separatrix.ranking.plausible import Moved, beyond_motion, within_a_turn
 from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
 from separatrix.ranking.second import Pocket, pocket_of
 from separatrix.runner import Interrupted, Runner
@@ -115,7 +115,7 @@ def _answer(
         for row in own
         if isinstance(row, UncertainMaterial) and (found := row.judgement)
     ]
-    reference = reference_candidate(study, ranking)
+    central = drawn.central[reference_candidate(study, ranking).name]
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
     return UncertainStudy(
         bearings=asked,
@@ -139,7 +139,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*_notes(drawn, asked), *beyond_motion(drawn.central[reference.name], moved)),
+        notes=(*_notes(drawn, asked), *within_a_turn(central), *beyond_motion(central, moved)),
         complete=True,
     )
 

@@ -53,7 +53,7 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
             "the ball slides, and the linear race damping is outside its range. It then returns too much "
             "speed to the cage: `--ball traction` gives the answer with the ball's inertia and traction."
         )
-    if design.motion is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
+    if design.motion is MotionModel.PLANE:
         yield from _beyond_plane(solution)
     yield from _beyond_strength(solution.study, rows)
     cage = solution.cage_with(0.0)
@@ -77,14 +77,33 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
 
 
 def _beyond_plane(solution: Solution) -> Iterator[str]:
-    """A sentence where a cage with round pockets is kicked so hard that it tilts."""
+    """Sentences where a cage is kicked so hard that friction would turn round, or that it tilts."""
+    kick, sliding = max(solution.stability.kicks), solution.pocket.slip_speed
+    if kick > sliding:
+        yield (
+            f"The strongest kick, {kick:.3g} m/s, is faster than the balls slide in their pockets, "
+            f"{sliding:.3g} m/s. Friction then brakes the cage, but in the plane it always acts along the "
+            "ball's spin: it drives the cage too much. With `--motion space` it follows the true sliding."
+        )
     speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
-    kick = max(solution.stability.kicks)
-    if kick > STRONG * speed:
+    if solution.design.pocket_shape is not PocketShape.SQUARE and kick > STRONG * speed:
         yield (
             f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
             f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
             "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
+        )
+
+
+def within_a_turn(solution: Solution) -> Iterator[str]:
+    """A sentence where runs end before the cage has turned once."""
+    duration = solution.stability.duration
+    turns = duration * abs(solution.bearing.cage_speed) / math.tau
+    if 0.0 < turns < 1.0:
+        turn = format_quantity(duration / turns, "s", 3)
+        yield (
+            f"Runs of {format_quantity(duration, 's', 3)} are {turns:.2g} turns of the cage: what comes once "
+            "a turn, by gravity, unbalance or an uneven land, is not judged. Whole turns need [stability] "
+            f'duration = "{turn}" or longer.'
         )
 
 

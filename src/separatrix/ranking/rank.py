@@ -33,7 +33,7 @@ from separatrix.limits.threshold import rising
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.lowest import MeanFriction, lowest_among, measured, overall
 from separatrix.ranking.order import margin_interval, ranks, same_rank
-from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
+from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force, within_a_turn
 from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
 from separatrix.ranking.records import (
     NotFinished,
@@ -166,7 +166,8 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
     said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
-    return (*said, *beyond_motion(question.cages[question.reference], moved))
+    reference = question.cages[question.reference]
+    return (*said, *within_a_turn(reference), *beyond_motion(reference, moved))
 
 
 def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
