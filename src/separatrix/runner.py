@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
+import time
 import zlib
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -43,7 +44,10 @@ LOOK = 0.1
 """Time between two looks at whether the work was interrupted [s]."""
 
 PART = 16
-"""Runs from each kick between two looks at whether to stop."""
+"""Runs from each kick that the ledger keeps together."""
+
+SOON = 1.0
+"""Time of the runs between two looks at whether to stop, if one run does not take longer [s]."""
 
 BY_BALL = ("pocket_impacts", "pocket_rubbing")
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
@@ -135,16 +139,36 @@ class Runner:
         """
         piece = cage, settings, tuple(kicks), runs, first_run
         if self.ledger is None:
-            return self.call(_ensemble, *piece)
+            return self._followed(*piece)
         key = key_of(cage, (settings.seed, settings.duration, settings.ball_scatter), *piece[2:])
         kind = Ensemble if cage.space is None else SpaceEnsemble
         known = _unpacked(kind, self.ledger.get(key), (len(kicks), runs, cage.ball_count))
         if known is not None:
             self.ledger.taken += len(kicks) * runs
             return known
-        found = self.call(_ensemble, *piece)
+        found = self._followed(*piece)
         self.ledger.put(key, _packed(found))
         return found
+
+    def _followed(
+        self,
+        cage: PlanarCage,
+        settings: StabilitySettings,
+        kicks: Sequence[MetrePerSecond],
+        runs: int,
+        first_run: int,
+    ) -> Ensemble:
+        """Follow runs: here as many at a time as end soon, so that an interrupt waits for no more."""
+        if self.executor is not None:
+            return self.call(_ensemble, cage, settings, kicks, runs, first_run)
+        parts: list[Ensemble] = []
+        begun, size = 0, 1
+        while begun < runs:
+            start, size = time.perf_counter(), min(size, runs - begun)
+            parts.append(self.call(_ensemble, cage, settings, kicks, size, first_run + begun))
+            begun += size
+            size = max(1, int(size * SOON / max(time.perf_counter() - start, 1e-3)))
+        return joined(parts)
 
     def whole_ensemble(self, cage: PlanarCage, settings: StabilitySettings) -> Ensemble:
         """Every run of the settings, whose kicks are numbers, from every kick.

@@ -251,3 +251,29 @@ def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, cap
     assert "runs were taken from" in said
     assert main(call) == 0
     assert json.loads(resumed) == json.loads(capsys.readouterr().out)
+
+
+def test_slow_runs_are_followed_one_by_one_and_an_interrupt_waits_for_one(monkeypatch):
+    """The stop that is set in the second run comes before the third; fast runs go together, the same bits."""
+    asked = []
+
+    def slow(*_, runs, first_run, **__):
+        asked.append((first_run, runs))
+        if len(asked) == 2:
+            found.stop.set()
+        time.sleep(0.02)
+        return run_ensemble(CAGE, QUICK, kicks=(0.5,), runs=runs, first_run=first_run)
+
+    monkeypatch.setattr("separatrix.runner.run_ensemble", slow)
+    monkeypatch.setattr("separatrix.runner.SOON", 0.01)
+    found = Runner()
+    with pytest.raises(Interrupted):
+        found.ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
+    assert asked == [(0, 1), (1, 1)]
+    asked[:] = [(0, 0)] * 2  # the stop is not set again
+    monkeypatch.setattr("separatrix.runner.SOON", 100.0)
+    whole = Runner().ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
+    assert asked[2:] == [(0, 1), (1, 15)]
+    at_once = run_ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
+    for field in fields(Ensemble):
+        assert np.array_equal(getattr(whole, field.name), getattr(at_once, field.name)), field.name

@@ -228,7 +228,7 @@ def test_unresolved_runs_are_told(monkeypatch):
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=4)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 3)
     found.cause[0] = (Cause.NONE, Cause.IMPACTS, Cause.NO_CONTACT, Cause.FALLING)
-    monkeypatch.setattr(runner, "run_ensemble", lambda *_, **__: found)
+    monkeypatch.setattr(runner.Runner, "ensemble", lambda *_, **__: found)
     counter = GrowthCounter(cage, StabilitySettings())
     with pytest.warns(ValidityWarning, match=r"2 of 4 runs from 0.5 m/s at friction 0.1 .* not whirling"):
         assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=4) == Count(1, 4)
