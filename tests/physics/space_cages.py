@@ -10,7 +10,8 @@ from separatrix.cage import PlanarCage
 from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.space.ensemble import kick_speeds
 from separatrix.cage.space.history import MOTIONS, SOURCES
-from separatrix.cage.space.records import Books, Parts, books_for, land_strips, numbers, parts_of
+from separatrix.cage.space.inputs import land_strips, numbers, parts_of
+from separatrix.cage.space.records import Books, Parts, books_for
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
 from separatrix.cage.space_body import SpaceBody
 from separatrix.pocket_shape import PocketShape

@@ -57,6 +57,8 @@ class SpaceBody:
         Width of each land [m]; 0 is a line.
     land_radius : float or None
         Where the friction of the land acts [m]; None: the pitch radius, as in the plane.
+    inner_radius, outer_radius : float
+        Of the cage, between which its pockets have walls: their edges may touch the balls [m].
     axial_gravity : float
         Acceleration along the axis [m/s2].
     dynamic_unbalance : float
@@ -85,6 +87,8 @@ class SpaceBody:
     land_heights: Annotated[tuple[Metre, ...], ("land",)] = (0.0,)
     land_width: Metre = 0.0
     land_radius: Metre | None = None
+    inner_radius: Metre = 0.0
+    outer_radius: Metre = math.inf
     axial_gravity: MetrePerSecond2 = 0.0
     dynamic_unbalance: Radian = 0.0
     added_mass: Kilogram = 0.0
@@ -147,6 +151,18 @@ def pocket_plays(cage: PlanarCage, body: SpaceBody) -> tuple[Metre, Metre, Metre
         around = (cage.pocket_axial_clearance or 0.0) / 2.0
         return around, half - around, around
     return half, 0.0, body.axial_play
+
+
+def wall_margin(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Offset of the cage from which on a ball may touch an edge of its pocket; negative if at rest [m].
+
+    A wall touches a ball at its equator, at the height of the ball's centre, up to half the length of the
+    pocket along the orbit.
+    """
+    around, apart, _ = pocket_plays(cage, body)
+    half = body.ball_diameter / 2.0 + around + apart + 1.5 * cage.ball_diameter_scatter
+    beyond = math.sqrt(max(0.0, (body.outer_radius - half) * (body.outer_radius + half)))
+    return min(beyond - cage.pitch_radius, cage.pitch_radius - body.inner_radius)
 
 
 def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:

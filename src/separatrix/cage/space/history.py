@@ -19,14 +19,12 @@ from separatrix.cage.space.ensemble import (
     run_rows,
     turned_forward_in_space,
 )
+from separatrix.cage.space.inputs import land_strips, numbers, parts_of
 from separatrix.cage.space.records import (
     SpaceEvidence,
     Works,
     body_of,
     books_for,
-    land_strips,
-    numbers,
-    parts_of,
 )
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
 from separatrix.cage.space_body import pocket_plays

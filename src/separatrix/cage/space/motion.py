@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from separatrix.cage.motion import MOST_STEPS, pace_at
 from separatrix.cage.records import POWERS, Whole
 from separatrix.cage.series import ROUNDING
@@ -24,6 +26,7 @@ from separatrix.cage.space.records import (
     CAGE_COLUMNS,
     CLEAR,
     CONTACTS,
+    DEPTH,
     DEPTH_L,
     DZ,
     FLAT_BACK,
@@ -33,6 +36,8 @@ from separatrix.cage.space.records import (
     LAST,
     LEAD,
     NONE,
+    OUTER_CLEAR,
+    OUTER_RIM,
     PRESSED,
     PUSH_L,
     RELEASED,
@@ -58,6 +63,7 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
+from separatrix.cage.space.rim_events import EDGE, PASS, met_kind, region_of, rim_event
 from separatrix.cage.space.tally import enter_step, kinetic
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
@@ -116,7 +122,8 @@ def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
     """Balls that touch nothing and hardly move come to rest in their orbit and their groove."""
     for b in range(parts.listed[BALLS]):
         j = parts.active[b]
-        if parts.kind[2 * j] != NONE or parts.kind[2 * j + 1] != NONE:
+        one, two = parts.kind[2 * j], parts.kind[2 * j + 1]
+        if (one != NONE and one < OUTER_CLEAR) or (two != NONE and two < OUTER_CLEAR):
             continue
         ball = parts.ball[j]
         lead, speed, axial = ball[0, LEAD], ball[0, SPEED], ball[0, AXIAL]
@@ -129,7 +136,7 @@ def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
             for k in range(BALL_COLUMNS):
                 ball[n, k] = 0.0
         ball[0, LEAD] = lead
-        parts.moving[j] = 0
+        parts.moving[j] = one != NONE or two != NONE
 
 
 @inlined_kernel
@@ -141,6 +148,8 @@ def change(
         parts.kind[which] = NONE
     elif event == MEET:
         j = which // 2
+        if p.margin < math.inf and becomes < OUTER_RIM:
+            becomes = met_kind(p, parts, which, becomes)
         if parts.moving[j] == 0:
             lead = parts.ball[j, 0, LEAD]
             for n in range(POWERS):
@@ -148,8 +157,18 @@ def change(
                     parts.ball[j, n, k] = 0.0
             parts.ball[j, 0, LEAD] = lead
         parts.kind[which], parts.moving[j] = becomes, 1
-        hits[j] += 1
-        look.strikes += 1.0
+        if becomes < OUTER_CLEAR:
+            hits[j] += 1
+            look.strikes += 1.0
+    elif event == EDGE:
+        parts.kind[which] = becomes
+        if becomes == NONE and p.is_slot:
+            parts.region[which // 2] = region_of(p, parts, which // 2)
+    elif event == PASS:
+        other = which + 1 if which % 2 == 0 else which - 1
+        parts.kind[other], parts.kind[which] = parts.kind[which], NONE
+        parts.contact[other, 0, DEPTH] = parts.contact[which, 0, DEPTH]
+        parts.region[which // 2] = becomes
     elif event == REGION:
         parts.region[which] = becomes
         one, two = 2 * which, 2 * which + 1
@@ -208,13 +227,15 @@ def advance(
         if state.clock < p.ramp_time:
             h = min(h, p.ramp_time - state.clock)
         end, event, which, becomes = pocket_event(p, parts, h)
+        if p.margin < math.inf:
+            end, event, which, becomes = rim_event(p, parts, h, end, event, which, becomes)
         end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
         enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
         finish(p, parts, state, end * h)
         done = length if event == NOTHING and h == length - done else done + end * h
         # What the next step may last: about twice the last ones where events end them
         state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
-        if event == STRIP:
+        if event == STRIP or (event != NOTHING and p.margin < math.inf):
             load(p, parts, state)
         if event != NOTHING:
             change(p, parts, event, which, becomes, look, hits)

@@ -25,6 +25,7 @@ from separatrix.cage.space.records import (
     GRIPPED,
     LEAD,
     NONE,
+    OUTER_CLEAR,
     PRESSED,
     PUSH_L,
     Books,
@@ -95,7 +96,7 @@ def watch(
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, BY_NOTHING)
         hit = int(np.sum(hits))
-        met = bool(np.any(parts.kind != NONE) or hit > touches)
+        met = bool(np.any((parts.kind != NONE) & (parts.kind < OUTER_CLEAR)) or hit > touches)
         touches = hit
         touched = touched or met or look.land_hits > 0.0
         if outcome == UNKNOWN:
