@@ -58,7 +58,8 @@ class SpaceBody:
     land_radius : float or None
         Where the friction of the land acts [m]; None: the pitch radius, as in the plane.
     inner_radius, outer_radius : float
-        Of the cage, between which its pockets have walls: their edges may touch the balls [m].
+        Of the cage, between which its pockets have walls: their edges may touch the balls [m]. 0 and inf: no
+        edges.
     axial_gravity : float
         Acceleration along the axis [m/s2].
     dynamic_unbalance : float
@@ -159,10 +160,40 @@ def wall_margin(cage: PlanarCage, body: SpaceBody) -> Metre:
     A wall touches a ball at its equator, at the height of the ball's centre, up to half the length of the
     pocket along the orbit.
     """
-    around, apart, _ = pocket_plays(cage, body)
-    half = body.ball_diameter / 2.0 + around + apart + 1.5 * cage.ball_diameter_scatter
-    beyond = math.sqrt(max(0.0, (body.outer_radius - half) * (body.outer_radius + half)))
-    return min(beyond - cage.pitch_radius, cage.pitch_radius - body.inner_radius)
+    half = pocket_half_length(cage, body) + 1.5 * cage.ball_diameter_scatter
+    inside = cage.pitch_radius - body.inner_radius if body.inner_radius > 0.0 else math.inf
+    return min(edge_level(body.outer_radius, half) - cage.pitch_radius, inside)
+
+
+def pocket_half_length(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Half the length of a pocket along the orbit [m]."""
+    return (body.ball_diameter + cage.pocket_clearance) / 2.0
+
+
+def edge_level(radius: Metre, along: Metre) -> Metre:
+    """Height over the axis of the cage of an edge at a radius, at a place along the orbit [m]."""
+    return math.sqrt(max(0.0, (radius - along) * (radius + along)))
+
+
+def least_play(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Half the clearance of round pockets below which an edge can touch a ball at two points at once [m].
+
+    With the ball's equator s beyond an edge at the height u, half a pocket's length b and the radius c of
+    its round part, an edge touches from c - (h^2 - s^2)^(1/2) on, and does so at one point where that is more
+    than b s/u. The cage moves by its land's clearance or its pockets'. -inf: no edge is within reach.
+    """
+    h, b = body.ball_diameter / 2.0, pocket_half_length(cage, body)
+    way = cage.land_gap if cage.guidance is not Guidance.BALL else cage.half_play
+    least = -math.inf
+    for radius, sense in ((body.outer_radius, 1.0), (body.inner_radius, -1.0)):
+        u = edge_level(radius, b)
+        highest = u if sense > 0.0 else radius
+        beyond = way + sense * (cage.pitch_radius - highest)
+        if beyond > 0.0 and u > 0.0:
+            share = b / u
+            s = min(beyond, h * share / math.hypot(1.0, share))
+            least = max(least, 0.0, share * s + math.sqrt((h - s) * (h + s)) - h)
+    return least
 
 
 def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
@@ -182,6 +213,27 @@ def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
     if cage.half_play == 0.0 and cage.pocket_shape is not PocketShape.SQUARE:
         cure = "Pockets that grip their balls are square."
         yield _check.problem(cage, "pocket_clearance", "must be > 0 for round pockets in space", cure)
+    yield from _refused_edges(cage, body)
     if cage.guidance is not Guidance.BALL and len(body.land_heights) != cage.land_count:
         got = str(len(body.land_heights))
         yield InputError("SpaceBody.land_heights", f"must be {cage.land_count}, as land_count says", got)
+
+
+def _refused_edges(cage: PlanarCage, body: SpaceBody) -> Iterator[InputError]:
+    """A ring that does not hold its balls, and pockets so tight that their edges are not single points."""
+    R, h = cage.pitch_radius, body.ball_diameter / 2.0
+    least, lost = math.hypot(R - h, pocket_half_length(cage, body)), "A ball would pass its pocket's edge."
+    if not body.outer_radius > least:
+        yield _check.problem(body, "outer_radius", f"must be > {least:.4g} [m]", lost)
+        return
+    if not body.inner_radius < R + h:
+        yield _check.problem(body, "inner_radius", f"must be < {R + h:.4g} [m]", lost)
+        return
+    (around, _, beside), tight = pocket_plays(cage, body), least_play(cage, body)
+    if cage.pocket_shape is PocketShape.SQUARE:
+        tight, around = min(tight, 0.0), min(around, beside)
+    if tight >= around:
+        slot = cage.pocket_shape is PocketShape.ELONGATED
+        rule = f"must be > {2.0 * tight:.4g} [m] where the wall of a pocket ends beside its ball"
+        cure = "The edge of a tighter one touches at two points; give it a longer wall, or square pockets."
+        yield _check.problem(cage, "pocket_axial_clearance" if slot else "pocket_clearance", rule, cure)

@@ -82,8 +82,8 @@ STRIP_COLUMNS = 13
 
 NONE, ROUND_END, FLAT_BACK, FLAT_FRONT, GRIPPED = 0, 2, -1, 1, 3
 OUTER_RIM, INNER_RIM, OUTER_CLEAR, INNER_CLEAR = 4, 5, 6, 7
-"""What a contact of a pocket is: not touching, the round part, a flat on the side of -1 or +1, both flats; the
-edge of the wall at the outer or inner surface of the cage; that edge near its ball, but clear of it."""
+"""What a contact of a pocket is: not touching, the round part, a flat on the side of -1 or +1, both flats;
+the edge of the wall at the outer or inner surface of the cage; that edge near its ball, but clear of it."""
 
 CLEAR, PRESSED, RELEASED = range(3)
 

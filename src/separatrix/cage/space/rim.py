@@ -1,16 +1,16 @@
 r"""A ball at the edge of its pocket's wall, as power series: where it touches, the force, and the friction.
 
-A wall ends where it meets the cylinder of the cage's outer or inner surface, of radius :math:`\rho`. There the
-nearest point of that edge touches the ball, at the distance :math:`|a|` from its centre, and presses by
-:math:`N = k(h - |a|)` along :math:`n = a/|a|`. With the ball at (z, t) in its pocket, at the height
-:math:`V = R - r\cdot e_r` over the axis of the cage:
+A wall ends where it meets the cylinder of the cage's outer or inner surface, of radius :math:`\rho`. There
+the nearest point of that edge, :math:`a` from the ball's centre, presses by :math:`N = k(h - |a|)` along
+:math:`n = a/|a|`. With the ball at (z, t) in its pocket, at the height :math:`V = R - r\cdot e_r` over the
+axis of the cage, :math:`a` has these parts along the axis, outward, and along the orbit:
 
-- a round part of radius c about :math:`t_0`: :math:`a = (c\sin\beta - z,\; u - V,\; X - t)` along axis, radius
-  and orbit, with :math:`X = t_0 + c\cos\beta` and :math:`u^2 = \rho^2 - X^2`, where
-  :math:`(t - t_0)\sin\beta - z\cos\beta + X\sin\beta\,(1 - V/u) = 0`, by which it is the nearest;
-- a flat across the orbit: the same with :math:`X = \mp c` at the ball's own z;
-- a flat along the orbit: the nearest point of the circle :math:`\rho`, :math:`(u - V, X - t) = (V, t)(\rho/L - 1)`
-  with :math:`L^2 = V^2 + t^2`.
+- a round part of radius c about :math:`t_0`: :math:`(c\sin\beta - z,\; u - V,\; X - t)`, with :math:`X = t_0
+  + c\cos\beta` and :math:`u^2 = \rho^2 - X^2`, where :math:`(t - t_0)\sin\beta - z\cos\beta + X\sin\beta
+  \,(1 - V/u) = 0` makes it the nearest;
+- a flat across the orbit: :math:`(0,\; u - V,\; X - t)`, with :math:`X = \pm c`;
+- a flat along the orbit: :math:`(\pm c - z,\; wV,\; wt)`, with :math:`w = \rho/L - 1` and
+  :math:`L^2 = V^2 + t^2`.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ from separatrix.compiled import inner_kernel
 from separatrix.units import Array
 
 EDGE, PASS = 5, 6
-"""Events beside those of `events`: a contact changes its kind; an edge's passes between flat and round end."""
+"""Events beside those of `events`: a contact changes its kind, or passes between a flat and a round end."""
 
 CLEARING = OUTER_CLEAR - OUTER_RIM
 
@@ -93,7 +93,7 @@ def wall_end(p: Numbers, parts: Parts, i: int, h: float, end: float) -> tuple[fl
 @inner_kernel
 def met_kind(p: Numbers, parts: Parts, i: int, kind: int) -> int:
     """What a contact becomes that a wall would meet now: that wall, or the edge beyond which the ball is."""
-    j, cage, ball = i // 2, parts.cage[0], parts.ball[i // 2, 0]
+    j, cage = i // 2, parts.cage[0]
     if math.hypot(cage[GX], cage[GY]) < p.margin:
         return kind
     place_ball(parts, j)
