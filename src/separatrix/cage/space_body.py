@@ -176,24 +176,19 @@ def edge_level(radius: Metre, along: Metre) -> Metre:
 
 
 def least_play(cage: PlanarCage, body: SpaceBody) -> Metre:
-    """Half the clearance of round pockets below which an edge can touch a ball at two points at once [m].
+    """Half the clearance of round pockets up to which two points of an edge may be as near to a ball [m].
 
-    With the ball's equator s beyond an edge at the height u, half a pocket's length b and the radius c of
-    its round part, an edge touches from c - (h^2 - s^2)^(1/2) on, and does so at one point where that is more
-    than b s/u. The cage moves by its land's clearance or its pockets'. -inf: no edge is within reach.
+    With the ball's equator s beyond an edge at the height u, and half a pocket's length b, one point is the
+    nearest where the ball is more than b s/u off the middle. The cage moves by its land's clearance, or its
+    pockets'. -inf: no edge is within reach.
     """
-    h, b = body.ball_diameter / 2.0, pocket_half_length(cage, body)
+    b, R = pocket_half_length(cage, body), cage.pitch_radius
     way = cage.land_gap if cage.guidance is not Guidance.BALL else cage.half_play
-    least = -math.inf
-    for radius, sense in ((body.outer_radius, 1.0), (body.inner_radius, -1.0)):
-        u = edge_level(radius, b)
-        highest = u if sense > 0.0 else radius
-        beyond = way + sense * (cage.pitch_radius - highest)
-        if beyond > 0.0 and u > 0.0:
-            share = b / u
-            s = min(beyond, h * share / math.hypot(1.0, share))
-            least = max(least, 0.0, share * s + math.sqrt((h - s) * (h + s)) - h)
-    return least
+    outer, inner = edge_level(body.outer_radius, b), edge_level(body.inner_radius, b)
+    plays = [b / outer * (R + way - outer)]
+    if inner > 0.0:
+        plays.append(b / inner * (body.inner_radius - R + way))
+    return max((play for play in plays if play > 0.0), default=-math.inf)
 
 
 def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
@@ -235,5 +230,5 @@ def _refused_edges(cage: PlanarCage, body: SpaceBody) -> Iterator[InputError]:
     if tight >= around:
         slot = cage.pocket_shape is PocketShape.ELONGATED
         rule = f"must be > {2.0 * tight:.4g} [m] where the wall of a pocket ends beside its ball"
-        cure = "The edge of a tighter one touches at two points; give it a longer wall, or square pockets."
+        cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
         yield _check.problem(cage, "pocket_axial_clearance" if slot else "pocket_clearance", rule, cure)
