@@ -40,6 +40,7 @@ from separatrix.cage.space.records import (
     NONE,
     PRESSED,
     PUSH,
+    RIMS,
     RUB_Q,
     RUB_R,
     SIN,
@@ -61,6 +62,7 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
+from separatrix.cage.space.rim import expand_rim
 from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
@@ -224,8 +226,11 @@ def pocket_forces(
     fx = fy = fz = ts = ta = tb = 0.0
     for b in range(parts.listed[BALLS]):
         place_pocket(p, parts, parts.active[b], n)
-    for a in range(parts.listed[CONTACTS]):
+    walls = parts.listed[CONTACTS] - parts.listed[RIMS]
+    for a in range(walls):
         expand_contact(p, parts, parts.touching[a], now, n)
+    for a in range(walls, parts.listed[CONTACTS]):
+        expand_rim(p, parts, parts.touching[a], now, n)
     for b in range(parts.listed[BALLS]):
         j = parts.active[b]
         along = axial = 0.0

@@ -168,7 +168,7 @@ def parts_of(cage: PlanarCage) -> Parts:
         rim=np.zeros((2 * Z if wall_margin(cage, body_of(cage)) < math.inf else 0, POWERS, RIM_COLUMNS)),
         touching=np.zeros(2 * Z, np.int64),
         active=np.zeros(Z, np.int64),
-        listed=np.zeros(3, np.int64),
+        listed=np.zeros(4, np.int64),
         c=np.zeros(POWERS),
         here=np.zeros((4, CAGE_COLUMNS)),
     )

@@ -41,6 +41,7 @@ from separatrix.cage.space.records import (
     PRESSED,
     PUSH_L,
     RELEASED,
+    RIMS,
     ROUND_END,
     SPEED,
     STATE,
@@ -70,19 +71,24 @@ from separatrix.units import Array
 
 
 @inlined_kernel
-def list_contacts(parts: Parts) -> None:
+def list_contacts(p: Numbers, parts: Parts) -> None:
     """List the contacts that touch and the balls that move."""
-    touching = active = 0
+    touching = active = rims = 0
     for j in range(parts.moving.size):
         if parts.moving[j] == 0:
             continue
         parts.active[active] = j
         active += 1
         for i in range(2 * j, 2 * j + 2):
-            if parts.kind[i] != NONE:
+            if parts.kind[i] != NONE and parts.kind[i] < OUTER_RIM:
                 parts.touching[touching] = i
                 touching += 1
-    parts.listed[CONTACTS], parts.listed[BALLS] = touching, active
+    if p.margin < math.inf:
+        for i in range(parts.kind.size):
+            if parts.kind[i] >= OUTER_RIM:
+                parts.touching[touching + rims] = i
+                rims += 1
+    parts.listed[CONTACTS], parts.listed[BALLS], parts.listed[RIMS] = touching + rims, active, rims
 
 
 @inlined_kernel
@@ -219,7 +225,7 @@ def advance(
         if taken > most:
             return False
         now = pace_at(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
-        list_contacts(parts)
+        list_contacts(p, parts)
         load(p, parts, state)
         expand(p, parts, now, state.reach)
         longest = step_length(p, parts)

@@ -38,7 +38,6 @@ from separatrix.cage.space.records import (
     HERE_Z,
     LEAD,
     LEAN,
-    OUTER_RIM,
     PER_FAR,
     PER_SLIDE,
     PT,
@@ -59,7 +58,6 @@ from separatrix.cage.space.records import (
     S,
     Z,
 )
-from separatrix.cage.space.rim import expand_rim
 from separatrix.compiled import inlined_kernel
 from separatrix.units import Array
 
@@ -84,8 +82,6 @@ def expand_contact(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
     """Coefficient n of the penetration of a contact, of its force, its friction and their couples."""
     if parts.kind[i] == ROUND_END:
         expand_round(p, parts, i, now, n)
-    elif parts.kind[i] >= OUTER_RIM:
-        expand_rim(p, parts, i, now, n)
     else:
         expand_flat(p, parts, i, now, n)
 

@@ -87,8 +87,9 @@ the edge of the wall at the outer or inner surface of the cage; that edge near i
 
 CLEAR, PRESSED, RELEASED = range(3)
 
-CONTACTS, BALLS, LAST = range(3)
-"""Of `Parts.listed`: how many contacts touch, how many balls move, the last power of the series."""
+CONTACTS, BALLS, LAST, RIMS = range(4)
+"""Of `Parts.listed`: how many contacts touch, how many balls move, the last power of the series; how many of
+the contacts, the last ones, are at an edge or near it."""
 
 
 class Numbers(NamedTuple):
@@ -166,7 +167,7 @@ class Parts(NamedTuple):
     contact: Array  # shape (2 ball, power, column)
     strip: Array  # shape (strip, power, column)
     rim: Array  # of contacts at an edge, shape (2 ball, power, column); no balls where there are none
-    touching: Whole  # contacts that touch, in order
+    touching: Whole  # contacts that touch, in order, and then those at an edge
     active: Whole  # balls that move, in order
     listed: Whole  # how many of both, and the last power of the series of a step
     c: Array  # room for a series
