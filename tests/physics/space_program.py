@@ -146,9 +146,10 @@ class SmallSteps:
         place = axes @ turned.inv().apply(ball - centre)
         wall = place[:2] + np.array([0.0, bore * (axes @ turned.inv().apply(away))[1] - place[1]])
         reach = float(np.hypot(*wall))
-        if cage.inner_radius <= reach <= cage.outer_radius:
+        inner, outer = cage.edges
+        if inner <= reach <= outer:
             return depth, away
-        surface = cage.outer_radius if reach > cage.outer_radius else cage.inner_radius
+        surface = outer if reach > outer else inner
         distance, direction = edge_contact(place, bore, surface)
         return cage.ball_diameter / 2.0 - distance, turned.apply(axes.T @ direction)
 

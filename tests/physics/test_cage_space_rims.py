@@ -161,7 +161,7 @@ def at_a_scale(scale, side):
 
 @pytest.mark.parametrize("side", ["outer", "inner"])
 def test_it_moves_on_edges_as_small_steps_with_exact_rotations(side):
-    """As on walls, differences fall by 4 for half the motion and half the way to the edge, within a quarter."""
+    """As on walls: differences fall by 4 for half the motion and half the way to the edge, to a quarter."""
     full, half = (differences(at_a_scale(scale, side), scale) for scale in (1.0, 0.5))
     assert full < 2e-6
     assert full / half == pytest.approx(4.0, rel=0.25)
