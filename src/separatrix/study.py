@@ -279,18 +279,23 @@ def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
 
 
 def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """The cage's ring holds the balls at their equator, lies between the grooves, and has whole pockets."""
+    """The cage's ring holds the balls, in the plane at their equator; it lies between the grooves."""
     if not cage.has_shape:
         return
     inner, outer, width = cage.inner_diameter or 0.0, cage.outer_diameter or 0.0, cage.width or 0.0
     pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
-    low, middle, high = (format_quantity(size, "m") for size in (pitch - ball, pitch, pitch + ball))
-    if not pitch - ball < inner < pitch:
-        rule = f"must lie between the bottom of the inner groove, {low}, and the pitch diameter, {middle}"
-        yield _check.problem(cage, "inner_diameter", rule, "The pocket's wall reaches the ball's equator.")
-    if not pitch < outer < pitch + ball:
-        rule = f"must lie between the pitch diameter, {middle}, and the bottom of the outer groove, {high}"
-        yield _check.problem(cage, "outer_diameter", rule, "The pocket's wall reaches the ball's equator.")
+    bottom, top = ("bottom of the inner groove", pitch - ball), ("bottom of the outer groove", pitch + ball)
+    nearest = farthest = ("pitch diameter", pitch)
+    cure = "The pocket's wall reaches the ball's equator; with motion = \"space\" it need not."
+    if cage.motion is MotionModel.SPACE:
+        nearest = ("least that holds a ball", math.hypot(pitch - ball, ball + cage.pocket_clearance))
+        farthest = top
+        cure = "Beyond it a ball passes between the edges of its pocket."
+    limits = {"inner_diameter": (inner, bottom, farthest), "outer_diameter": (outer, nearest, top)}
+    for key, (size, low, high) in limits.items():
+        if not low[1] < size < high[1]:
+            ends = (f"the {what}, {format_quantity(bound, 'm')}" for what, bound in (low, high))
+            yield _check.problem(cage, key, f"must lie between {' and '.join(ends)}", cure)
     if width <= ball + cage.pocket_clearance:
         least = format_quantity(ball + cage.pocket_clearance, "m")
         yield _check.problem(cage, "width", f"must be larger than a pocket, {least}", "Pockets are holes.")

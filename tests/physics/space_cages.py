@@ -9,8 +9,9 @@ from cages import AT_REST, TURNING
 from separatrix.cage import PlanarCage
 from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.space.ensemble import kick_speeds
-from separatrix.cage.space.history import MOTIONS, SOURCES
-from separatrix.cage.space.records import Books, Parts, books_for, land_strips, numbers, parts_of
+from separatrix.cage.space.history import MOTIONS, SOURCES, row_length
+from separatrix.cage.space.inputs import land_strips, numbers, parts_of
+from separatrix.cage.space.records import Books, Parts, books_for
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
 from separatrix.cage.space_body import SpaceBody
 from separatrix.pocket_shape import PocketShape
@@ -109,7 +110,7 @@ def course(
     )
     T, M = time_unit(cage), moving_mass(cage)
     times, at = np.linspace(0.0, duration, samples), MOTIONS + len(SOURCES)
-    rows = np.zeros((samples, at + 2 * Z + land_strips(cage)[0].size))
+    rows = np.zeros((samples, row_length(cage)))
     hits = np.zeros(Z, np.int64)
     filled = follow_run(
         p, parts, start, kick_speeds(cage, kick), cage.pocket_axial_offset, books, times / T, np.inf, rows,
@@ -125,7 +126,7 @@ def course(
         work=rows[:, MOTIONS:at] * energy,
         lead=rows[:, at : at + Z],
         axial=rows[:, at + Z : at + 2 * Z],
-        land_force=rows[:, at + 2 * Z :] * energy,
+        land_force=rows[:, at + 2 * Z : at + 2 * Z + land_strips(cage)[0].size] * energy,
         gross=np.asarray(books.works)["gross"][0] * energy,
         hits=int(hits.sum()),
         filled=int(filled),

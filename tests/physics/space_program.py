@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from separatrix.cage import PlanarCage
@@ -33,6 +34,28 @@ def bore_contact(
     across = away - height * axis
     offset = float(np.linalg.norm(across))
     return offset, height, across / offset
+
+
+def edge_contact(place: Array, bore: float, surface: float) -> tuple[float, Array]:
+    """Distance and direction of the nearest point of the edge of a bore from a ball, by search.
+
+    All in the axes of the pocket (outward, along the orbit, along the axis) from the centre of the cage; the
+    bore has its axis along the first and meets the cylinder of a radius about the third.
+    """
+
+    def away(angle: float) -> tuple[float, float, float]:
+        along, axial = bore * math.cos(angle), bore * math.sin(angle)
+        return math.sqrt(surface**2 - along**2) - place[0], along - place[1], axial - place[2]
+
+    def slope(angle: float) -> float:
+        c, s, (out, along, axial) = bore * math.cos(angle), bore * math.sin(angle), away(angle)
+        return out * c * s / math.sqrt(surface**2 - c**2) - along * s + axial * c
+
+    step = math.pi / 36.0
+    first = min((i * step for i in range(72)), key=lambda angle: sum(x * x for x in away(angle)))
+    found = np.array(away(brentq(slope, first - step, first + step, xtol=1e-13)))
+    distance = float(np.linalg.norm(found))
+    return distance, found / distance
 
 
 def sliding(
@@ -96,6 +119,8 @@ class SmallSteps:
             ball = plane.pitch_radius * out + lead * along + np.array([0.0, 0.0, axial])
             offset, _, away = bore_contact(r, turned, phi, plane.pitch_radius, ball)
             depth = offset - plane.pocket_clearance / 2.0
+            if depth > 0.0:
+                depth, away = self.touch(depth, away, r, turned, phi, ball)
             pull = np.zeros(3)
             if depth > 0.0:
                 push = plane.ball_cage_stiffness * depth
@@ -111,6 +136,22 @@ class SmallSteps:
             rates[j, 0] = -pull @ along / plane.race_damping
             rates[j, 1] = (-pull[2] - cage.groove_stiffness * axial) / cage.groove_damping
         return force, moment, rates
+
+    def touch(
+        self, depth: float, away: Array, centre: Array, turned: Rotation, angle: float, ball: Array
+    ) -> tuple[float, Array]:
+        """Depth and direction of a contact with the wall, or with its edge where the wall has ended."""
+        bore, cage = (self.plane.pocket_clearance + self.cage.ball_diameter) / 2.0, self.cage
+        axes = np.array([*ring_axes(angle), [0.0, 0.0, 1.0]])
+        place = axes @ turned.inv().apply(ball - centre)
+        wall = place[:2] + np.array([0.0, bore * (axes @ turned.inv().apply(away))[1] - place[1]])
+        reach = float(np.hypot(*wall))
+        inner, outer = cage.edges
+        if inner <= reach <= outer:
+            return depth, away
+        surface = outer if reach > outer else inner
+        distance, direction = edge_contact(place, bore, surface)
+        return cage.ball_diameter / 2.0 - distance, turned.apply(axes.T @ direction)
 
     def rates(self, t: float, state: Array) -> Array:
         """Time derivative of the state."""

@@ -20,6 +20,7 @@ from separatrix.ball_traction import BallTraction
 from separatrix.cage import RunOutcome, run_ensemble
 from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.records import Pace
+from separatrix.cage.space.inputs import numbers, parts_of
 from separatrix.cage.space.land import dent_strip, press_strip, strip_forces
 from separatrix.cage.space.pocket import expand_contact, place_pocket
 from separatrix.cage.space.records import (
@@ -43,8 +44,6 @@ from separatrix.cage.space.records import (
     VZ,
     S,
     Z,
-    numbers,
-    parts_of,
 )
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance, StabilitySettings

@@ -77,7 +77,11 @@ WRONG = [
     ({"inner_diameter": 0.058}, "outer_diameter is missing"),
     ({"inner_diameter": 0.04, "outer_diameter": 0.072, "width": 0.014}, "bottom of the inner groove"),
     ({"inner_diameter": 0.058, "outer_diameter": 0.08, "width": 0.014}, "bottom of the outer groove"),
-    ({"inner_diameter": 0.066, "outer_diameter": 0.072, "width": 0.014}, "pitch diameter"),
+    ({"inner_diameter": 0.066, "outer_diameter": 0.072, "width": 0.014}, "pitch diameter, 65 mm; got 66 mm"),
+    (
+        {"motion": MotionModel.SPACE, "inner_diameter": 0.054, "outer_diameter": 0.055, "width": 0.014},
+        "must lie between the least that holds a ball, 55.15 mm and the bottom",
+    ),
     ({"inner_diameter": 0.058, "outer_diameter": 0.072, "width": 0.01}, "larger than a pocket"),
     ({"land_width": 1e-3}, "no meaning for a cage in the plane"),
     ({"motion": MotionModel.SPACE, "land_spacing": 0.01}, "no meaning for one land"),

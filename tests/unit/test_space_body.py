@@ -30,6 +30,9 @@ BODY = [
     *[({"axial_play": value}, "axial_play must be >= 0") for value in (-1e-4, math.nan)],
     ({"friction_lever": -1e-3}, "friction_lever must lie between 0 and"),
     ({"land_radius": 0.0}, "land_radius must be > 0"),
+    ({"outer_radius": 0.0}, "outer_radius must be > 0"),
+    ({"inner_radius": math.nan}, "inner_radius must be"),
+    ({"inner_radius": 0.03, "outer_radius": 0.03}, "outer_radius must be larger than inner_radius"),
     ({"ball_spin": (1.0, math.nan, 2.0)}, "ball_spin must each be a finite number [rad/s]; got nan"),
     ({"land_heights": (math.inf,)}, "land_heights must each be a finite number [m]; got inf"),
     ({"ball_spin": (1.0, 2.0)}, "ball_spin must be three numbers [rad/s]; got 2"),
@@ -56,6 +59,31 @@ CAGES = [
     ),
     ({"land_count": 2}, "SpaceBody.land_heights must be 2, as land_count says; got 1"),
 ]
+EDGES = [
+    ("SQUARE", 6e-4, {"outer_radius": 27.5e-3}, "SpaceBody.outer_radius must be > 0.02757 [m]; got 27.5 mm"),
+    ("SQUARE", 6e-4, {"inner_radius": 38.1e-3}, "SpaceBody.inner_radius must be < 0.03806 [m]; got 38.1 mm"),
+    ("SQUARE", 0.0, {"outer_radius": 32.2e-3}, "PlanarCage.pocket_clearance must be > 0 [m] where the wall"),
+    (
+        "CYLINDRICAL",
+        4e-4,
+        {"outer_radius": 32.2e-3},
+        "pocket_clearance must be > 0.0004792 [m] where the",
+    ),
+    ("CYLINDRICAL", 4e-4, {"inner_radius": 33.8e-3}, "must be > 0.0006222 [m] where the"),
+]
+
+
+@pytest.mark.parametrize(("shape", "clearance", "radii", "words"), EDGES)
+def test_a_ring_that_cannot_hold_its_balls_is_refused(shape, clearance, radii, words):
+    """Too short a wall for any ball; and pockets so tight that their edge has two nearest points."""
+    cage = replace(
+        ON_A_LAND, land_clearance=1e-3, pocket_shape=PocketShape[shape], pocket_clearance=clearance
+    )
+    with pytest.raises(InputError) as caught:
+        in_space(cage, **radii)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    in_space(replace(cage, pocket_clearance=8e-4), outer_radius=32.2e-3)
 
 
 @pytest.mark.parametrize(("changes", "words"), CAGES)

@@ -57,6 +57,8 @@ class SpaceBody:
         Width of each land [m]; 0 is a line.
     land_radius : float or None
         Where the friction of the land acts [m]; None: the pitch radius, as in the plane.
+    inner_radius, outer_radius : float or None
+        Of the cage, between which its pockets have walls: their edges may touch the balls [m]. None: no edge.
     axial_gravity : float
         Acceleration along the axis [m/s2].
     dynamic_unbalance : float
@@ -85,6 +87,8 @@ class SpaceBody:
     land_heights: Annotated[tuple[Metre, ...], ("land",)] = (0.0,)
     land_width: Metre = 0.0
     land_radius: Metre | None = None
+    inner_radius: Metre | None = None
+    outer_radius: Metre | None = None
     axial_gravity: MetrePerSecond2 = 0.0
     dynamic_unbalance: Radian = 0.0
     added_mass: Kilogram = 0.0
@@ -108,6 +112,12 @@ class SpaceBody:
         """Distance of the pocket's friction from the pocket's centre [m]."""
         return self.ball_diameter / 2.0 if self.friction_lever is None else self.friction_lever
 
+    @property
+    def edges(self) -> tuple[Metre, Metre]:
+        """Radii between which the pockets have walls; 0 and inf where no edge is [m]."""
+        outer = math.inf if self.outer_radius is None else self.outer_radius
+        return self.inner_radius or 0.0, outer
+
 
 _NOT_NEGATIVE = ("groove_stiffness", "pivot_speed", "land_width", "added_mass", "axial_kick", "tilt_kick")
 
@@ -128,7 +138,10 @@ def _refused_limits(body: SpaceBody) -> Iterator[InputError]:
         yield _check.problem(body, "axial_play", "must be >= 0")
     if body.friction_lever is not None:
         yield from _check.between(body, "friction_lever", 0.0, 1e3)
-    yield from _check.positive(body, "land_radius", 1e-9, 1e3)
+    for name in ("land_radius", "inner_radius", "outer_radius"):
+        yield from _check.positive(body, name, 1e-9, 1e3)
+    if body.edges[0] >= body.edges[1]:
+        yield _check.problem(body, "outer_radius", "must be larger than inner_radius")
     for name, unit in (("ball_spin", "rad/s"), ("land_heights", "m")):
         wrong = [value for value in getattr(body, name) if not math.isfinite(value)]
         if wrong:
@@ -149,6 +162,43 @@ def pocket_plays(cage: PlanarCage, body: SpaceBody) -> tuple[Metre, Metre, Metre
     return half, 0.0, body.axial_play
 
 
+def wall_margin(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Offset of the cage from which on a ball may touch an edge of its pocket; negative if at rest [m].
+
+    A wall touches a ball at its equator, at the height of the ball's centre, up to half the length of the
+    pocket along the orbit.
+    """
+    half = pocket_half_length(cage, body) + 1.5 * cage.ball_diameter_scatter
+    inside = cage.pitch_radius - body.inner_radius if body.inner_radius else math.inf
+    return min(edge_level(body.edges[1], half) - cage.pitch_radius, inside)
+
+
+def pocket_half_length(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Half the length of a pocket along the orbit [m]."""
+    return (body.ball_diameter + cage.pocket_clearance) / 2.0
+
+
+def edge_level(radius: Metre, along: Metre) -> Metre:
+    """Height over the axis of the cage of an edge at a radius, at a place along the orbit [m]."""
+    return math.sqrt(max(0.0, (radius - along) * (radius + along)))
+
+
+def least_play(cage: PlanarCage, body: SpaceBody) -> Metre:
+    """Half the clearance of round pockets up to which two points of an edge may be as near to a ball [m].
+
+    With the ball's equator s beyond an edge at the height u, and half a pocket's length b, one point is the
+    nearest where the ball is more than b s/u off the middle. The cage moves by its land's clearance, or its
+    pockets'. -inf: no edge is within reach.
+    """
+    b, R = pocket_half_length(cage, body), cage.pitch_radius
+    way = cage.land_gap if cage.guidance is not Guidance.BALL else cage.half_play
+    inner, outer = (edge_level(radius, b) for radius in body.edges)
+    plays = [b / outer * (R + way - outer)]
+    if inner > 0.0:
+        plays.append(b / inner * (body.edges[0] - R + way))
+    return max((play for play in plays if play > 0.0), default=-math.inf)
+
+
 def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
     """What the motion in space leaves out, and an inertia that no body can have."""
     body = cage.space
@@ -166,6 +216,28 @@ def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
     if cage.half_play == 0.0 and cage.pocket_shape is not PocketShape.SQUARE:
         cure = "Pockets that grip their balls are square."
         yield _check.problem(cage, "pocket_clearance", "must be > 0 for round pockets in space", cure)
+    yield from _refused_edges(cage, body)
     if cage.guidance is not Guidance.BALL and len(body.land_heights) != cage.land_count:
         got = str(len(body.land_heights))
         yield InputError("SpaceBody.land_heights", f"must be {cage.land_count}, as land_count says", got)
+
+
+def _refused_edges(cage: PlanarCage, body: SpaceBody) -> Iterator[InputError]:
+    """A ring that does not hold its balls, and pockets so tight that their edges are not single points."""
+    R, h = cage.pitch_radius, body.ball_diameter / 2.0
+    least, lost = math.hypot(R - h, pocket_half_length(cage, body)), "A ball would pass its pocket's edge."
+    inner, outer = body.edges
+    if not outer > least:
+        yield _check.problem(body, "outer_radius", f"must be > {least:.4g} [m]", lost)
+        return
+    if not inner < R + h:
+        yield _check.problem(body, "inner_radius", f"must be < {R + h:.4g} [m]", lost)
+        return
+    (around, _, beside), tight = pocket_plays(cage, body), least_play(cage, body)
+    if cage.pocket_shape is PocketShape.SQUARE:
+        tight, around = min(tight, 0.0), min(around, beside)
+    if tight >= around:
+        slot = cage.pocket_shape is PocketShape.ELONGATED
+        rule = f"must be > {2.0 * tight:.4g} [m] where the wall of a pocket ends beside its ball"
+        cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
+        yield _check.problem(cage, "pocket_axial_clearance" if slot else "pocket_clearance", rule, cure)

@@ -68,6 +68,8 @@ def space_body(
         land_heights=(-spacing / 2.0, spacing / 2.0) if design.land_count == 2 else (0.0,),
         land_width=design.land_width,
         land_radius=land / 2.0 if land is not None else None,
+        inner_radius=design.inner_diameter / 2.0 if design.inner_diameter else None,
+        outer_radius=design.outer_diameter / 2.0 if design.outer_diameter else None,
         axial_gravity=design.axial_gravity,
         dynamic_unbalance=design.dynamic_unbalance,
         added_mass=design.added_mass,

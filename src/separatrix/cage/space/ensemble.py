@@ -27,13 +27,11 @@ from separatrix.cage.ensemble import (
 from separatrix.cage.planar import turned_forward
 from separatrix.cage.records import dtype_of
 from separatrix.cage.run import random_start
+from separatrix.cage.space.inputs import fastest_in_space, numbers, parts_of
 from separatrix.cage.space.records import (
     SpaceEvidence,
     body_of,
     books_for,
-    fastest_in_space,
-    numbers,
-    parts_of,
 )
 from separatrix.cage.space.run import AXIAL_WAY, DIRECTION, FIRST_LEAD, TILT_WAY, run_chunk
 from separatrix.errors import InputError

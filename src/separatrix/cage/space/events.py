@@ -27,6 +27,7 @@ from separatrix.cage.space.records import (
     LX,
     LY,
     NONE,
+    OUTER_RIM,
     PRESSED,
     PUSH_L,
     ROUND_END,
@@ -162,7 +163,7 @@ def pocket_event(p: Numbers, parts: Parts, h: float) -> tuple[float, int, int, i
         one, two = parts.kind[2 * j], parts.kind[2 * j + 1]
         noise = size + abs(ball[0, LEAD])
         for i in (2 * j, 2 * j + 1):
-            if parts.kind[i] != NONE:
+            if parts.kind[i] != NONE and parts.kind[i] < OUTER_RIM:
                 parts.contact[i, 0, WAY] = scaled(parts.contact[i], last, DEPTH, h, c)
                 start = parts.contact[i, 0, DEPTH] + GRAINS * ROUNDING * noise
                 if start > parts.contact[i, 0, WAY] or parts.kind[i] == GRIPPED:
@@ -190,7 +191,7 @@ def pocket_event(p: Numbers, parts: Parts, h: float) -> tuple[float, int, int, i
                 t = meet_round(p, parts, j, h, end)
                 if t < end:
                     end, event, which, becomes = t, MEET, 2 * j, ROUND_END
-            if p.is_slot:
+            if p.is_slot and max(one, two) < OUTER_RIM:
                 for side in (1.0, -1.0):
                     region = parts.region[j]
                     if region == side or (region == 0 and reach_t > p.apart):

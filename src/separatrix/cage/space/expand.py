@@ -40,6 +40,7 @@ from separatrix.cage.space.records import (
     NONE,
     PRESSED,
     PUSH,
+    RIMS,
     RUB_Q,
     RUB_R,
     SIN,
@@ -61,6 +62,7 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
+from separatrix.cage.space.rim import expand_rim
 from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
@@ -139,7 +141,7 @@ def turn(p: Numbers, cage: Array, now: Pace, n: int) -> None:
 
 
 @inlined_kernel
-def expand(p: Numbers, parts: Parts, now: Pace, aim: float) -> None:
+def expand(p: Numbers, parts: Parts, now: Pace, aim: float, edged: bool) -> None:
     """Fill the series of the motion from the state in their first coefficients.
 
     As far as a step of length `aim` needs them: many steps end at an event long before 14 terms are used.
@@ -152,7 +154,7 @@ def expand(p: Numbers, parts: Parts, now: Pace, aim: float) -> None:
             cage[n + 1, X + k] = cage[n, VX + k] * after
         turn(p, cage, now, n)
         place_geometry(p, cage, n + 1)
-        fx, fy, fz, ts, ta, tb = pocket_forces(p, parts, now, n)
+        fx, fy, fz, ts, ta, tb = pocket_forces(p, parts, now, n, edged)
         for i in range(parts.mode.size):
             if parts.mode[i] == CLEAR:
                 continue
@@ -218,14 +220,18 @@ def step_length(p: Numbers, parts: Parts) -> float:
 
 @inlined_kernel
 def pocket_forces(
-    p: Numbers, parts: Parts, now: Pace, n: int
+    p: Numbers, parts: Parts, now: Pace, n: int, edged: bool
 ) -> tuple[float, float, float, float, float, float]:
     """Coefficient n of the pockets' forces on the cage and of their moments over R; and of balls' motion."""
     fx = fy = fz = ts = ta = tb = 0.0
     for b in range(parts.listed[BALLS]):
         place_pocket(p, parts, parts.active[b], n)
-    for a in range(parts.listed[CONTACTS]):
+    walls = parts.listed[CONTACTS] - (parts.listed[RIMS] if edged else 0)
+    for a in range(walls):
         expand_contact(p, parts, parts.touching[a], now, n)
+    if edged:
+        for a in range(walls, parts.listed[CONTACTS]):
+            expand_rim(p, parts, parts.touching[a], now, n)
     for b in range(parts.listed[BALLS]):
         j = parts.active[b]
         along = axial = 0.0

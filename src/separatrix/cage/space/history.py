@@ -19,17 +19,15 @@ from separatrix.cage.space.ensemble import (
     run_rows,
     turned_forward_in_space,
 )
+from separatrix.cage.space.inputs import land_strips, numbers, parts_of
 from separatrix.cage.space.records import (
     SpaceEvidence,
     Works,
     body_of,
     books_for,
-    land_strips,
-    numbers,
-    parts_of,
 )
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
-from separatrix.cage.space_body import pocket_plays
+from separatrix.cage.space_body import pocket_plays, wall_margin
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import StabilitySettings
@@ -75,6 +73,9 @@ class SpaceHistory:
     contact_force, contact_angle : ndarray
         Force of each pocket on its ball [N]; where on the ball it acts: 0 in front of it, 90 deg along the
         axis, 0 without force, shape (time, ball) [rad].
+    contact_tilt : ndarray
+        How far that place is outward of the ball's equator, where an edge of the pocket touches; 0 at a wall,
+        shape (time, ball) [rad].
     land_force : ndarray
         Normal force of every strip of the lands, shape (time, strip) [N].
     strip_height : ndarray
@@ -112,6 +113,7 @@ class SpaceHistory:
     ball_axial: Annotated[Array, "m", ("time", "ball")]
     contact_force: Annotated[Array, "N", ("time", "ball")]
     contact_angle: Annotated[Array, "rad", ("time", "ball")]
+    contact_tilt: Annotated[Array, "rad", ("time", "ball")]
     land_force: Annotated[Array, "N", ("time", "strip")]
     strip_height: Annotated[Array, "m", ("strip",)]
     kinetic_energy: Annotated[Array, "J", ("time",)]
@@ -204,12 +206,17 @@ class Followed(NamedTuple):
     heat: Array
 
 
+def row_length(cage: PlanarCage) -> int:
+    """Numbers in a row of `follow_run`."""
+    edges = 4 if wall_margin(cage, body_of(cage)) < np.inf else 0
+    return MOTIONS + len(SOURCES) + (2 + edges) * cage.ball_count + land_strips(cage)[0].size
+
+
 def _followed(
     cage: PlanarCage, kick: MetrePerSecond, start: Array, times: Array, duration: Second
 ) -> Followed:
     """Follow a run from its start to times [s], or until it grows without limit."""
-    count = MOTIONS + len(SOURCES) + 2 * cage.ball_count + land_strips(cage)[0].size
-    rows, books = np.zeros((times.size, count)), books_for(1)
+    rows, books = np.zeros((times.size, row_length(cage))), books_for(1)
     hits, heat = np.zeros(cage.ball_count, np.int64), np.zeros(cage.ball_count)
     filled = follow_run(
         numbers(cage, kick),
@@ -241,7 +248,7 @@ def _history(cage: PlanarCage, start: Array, found: Followed, evidence: np.void)
     counted |= {name: float(look[key]) * energy for name, key in forces.items()}
     lead, axial = rows[:, at : at + Z], rows[:, at + Z : at + 2 * Z]
     more, angles = start[FIRST_LEAD + Z : FIRST_LEAD + 2 * Z], start[FIRST_LEAD + 2 * Z :]
-    force, angle = contact_forces(cage, rows, lead, axial, more, angles)
+    force, angle, tilt = contact_forces(cage, rows, lead, axial, more, angles)
     place, rate = geometric(cage, rows)
     return SpaceHistory(
         time=times,
@@ -259,7 +266,8 @@ def _history(cage: PlanarCage, start: Array, found: Followed, evidence: np.void)
         ball_axial=axial.copy(),
         contact_force=force,
         contact_angle=angle,
-        land_force=rows[:, at + 2 * Z :] * energy,
+        contact_tilt=tilt,
+        land_force=rows[:, at + 2 * Z : at + 2 * Z + land_strips(cage)[0].size] * energy,
         strip_height=land_strips(cage)[0],
         kinetic_energy=rows[:, 12] * energy,
         stored_energy=rows[:, 13] * energy,
@@ -290,8 +298,8 @@ def geometric(cage: PlanarCage, rows: Array) -> tuple[Array, Array]:
 
 def contact_forces(
     cage: PlanarCage, rows: Array, lead: Array, axial: Array, more: Array, angles: Array
-) -> tuple[Array, Array]:
-    """Force of each pocket on its ball [N], and its angle on the ball [rad], both shape (time, ball)."""
+) -> tuple[Array, Array, Array]:
+    """Force of each pocket on its ball [N], its angle on the ball and its tilt [rad], shape (time, ball)."""
     body = body_of(cage)
     around, apart, beside = pocket_plays(cage, body)
     cos, sin = np.cos(angles), np.sin(angles)
@@ -308,4 +316,12 @@ def contact_forces(
         far = np.hypot(t, across)
         share = np.maximum(0.0, far - around - more) / np.where(far > 0.0, far, 1.0)
         t, w = t * share, across * share
-    return cage.ball_cage_stiffness * np.hypot(t, w), np.arctan2(-w, -t) * (np.hypot(t, w) > 0.0)
+    force, angle = cage.ball_cage_stiffness * np.hypot(t, w), np.arctan2(-w, -t) * (np.hypot(t, w) > 0.0)
+    edges = rows[:, MOTIONS + len(SOURCES) + 2 * lead.shape[1] + land_strips(cage)[0].size :]
+    if edges.size == 0:
+        return force, angle, np.zeros_like(force)
+    push, axial, outward, along = np.split(edges, 4, axis=1)
+    unit = moving_mass(cage) / time_unit(cage) ** 2
+    pressed, near = push > 0.0, push >= 0.0
+    angle = np.where(near, np.arctan2(axial, along) * pressed, angle)
+    return np.where(near, push * unit, force), angle, np.arcsin(outward) * pressed

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from separatrix.cage.motion import MOST_STEPS, pace_at
 from separatrix.cage.records import POWERS, Whole
 from separatrix.cage.series import ROUNDING
@@ -24,6 +26,7 @@ from separatrix.cage.space.records import (
     CAGE_COLUMNS,
     CLEAR,
     CONTACTS,
+    DEPTH,
     DEPTH_L,
     DZ,
     FLAT_BACK,
@@ -33,9 +36,12 @@ from separatrix.cage.space.records import (
     LAST,
     LEAD,
     NONE,
+    OUTER_CLEAR,
+    OUTER_RIM,
     PRESSED,
     PUSH_L,
     RELEASED,
+    RIMS,
     ROUND_END,
     SPEED,
     STATE,
@@ -58,25 +64,31 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
+from separatrix.cage.space.rim_events import EDGE, PASS, met_kind, region_of, rim_event
 from separatrix.cage.space.tally import enter_step, kinetic
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
 
 @inlined_kernel
-def list_contacts(parts: Parts) -> None:
+def list_contacts(parts: Parts, edged: bool) -> None:
     """List the contacts that touch and the balls that move."""
-    touching = active = 0
+    touching = active = rims = 0
     for j in range(parts.moving.size):
         if parts.moving[j] == 0:
             continue
         parts.active[active] = j
         active += 1
         for i in range(2 * j, 2 * j + 2):
-            if parts.kind[i] != NONE:
+            if parts.kind[i] != NONE and parts.kind[i] < OUTER_RIM:
                 parts.touching[touching] = i
                 touching += 1
-    parts.listed[CONTACTS], parts.listed[BALLS] = touching, active
+    if edged:
+        for i in range(parts.kind.size):
+            if parts.kind[i] >= OUTER_RIM:
+                parts.touching[touching + rims] = i
+                rims += 1
+    parts.listed[CONTACTS], parts.listed[BALLS], parts.listed[RIMS] = touching + rims, active, rims
 
 
 @inlined_kernel
@@ -116,7 +128,8 @@ def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
     """Balls that touch nothing and hardly move come to rest in their orbit and their groove."""
     for b in range(parts.listed[BALLS]):
         j = parts.active[b]
-        if parts.kind[2 * j] != NONE or parts.kind[2 * j + 1] != NONE:
+        one, two = parts.kind[2 * j], parts.kind[2 * j + 1]
+        if (one != NONE and one < OUTER_CLEAR) or (two != NONE and two < OUTER_CLEAR):
             continue
         ball = parts.ball[j]
         lead, speed, axial = ball[0, LEAD], ball[0, SPEED], ball[0, AXIAL]
@@ -129,18 +142,27 @@ def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
             for k in range(BALL_COLUMNS):
                 ball[n, k] = 0.0
         ball[0, LEAD] = lead
-        parts.moving[j] = 0
+        parts.moving[j] = one != NONE or two != NONE
 
 
 @inlined_kernel
 def change(
-    p: Numbers, parts: Parts, event: int, which: int, becomes: int, look: SpaceLook, hits: Whole
+    p: Numbers,
+    parts: Parts,
+    event: int,
+    which: int,
+    becomes: int,
+    look: SpaceLook,
+    hits: Whole,
+    edged: bool,
 ) -> None:
     """Change the mode of what ended a step."""
     if event == LEAVE:
         parts.kind[which] = NONE
     elif event == MEET:
         j = which // 2
+        if edged and becomes < OUTER_RIM:
+            becomes = met_kind(p, parts, which, becomes)
         if parts.moving[j] == 0:
             lead = parts.ball[j, 0, LEAD]
             for n in range(POWERS):
@@ -148,8 +170,18 @@ def change(
                     parts.ball[j, n, k] = 0.0
             parts.ball[j, 0, LEAD] = lead
         parts.kind[which], parts.moving[j] = becomes, 1
-        hits[j] += 1
-        look.strikes += 1.0
+        if becomes < OUTER_CLEAR:
+            hits[j] += 1
+            look.strikes += 1.0
+    elif edged and event == EDGE:
+        parts.kind[which] = becomes
+        if becomes == NONE and p.is_slot:
+            parts.region[which // 2] = region_of(p, parts, which // 2)
+    elif edged and event == PASS:
+        other = which + 1 if which % 2 == 0 else which - 1
+        parts.kind[other], parts.kind[which] = parts.kind[which], NONE
+        parts.contact[other, 0, DEPTH] = parts.contact[which, 0, DEPTH]
+        parts.region[which // 2] = becomes
     elif event == REGION:
         parts.region[which] = becomes
         one, two = 2 * which, 2 * which + 1
@@ -166,6 +198,87 @@ def change(
             dent_strip(p, parts, which, 0)
             becomes = RELEASED if parts.strip[which, 0, DEPTH_L] > ROUNDING * p.land_gap else CLEAR
         parts.mode[which] = becomes
+
+
+@inlined_kernel
+def take_steps(
+    p: Numbers,
+    parts: Parts,
+    state: Motion,
+    works: Works,
+    step: Works,
+    look: SpaceLook,
+    hits: Whole,
+    heat: Array,
+    length: float,
+    ceiling: float,
+    edged: bool,
+) -> bool:
+    """Advance the cage as `advance` does, where no edge can touch a ball or where one may."""
+    done, taken = 0.0, 0
+    most = MOST_STEPS * (1.0 + length * p.fastest)
+    while done < length and kinetic(p, state) < ceiling:
+        taken += 1
+        if taken > most:
+            return False
+        now = pace_at(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
+        list_contacts(parts, edged)
+        load(p, parts, state)
+        expand(p, parts, now, state.reach, edged)
+        longest = step_length(p, parts)
+        h = min(longest, length - done)
+        if state.clock < p.ramp_time:
+            h = min(h, p.ramp_time - state.clock)
+        end, event, which, becomes = pocket_event(p, parts, h)
+        if edged:
+            end, event, which, becomes = rim_event(p, parts, h, end, event, which, becomes)
+        end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
+        enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
+        finish(p, parts, state, end * h)
+        done = length if event == NOTHING and h == length - done else done + end * h
+        # What the next step may last: about twice the last ones where events end them
+        state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
+        if event == STRIP or (edged and event != NOTHING):
+            load(p, parts, state)
+        if event != NOTHING:
+            change(p, parts, event, which, becomes, look, hits, edged)
+        settle_balls(p, parts, works)
+    look.steps += taken
+    return True
+
+
+@inner_kernel
+def advance_on_walls(
+    p: Numbers,
+    parts: Parts,
+    state: Motion,
+    works: Works,
+    step: Works,
+    look: SpaceLook,
+    hits: Whole,
+    heat: Array,
+    length: float,
+    ceiling: float,
+) -> bool:
+    """Advance a cage whose pockets have no edges: compiled without them."""
+    return bool(take_steps(p, parts, state, works, step, look, hits, heat, length, ceiling, edged=False))
+
+
+@inner_kernel
+def advance_on_edges(
+    p: Numbers,
+    parts: Parts,
+    state: Motion,
+    works: Works,
+    step: Works,
+    look: SpaceLook,
+    hits: Whole,
+    heat: Array,
+    length: float,
+    ceiling: float,
+) -> bool:
+    """Advance a cage whose pockets have edges."""
+    return bool(take_steps(p, parts, state, works, step, look, hits, heat, length, ceiling, edged=True))
 
 
 @inner_kernel
@@ -193,31 +306,6 @@ def advance(
     length, ceiling : float
         Time to advance, and the kinetic energy above which to stop.
     """
-    done, taken = 0.0, 0
-    most = MOST_STEPS * (1.0 + length * p.fastest)
-    while done < length and kinetic(p, state) < ceiling:
-        taken += 1
-        if taken > most:
-            return False
-        now = pace_at(p, state.clock)  # type: ignore[arg-type]  # reads the ramp of either record
-        list_contacts(parts)
-        load(p, parts, state)
-        expand(p, parts, now, state.reach)
-        longest = step_length(p, parts)
-        h = min(longest, length - done)
-        if state.clock < p.ramp_time:
-            h = min(h, p.ramp_time - state.clock)
-        end, event, which, becomes = pocket_event(p, parts, h)
-        end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
-        enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
-        finish(p, parts, state, end * h)
-        done = length if event == NOTHING and h == length - done else done + end * h
-        # What the next step may last: about twice the last ones where events end them
-        state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
-        if event == STRIP:
-            load(p, parts, state)
-        if event != NOTHING:
-            change(p, parts, event, which, becomes, look, hits)
-        settle_balls(p, parts, works)
-    look.steps += taken
-    return True
+    if p.margin < math.inf:
+        return bool(advance_on_edges(p, parts, state, works, step, look, hits, heat, length, ceiling))
+    return bool(advance_on_walls(p, parts, state, works, step, look, hits, heat, length, ceiling))

@@ -16,8 +16,9 @@ from separatrix.cage.ending import (
     book,
     with_cause,
 )
-from separatrix.cage.records import Whole
+from separatrix.cage.records import Pace, Whole
 from separatrix.cage.run import DRIFTS, IMPACTS, NOT_FINITE, enter_looks, last_part
+from separatrix.cage.space.expand import load
 from separatrix.cage.space.motion import advance
 from separatrix.cage.space.records import (
     AXIAL,
@@ -25,8 +26,12 @@ from separatrix.cage.space.records import (
     GRIPPED,
     LEAD,
     NONE,
+    OUTER_CLEAR,
+    OUTER_RIM,
     PRESSED,
+    PUSH,
     PUSH_L,
+    TO_Z,
     Books,
     Motion,
     Numbers,
@@ -34,6 +39,8 @@ from separatrix.cage.space.records import (
     SpaceEvidence,
     SpaceLook,
 )
+from separatrix.cage.space.rim import expand_rim
+from separatrix.cage.space.rim_events import place_ball
 from separatrix.cage.space.tally import held_energy, kinetic, total
 from separatrix.cage.step import LONGEST
 from separatrix.compiled import kernel, part, unfolded
@@ -95,7 +102,7 @@ def watch(
             cause = NOT_FINITE if going else IMPACTS
             return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, BY_NOTHING)
         hit = int(np.sum(hits))
-        met = bool(np.any(parts.kind != NONE) or hit > touches)
+        met = bool(np.any((parts.kind != NONE) & (parts.kind < OUTER_CLEAR)) or hit > touches)
         touches = hit
         touched = touched or met or look.land_hits > 0.0
         if outcome == UNKNOWN:
@@ -202,7 +209,8 @@ def follow_run(
     """Follow a run from time to time into rows of `out`; return how many were filled below the ceiling.
 
     A row: the twelve numbers of the motion, kinetic and held energy, work by source, then by ball its lead
-    and its place along the groove, then by strip of the lands its force.
+    and its place along the groove, then by strip of the lands its force; of pockets whose edges may touch
+    the balls see `enter_edges`.
     """
     now, count, works = books.state[0], parts.moving.size, books.works[0]
     begin(p, parts, start, kicks, now, axial_place)
@@ -230,4 +238,23 @@ def follow_run(
         for i_ in range(parts.mode.size):
             pressed = parts.mode[i_] == PRESSED
             row[22 + 2 * count + i_] = parts.strip[i_, 0, PUSH_L] if pressed else 0.0
+        if p.margin < np.inf:
+            load(p, parts, now)
+            enter_edges(p, parts, row[22 + 2 * count + parts.mode.size :])
     return int(times.size)
+
+
+@part
+def enter_edges(p: Numbers, parts: Parts, row: Array) -> None:
+    """Force of each edge on its ball, -1 where none is near; then its direction: axial, outward, along."""
+    count = parts.moving.size
+    row[:count], row[count:] = -1.0, 0.0
+    for i in range(2 * count):
+        if parts.kind[i] < OUTER_RIM:
+            continue
+        j = i // 2
+        place_ball(parts, j)
+        expand_rim(p, parts, i, Pace(1.0, 0.0), 0)
+        row[j] = parts.contact[i, 0, PUSH] if parts.kind[i] < OUTER_CLEAR else 0.0
+        for k in range(3):
+            row[(k + 1) * count + j] = parts.rim[i, 0, TO_Z + k]

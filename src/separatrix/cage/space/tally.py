@@ -32,6 +32,7 @@ from separatrix.cage.space.records import (
     LAST,
     LEAN,
     NONE,
+    OUTER_CLEAR,
     PRESSED,
     PUSH,
     PUSH_L,
@@ -96,7 +97,7 @@ def held_energy(p: Numbers, parts: Parts) -> float:
         ball = parts.ball[j, 0]
         total += 0.5 * (p.groove_stiffness * ball[AXIAL] ** 2 + p.ball_mass * ball[SPEED] ** 2)
     for i in range(parts.kind.size):
-        if parts.kind[i] != NONE:
+        if parts.kind[i] != NONE and parts.kind[i] < OUTER_CLEAR:
             total += 0.5 * p.stiffness * parts.contact[i, 0, DEPTH] ** 2
     for i in range(parts.mode.size):
         if parts.mode[i] != CLEAR:
@@ -151,13 +152,16 @@ def enter_step(
                 strip_work(p, parts, k, now, last, at, weight, step, look)
     # What the pockets do less what their springs have taken: their friction
     for a in range(parts.listed[CONTACTS]):
-        c = parts.contact[parts.touching[a]]
+        i = parts.touching[a]
+        c = parts.contact[i]
         before, depth = c[0, DEPTH], value_at(c, DEPTH, parts.listed[LAST], t)
+        c[0, DEPTH] = depth
+        if parts.kind[i] >= OUTER_CLEAR:
+            continue
         step.pocket_friction += 0.5 * p.stiffness * (depth - before) * (depth + before)
         if p.stiffness * (abs(before) + c[0, WAY]) > look.force_max:
             scaled(c, parts.listed[LAST], PUSH, h, parts.c)
             look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
-        c[0, DEPTH] = depth
     close(works, step)
     for k in range(parts.mode.size):
         if parts.mode[k] == PRESSED:
