@@ -148,7 +148,7 @@ RELAXED = [
 
 @pytest.mark.parametrize(("name", "mass", "returns"), RELAXED)
 def test_return_with_the_quasi_steady_push(name, mass, returns):
-    """E11: m_e u' = N - F(u) from .02 to 2 m/s; its two slow impacts differ from ours, we do not know why."""
+    """E11: m_e u' = N - F(u) from .02 to 2 m/s; its slow impacts differ, as docs/validation.md says."""
     u = np.append(0.0, np.geomspace(1e-4, 2.0, 120))
     law, (M, k) = CubicSpline(u, relaxed_push(name, u)), RING[name]
 
