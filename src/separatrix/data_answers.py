@@ -167,8 +167,9 @@ class Materials:
         fluid = self.library.fluid(name)
         if fluid is not None and any(record.kind == "fluid" for record in self.records):
             return (fluid,)
-        cure = nearest(name, [record.name for record in self.records])
-        raise InputError("NAME", "is not a record of the library", shown(name), cure)
+        kinds = {record.kind for record in self.records}
+        rule = f"is not a {kinds.pop() if len(kinds) == 1 else 'record'} of the library"
+        raise InputError("NAME", rule, shown(name), nearest(name, [record.name for record in self.records]))
 
     def show(
         self, name: str, *, temperature: Kelvin | None = None, pressure: Pascal | None = None

@@ -231,5 +231,5 @@ def test_python_has_the_same_library(folder, ask):
     assert [*ours["confidence"]] == ["measured", "guess"]
     (found,) = separatrix.materials().show("Our film", temperature=290.0)
     assert found.taken["elastic_modulus"] == 1
-    with pytest.raises(InputError, match="is not a record of the library"):
+    with pytest.raises(InputError, match="is not a film of the library"):
         films.find("Our cage")

@@ -64,7 +64,9 @@ def history(**changes) -> SpaceHistory:
         **dict.fromkeys(("position", "velocity"), np.zeros((count, 3))),
         **dict.fromkeys(("tilt", "tilt_rate", "centre", "centre_velocity", "lean", "lean_rate"), flat),
         **dict.fromkeys(("rotation", "rotation_rate", "kinetic_energy", "stored_energy"), none),
-        **dict.fromkeys(("ball_lead", "ball_axial", "contact_force", "contact_angle"), of_balls),
+        **dict.fromkeys(
+            ("ball_lead", "ball_axial", "contact_force", "contact_angle", "contact_tilt"), of_balls
+        ),
         "land_force": np.zeros((count, 2)),
         "strip_height": np.array([-5e-3, 5e-3]),
         "work": dict.fromkeys(SOURCES, none),
