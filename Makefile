@@ -10,6 +10,9 @@ SPACE := map $(CASE) --points 2 --runs 1 --jobs 1 --motion space
 PLANE := from cages import TURNING as cage; from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble; \
   few = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3); run_ensemble(cage, few); run_hard_ensemble(cage, few)
 
+# Modules compiled to bytecode are kept, which halves the start of every command.
+unexport PYTHONDONTWRITEBYTECODE
+
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
 .PHONY: demo test browser-test check bench docs clean kernels
