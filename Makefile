@@ -7,8 +7,10 @@ TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-r
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
 CASE := cryogenic-turbopump --json --quiet
 SPACE := map $(CASE) --points 2 --runs 1 --jobs 1 --motion space
-PLANE := from cages import TURNING as cage; from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble; \
-  few = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3); run_ensemble(cage, few); run_hard_ensemble(cage, few)
+PLANE := from dataclasses import replace; from cages import TURNING as cage; \
+  from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble; \
+  few = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3); \
+  run_ensemble(cage, few); run_ensemble(replace(cage, gravity=9.81), few); run_hard_ensemble(cage, few)
 
 # Modules compiled to bytecode are kept, which halves the start of every command.
 unexport PYTHONDONTWRITEBYTECODE

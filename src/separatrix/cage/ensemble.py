@@ -13,8 +13,8 @@ from separatrix.cage.closed_forms import fastest_rate, time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.cage.inputs import balls_of, coefficients
 from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.records import Evidence, Samples, dtype_of, samples_for
-from separatrix.cage.run import books_for, random_start, run_chunk
+from separatrix.cage.records import PLAIN, Evidence, Samples, dtype_of, samples_for
+from separatrix.cage.run import books_for, random_start, run_chunk, run_plain_chunk
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
 from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second
@@ -188,8 +188,10 @@ def run_rows(
     With samples of a history a run goes on to the last of them, even where its end is plain before.
     """
     balls, limits = cage.ball_count, run_limits(cage, kick, duration, least=samples is not None)
-    run_chunk(
-        coefficients(cage, kick),
+    numbers = coefficients(cage, kick)
+    follow = run_plain_chunk if PLAIN in (cast("np.void", numbers).dtype.names or ()) else run_chunk
+    follow(
+        numbers,
         balls_of(cage),
         starts,
         kick * time_unit(cage),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from separatrix.cage.features import harmonics, has_hertz_pockets, has_inertia, has_own_series, is_gripped
 from separatrix.cage.law import learn_ways
 from separatrix.cage.records import (
     AT_END,
@@ -57,14 +58,14 @@ NOTHING, PART, TOUCH, LAND_TOUCH, LAND_CLEAR, LAND_PRESS, LAND_LEAVE, SLIDE_STOP
 @inlined_kernel
 def penetration(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     """Series of the penetration of a pocket in touch."""
-    if p.own:
+    if has_own_series(p):
         copy_column(balls.depth[:, j], c)
         return
     # q_j(t) = q_j(0) e(t) + E_y cos phi_j - E_x sin phi_j + E_s - sum_k V_jk felt_k
     q, cos, sin = balls.penetration[j], balls.cosine[j], balls.sine[j]
     for n in range(1, ORDER + 1):
         c[n] = q * w[n].kept + cos * w[n].ey - sin * w[n].ex + w[n].es
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         for n in range(1, ORDER + 1):
             c[n] -= balls.drive[k, j] * w[n].felt[k]
     c[0] = q
@@ -77,10 +78,10 @@ def way(p: Coefficients, balls: Balls, w: Series, j: int, c: Array) -> None:
     gx, gy = centre(p, w)
     for n in range(1, ORDER + 1):
         c[n] = gy[n] * balls.cosine[j] - gx[n] * balls.sine[j] + w[n].s
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         for n in range(1, ORDER + 1):
             c[n] -= balls.drive[k, j] * w[n].gone[k]
-    if p.inertial:
+    if has_inertia(p):
         subtract_way(balls, j, c)
 
 
@@ -101,7 +102,7 @@ def learn_wave(c: Array, k: int, waves: Array) -> None:
 def bend_of(p: Coefficients, balls: Balls, bound: Array, j: int) -> float:
     """Bound of the fourth derivative of that way in one half of the step."""
     total = 0.0
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         total += abs(balls.drive[k, j]) * bound[k]
     return total
 
@@ -131,9 +132,9 @@ def enqueue(
 @inlined_kernel
 def leave_balls(p: Coefficients, balls: Balls, w: Series, count: int, room: Room) -> tuple[int, float]:
     """Queue the pockets that may leave their balls; return how many, and the largest penetration."""
-    filled, deepest, most, waves = 0, 0.0, 0.0, 2 * p.harmonics
+    filled, deepest, most, waves = 0, 0.0, 0.0, 2 * harmonics(p)
     size = abs(w[0].s) + abs(w[0].x) + abs(w[0].y)
-    if p.own:
+    if has_own_series(p):
         return leave_own(p, balls, count, size, room)
     ex, ey, es, kept = knots(w.ex), knots(w.ey), knots(w.es), knots(w.kept)
     for k in range(waves):
@@ -177,7 +178,7 @@ def leave_own(p: Coefficients, balls: Balls, count: int, size: float, room: Room
         sign, noise = float(balls.side[j]), size + balls.play[j]
         grip = GRAINS * ROUNDING * noise - p.onset
         start = sign * balls.penetration[j] + grip
-        if p.hertz != 0.0:
+        if has_hertz_pockets(p):
             at = (start, 0.0, start, 0.0, start, 0.0)
             filled, deepest = enqueue(room, filled, 0, j, at, np.inf, np.inf, noise), np.inf
             room.depths[i] = np.inf
@@ -259,8 +260,8 @@ def meet_balls(
     filled: int,
 ) -> int:
     """Queue the pockets that may meet their balls; return how many are queued."""
-    waves, inertial = 2 * p.harmonics, p.inertial
-    if p.hertz != 0.0:
+    waves, inertial = 2 * harmonics(p), has_inertia(p)
+    if has_hertz_pockets(p):
         off = late_off = np.inf
     if waves == 0:
         reach_balls(balls, x, y, s, off, late_off, room.beyond)
@@ -303,7 +304,7 @@ def meet_balls(
 @inlined_kernel
 def place_all(p: Coefficients, w: Series, t: float, room: Room) -> Place:
     """Centre, slip and what pockets in touch follow, at a time; the waves go into their row `AT_END`."""
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         room.felt[AT_END, k] = value(w.felt[:, k], t)
         room.gone[AT_END, k] = value(w.gone[:, k], t)
     gx, gy = centre(p, w)
@@ -315,7 +316,7 @@ def place_all(p: Coefficients, w: Series, t: float, room: Room) -> Place:
 def left_at(p: Coefficients, balls: Balls, row: Candidate, now: Place, t: float, room: Room) -> float:
     """What is queued, from the motion at a time by `place_all`: falls to zero at its event."""
     j = row.ball
-    if p.own:
+    if has_own_series(p):
         return own_left_at(p, balls, row, now, t, room)
     x, y, s, ex, ey, es, kept = now
     cos, sin = balls.cosine[j], balls.sine[j]
@@ -380,7 +381,7 @@ def pocket_change(
     room: Room,
 ) -> tuple[float, int, int, float]:
     """First time a pocket leaves its ball or meets one, what happens, to which ball, and the most depth."""
-    if p.gripped:
+    if is_gripped(p):
         room.depths[:] = np.inf
         return 1.0, NOTHING, -1, np.inf
     filled, deepest, count = 0, 0.0, state.touching

@@ -6,6 +6,7 @@ import math
 
 from separatrix.cage.ending import Look
 from separatrix.cage.events import penetration
+from separatrix.cage.features import harmonics, has_hertz_pockets, has_inertia, has_unbalance
 from separatrix.cage.records import (
     CLEAR,
     RELEASED,
@@ -50,7 +51,7 @@ def enter_step(
     for i in range(FEW + 1):
         m = i if i < FEW else LAST
         t, x, y, vx, vy, vs = at.t[m], at.x[m], at.y[m], at.vx[m], at.vy[m], at.vs[m]
-        if p.eccentricity != 0.0:
+        if has_unbalance(p):
             x, y = at.gx[m], at.gy[m]
         far = x * x + y * y
         going = x * vx + y * vy
@@ -79,7 +80,7 @@ def enter_step(
     look.kinetic, look.speed_squared, look.turning, look.offset_max = 0.5 * twice, squared, turned, farthest
     look.offset, look.offset_squared, look.swept = offset, offset_squared, swept
     look.mean_x, look.mean_y = mean_x, mean_y
-    if p.hertz != 0.0 or p.stiffness * deepest > look.force_max:
+    if has_hertz_pockets(p) or p.stiffness * deepest > look.force_max:
         enter_force(p, balls, w, state.touching, end, look, room)
     if state.land != CLEAR and state.land != RELEASED:
         copy_column(w.normal, room.c)
@@ -98,7 +99,7 @@ def enter_force(
     """Add the largest forces of the pockets in touch, up to `end`, to the tally of its look."""
     c = room.c
     for i in range(count):
-        if p.hertz == 0.0 and p.stiffness * room.depths[i] <= look.force_max:
+        if not has_hertz_pockets(p) and p.stiffness * room.depths[i] <= look.force_max:
             continue
         j = balls.touching[i]
         penetration(p, balls, w, j, c)
@@ -106,7 +107,7 @@ def enter_force(
         if balls.side[j] == 2:
             sign = 1.0 if balls.penetration[j] > 0.0 else -1.0
         deepest = peak(c, sign, end)
-        force = p.hertz * deepest**1.5 if p.hertz != 0.0 else p.stiffness * deepest
+        force = p.hertz * deepest**1.5 if has_hertz_pockets(p) else p.stiffness * deepest
         look.force_max = max(look.force_max, force)
 
 
@@ -115,7 +116,7 @@ def pocket_energy(p: Coefficients, depth: float) -> float:
     """Energy in the spring of a pocket, over the mass."""
     # k q^2 / 2, or 2/5 K (q^2.5 - onset^2.5)
     size = abs(depth)
-    if p.hertz != 0.0:
+    if has_hertz_pockets(p):
         return float(0.4 * p.hertz * (size**2.5 - p.onset**2.5))
     return 0.5 * p.stiffness * size * size
 
@@ -150,7 +151,7 @@ def record(
         speed = samples.speed[state.rows]
         t = min(end, max(0.0, (row.clock - state.clock) / h))
         x, y, row.vx, row.vy, slip, row.vs = motion_at(w, t)
-        if p.eccentricity != 0.0:
+        if has_unbalance(p):
             x, y = value(w.gx, t), value(w.gy, t)
         row.x, row.y, row.s = x, y, slip
         copy_work(ledger, samples.work[state.rows])
@@ -163,7 +164,7 @@ def record(
         for j in range(balls.play.size):
             lead[j] = balls.lead[j]
             if balls.side[j] == 0:
-                for k in range(2 * p.harmonics):
+                for k in range(2 * harmonics(p)):
                     lead[j] += balls.drive[k, j] * value(w.gone[:, k], t)
             if balls.own_speed[j] != 0.0 and balls.side[j] == 0:
                 lead[j] += moving_at(balls, WAY, balls.slot[j], t)
@@ -176,9 +177,9 @@ def record(
             edge = 0.0 if balls.side[j] == 2 else balls.side[j] * balls.play[j]
             lead[j] = y * balls.cosine[j] - x * balls.sine[j] + slip - edge - depth
             force[j] = p.stiffness * depth
-            if p.hertz != 0.0:
+            if has_hertz_pockets(p):
                 force[j] = p.hertz * depth * math.sqrt(abs(depth))
             speed[j] = p.yielding * (now.share + now.rise * h * t) * force[j]
-            if p.inertial:
+            if has_inertia(p):
                 speed[j] = moving_at(balls, SPEED, i, t)
         state.rows += 1

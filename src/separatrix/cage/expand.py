@@ -17,6 +17,14 @@ Symbols are those of docs/theory/cage.md; in a ramp all speeds, and the yielding
 
 from __future__ import annotations
 
+from separatrix.cage.features import (
+    harmonics,
+    has_gravity,
+    has_own_series,
+    has_unbalance,
+    needs_frame,
+    needs_rotation,
+)
 from separatrix.cage.land import land_geometry, push_land, rub_land, slide_speed
 from separatrix.cage.records import (
     CLEAR,
@@ -68,9 +76,9 @@ def expand(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, ro
     turning, second, radius = p.turning * share, (p.turning * share) ** 2, p.radius
     stiffness, friction, swiftness = p.stiffness, p.friction, p.swiftness
     yielding, softer = p.yielding * p.stiffness * share, p.yielding * p.stiffness * rise
-    linear, own = not p.own and count > 0, p.own and count + state.coasting > 0
-    rotating, leaning, framed, waves = p.needs_rotation, p.eccentricity != 0.0, p.needs_frame, 2 * p.harmonics
-    ramped, heavy, pressed = rise != 0.0, p.gravity != 0.0, land != CLEAR and land != RELEASED
+    linear, own = not has_own_series(p) and count > 0, has_own_series(p) and count + state.coasting > 0
+    rotating, leaning, framed, waves = needs_rotation(p), has_unbalance(p), needs_frame(p), 2 * harmonics(p)
+    ramped, heavy, pressed = rise != 0.0, has_gravity(p), land != CLEAR and land != RELEASED
     if linear:
         gather(balls, waves, count, sums)
     cc, cs, ss, c, s, qc, qs, qq = sums.cc, sums.cs, sums.ss, sums.c, sums.s, sums.qc, sums.qs, sums.q
@@ -249,7 +257,7 @@ def holding_force(p: Coefficients, w: Series, now: Pace, n: int) -> float:
     rub_land(p, w, n)
     after = AFTER[n]
     twist = w[n].torque
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         twist += centre_torque(w, p.eccentricity, p.radius, n)
     w[n + 1].vx = (w[n].fx + w[n].frame_x) * after
     w[n + 1].vy = (w[n].fy + w[n].frame_y) * after
@@ -257,7 +265,7 @@ def holding_force(p: Coefficients, w: Series, now: Pace, n: int) -> float:
     later = AFTER[n + 1]
     w[n + 2].x, w[n + 2].y, w[n + 2].s = w[n + 1].vx * later, w[n + 1].vy * later, w[n + 1].vs * later
     lever = p.land_side
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         rotate(w, p.radius, n + 2)
         place_centre(w, p.eccentricity, n + 2)
         lever -= p.eccentricity * (w[0].cos * w[0].nx + w[0].sin * w[0].ny) / p.radius

@@ -9,7 +9,8 @@ import numpy as np
 
 from separatrix.ball_traction import MOST_ELEMENTS
 from separatrix.cage.closed_forms import fastest_rate, rebound_damping, time_unit
-from separatrix.cage.records import BENT, LANES, POWERS, WAVES, Balls, Coefficients, dtype_of
+from separatrix.cage.features import is_plain
+from separatrix.cage.records import BENT, LANES, POWERS, WAVES, Balls, Coefficients, dtype_of, plain_dtype
 from separatrix.study import Guidance
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ its speed by the last terms of the series. Unbounded decay would end in denormal
 
 
 def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
-    """Numbers of a cage as a record, which kernels hand on by its address instead of copying 29 numbers."""
+    """Numbers of a cage as a record, which kernels pass on by its address; of a plain cage with `PLAIN`."""
     T, M, R = time_unit(cage), cage.mass, cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     tilt = cage.pocket_tilt[0]
@@ -81,6 +82,8 @@ def coefficients(cage: PlanarCage, kick: MetrePerSecond) -> Coefficients:
         coast_end=COAST_END * SLOWEST * kick * T,
         coast_time=1.0 / (damper + sum(slopes)) if cage.traction is not None else 0.0,
     )
+    if is_plain(numbers):
+        return cast("Coefficients", np.array([(*numbers, True)], plain_dtype())[0])
     return cast("Coefficients", np.array([tuple(numbers)], dtype_of(Coefficients))[0])
 
 

@@ -18,6 +18,7 @@ from separatrix.cage.events import (
     SLIDE_START,
     SLIDE_STOP,
 )
+from separatrix.cage.features import is_out_of_round
 from separatrix.cage.records import CLEAR, FORWARD, ORDER, RELEASED, STICK, Coefficients, Pace, Room, Series
 from separatrix.cage.series import THIRD, Knots, centre, copy_column, first_zero, larger, product
 from separatrix.compiled import inlined_kernel, inner_kernel
@@ -47,7 +48,7 @@ def land_geometry(p: Coefficients, w: Series, lobes: Array, n: int) -> None:
     w[n].depth = w[n].distance
     if n == 0:
         w[0].depth -= p.land_gap
-    if p.roundness != 0.0:
+    if is_out_of_round(p):
         turn_lobes(p, w, lobes, n)
         w[n].depth += p.roundness * w[n].lobe_cos
 
@@ -80,7 +81,7 @@ def push_land(p: Coefficients, w: Series, n: int) -> None:
     w[n].normal = p.land_stiffness * w[n].depth + p.land_damping * (n + 1) * w[n + 1].depth
     w[n].fx -= product(w.normal, w.nx, n)
     w[n].fy -= product(w.normal, w.ny, n)
-    if p.roundness != 0.0:
+    if is_out_of_round(p):
         # F = -P grad(delta) with grad(delta) = n - a m sin(m beta)/|r| t; its moment about the centre is
         # -P d(delta)/d(theta)
         a = p.roundness * p.lobes
@@ -179,7 +180,7 @@ def meet_land(
         return end, kind
     gx, gy = centre(p, w)
     c = room.c
-    if p.roundness == 0.0:
+    if not is_out_of_round(p):
         # Met where |r|^2 = c_g^2
         near = math.sqrt(gx[0] ** 2 + gy[0] ** 2)
         for n in range(ORDER + 1):

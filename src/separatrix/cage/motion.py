@@ -18,6 +18,16 @@ from separatrix.cage.events import (
 )
 from separatrix.cage.evidence import enter_step, record
 from separatrix.cage.expand import expand
+from separatrix.cage.features import (
+    harmonics,
+    has_hertz_pockets,
+    has_inertia,
+    has_own_series,
+    has_unbalance,
+    is_ramped,
+    needs_frame,
+    needs_rotation,
+)
 from separatrix.cage.land import land_change, land_geometry, slide_speed
 from separatrix.cage.records import (
     BACKWARD,
@@ -53,7 +63,7 @@ MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
 @inlined_kernel
 def pace_at(p: Coefficients, clock: float) -> Pace:
     """Share of the full speed at a time, and its rate."""
-    if clock >= p.ramp_time:
+    if not is_ramped(p) or clock >= p.ramp_time:
         return Pace(1.0, 0.0)
     rise = (1.0 - p.ramp_start) / p.ramp_time
     return Pace(p.ramp_start + rise * clock, rise)
@@ -77,22 +87,22 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
     start = w[0]
     start.x, start.y, start.vx, start.vy = state.x, state.y, state.vx, state.vy
     start.s, start.vs = state.s, state.vs
-    if p.needs_rotation:
+    if needs_rotation(p):
         theta = state.s / p.radius
         start.cos, start.sin = math.cos(theta), math.sin(theta)
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         start.gx = start.x - p.eccentricity * start.cos
         start.gy = start.y - p.eccentricity * start.sin
-    if p.needs_frame:
+    if needs_frame(p):
         angle = frame_angle(p, state.clock)
-        for h in range(max(1, p.harmonics)):
+        for h in range(max(1, harmonics(p))):
             start.frame[2 * h] = math.cos((h + 1) * angle)
             start.frame[2 * h + 1] = math.sin((h + 1) * angle)
-    if p.own:
+    if has_own_series(p):
         for i in range(state.touching):
             j = balls.touching[i]
             balls.depth[0, j] = balls.penetration[j]
-    if p.inertial:
+    if has_inertia(p):
         begin_moving(balls, state)
 
 
@@ -100,22 +110,22 @@ def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
 def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pressed: bool) -> None:
     """Make the step the unit of time of all series that are looked at."""
     power, count = h, state.touching
-    if p.inertial:
+    if has_inertia(p):
         rescale_balls(w, balls.moving, count + state.coasting, h)
     for n in range(1, ORDER + 1):
         t = w[n]
         t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
         t.s, t.vs = t.s * power, t.vs * power
-        if count > 0 and not p.own:
+        if count > 0 and not has_own_series(p):
             t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
         elif count > 0:
             for i in range(count):
                 balls.depth[n, balls.touching[i]] *= power
                 balls.force[n, balls.touching[i]] *= power
-        if p.needs_rotation:
+        if needs_rotation(p):
             t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
-        if p.needs_frame:
-            for k in range(max(2, 2 * p.harmonics)):
+        if needs_frame(p):
+            for k in range(max(2, 2 * harmonics(p))):
                 t.frame[k] *= power
                 t.felt[k] *= power
                 t.gone[k] *= power
@@ -131,7 +141,7 @@ def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
     # v_s = t . dr_g/dt + q [ds/dt - (omega_ring - Omega) R], dr_g/dt = v + epsilon d(theta)/dt (sin, -cos)
     start = w[0]
     gx, gy, vx, vy = start.x, start.y, start.vx, start.vy
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         gx, gy = start.gx, start.gy
         rate = p.eccentricity * start.vs / p.radius
         vx, vy = vx + rate * start.sin, vy - rate * start.cos
@@ -183,7 +193,7 @@ def land_energy(p: Coefficients, balls: Balls, state: State, w: Series, room: Ro
 def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
     """Place of pocket j along the circumference, against a ball without lead."""
     x, y = state.x, state.y
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         x -= p.eccentricity * math.cos(state.s / p.radius)
         y -= p.eccentricity * math.sin(state.s / p.radius)
     return float(y * balls.cosine[j] - x * balls.sine[j] + state.s)
@@ -205,7 +215,7 @@ def finish_step(
     state.x, state.y, state.s = at.x[LAST], at.y[LAST], value(w.s, end)
     state.vx, state.vy, state.vs = at.vx[LAST], at.vy[LAST], at.vs[LAST]
     state.clock += end * h
-    if p.own:
+    if has_own_series(p):
         for i in range(state.touching):
             j = balls.touching[i]
             balls.penetration[j] = value(balls.depth[:, j], end)
@@ -214,15 +224,15 @@ def finish_step(
         for i in range(state.touching):
             j = balls.touching[i]
             q = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
-            for k in range(2 * p.harmonics):
+            for k in range(2 * harmonics(p)):
                 q -= balls.drive[k, j] * value(w.felt[:, k], end)
             balls.penetration[j] = q
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         gone = value(w.gone[:, k], end)
         for j in range(balls.play.size):
             if balls.side[j] == 0:
                 balls.lead[j] += balls.drive[k, j] * gone
-    if p.inertial:
+    if has_inertia(p):
         move_balls(p, balls, state, end, now.share, ledger)
 
 
@@ -233,12 +243,12 @@ def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whol
     side = 1 if ball < balls.play.size else -1
     balls.side[j] = side
     balls.penetration[j] = place_of(p, balls, state, j) - balls.lead[j] - side * balls.play[j]
-    if p.hertz != 0.0:
+    if has_hertz_pockets(p):
         balls.penetration[j] = side * p.onset
     balls.touching[state.touching] = j
     state.touching += 1
     hits[j] += 1
-    if p.inertial:
+    if has_inertia(p):
         state.coasting = dropped(balls.coasting, state.coasting, j)
 
 
@@ -247,9 +257,9 @@ def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h
     """Take a ball off the list of those in touch: it stays where it was left, or coasts."""
     side = balls.side[j]
     balls.lead[j] = place_of(p, balls, state, j) - side * balls.play[j] - balls.penetration[j]
-    if p.hertz != 0.0 and not p.inertial:
+    if has_hertz_pockets(p) and not has_inertia(p):
         follows = state.vy * balls.cosine[j] - state.vx * balls.sine[j] + state.vs
-        for k in range(2 * p.harmonics):
+        for k in range(2 * harmonics(p)):
             follows -= balls.drive[k, j] * slope(w.gone[:, k], end) / h
         if side * follows > 0.0:
             # The pocket follows more slowly than the force at the onset drives the ball: without a distance
@@ -257,7 +267,7 @@ def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h
             balls.lead[j] += 0.5 * side * p.onset
     balls.side[j] = 0
     state.touching = dropped(balls.touching, state.touching, j)
-    if p.inertial:
+    if has_inertia(p):
         balls.coasting[state.coasting] = j
         state.coasting += 1
 
@@ -292,7 +302,7 @@ def advance(
         Room for a step.
     """
     done, taken = 0.0, 0
-    most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if p.hertz != 0.0 else 1.0)
+    most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if has_hertz_pockets(p) else 1.0)
     gx, gy = centre(p, w)
     while done < length and kinetic(p, state) < ceiling:
         taken += 1

@@ -333,6 +333,16 @@ class Room(NamedTuple):
     lobes: Array  # powers of the lobes, shape (power, 2 lobe)
 
 
+PLAIN = "plain"
+"""Field that the numbers of a plain cage have beyond those of `Coefficients`: it makes their type another."""
+
+
+def plain_dtype() -> np.dtype[np.void]:
+    """Type of the record of a plain cage, see `features`."""
+    usual = dtype_of(Coefficients)
+    return np.dtype([*((name, usual[name]) for name in usual.names or ()), (PLAIN, np.bool_)])
+
+
 @cache
 def dtype_of(kind: Hashable) -> np.dtype[np.void]:
     """Type of the structured array of a record; an array within it has the length `WAVES`, or its `SIZE`."""

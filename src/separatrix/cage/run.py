@@ -25,6 +25,7 @@ from separatrix.cage.ending import (
     with_cause,
 )
 from separatrix.cage.evidence import pocket_energy
+from separatrix.cage.features import is_gripped
 from separatrix.cage.motion import advance, kinetic, land_energy
 from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.cage.records import (
@@ -223,7 +224,7 @@ def run_one(
     """
     state, ledger, looks, w = books.state[run], books.ledger[run], books.looks, books.series
     balls.side[:], balls.touching[:], balls.own_speed[:] = 0, 0, 0.0
-    if p.gripped:
+    if is_gripped(p):
         balls.side[:] = 2
         balls.penetration[:] = -balls.lead
         balls.touching[:] = np.arange(balls.play.size)
@@ -302,8 +303,8 @@ def enter_end(
     out.rubbing_speed = rubbed / pressed / p.unit if pressed > 0.0 else 0.0
 
 
-@kernel
-def run_chunk(
+@unfolded
+def follow_all(
     p: Coefficients,
     balls: Balls,
     starts: Array,
@@ -326,6 +327,38 @@ def run_chunk(
         balls.cosine[:], balls.sine[:], balls.penetration[:] = np.cos(angle), np.sin(angle), 0.0
         balls.lead[:], balls.play[:] = start[1 : 1 + count], start[1 + count : 1 + 2 * count]
         run_one(p, balls, start[0], kick, books, i, limits, samples, out[i], hits[i])
+
+
+@kernel
+def run_chunk(
+    p: Coefficients,
+    balls: Balls,
+    starts: Array,
+    kick: float,
+    books: Books,
+    limits: Limits,
+    samples: Samples,
+    out: Sequence[Evidence],
+    hits: Whole,
+) -> None:
+    """Run any cage, see `follow_all`."""
+    follow_all(p, balls, starts, kick, books, limits, samples, out, hits)
+
+
+@kernel
+def run_plain_chunk(
+    p: Coefficients,
+    balls: Balls,
+    starts: Array,
+    kick: float,
+    books: Books,
+    limits: Limits,
+    samples: Samples,
+    out: Sequence[Evidence],
+    hits: Whole,
+) -> None:
+    """Run a plain cage, see `features` and `follow_all`: a kernel that is cached has one signature only."""
+    follow_all(p, balls, starts, kick, books, limits, samples, out, hits)
 
 
 @lru_cache(maxsize=512)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from separatrix.cage.features import harmonics, has_unbalance
 from separatrix.cage.records import ORDER, POWERS, Balls, Coefficients, Series
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
@@ -81,7 +82,7 @@ def slope(c: Array, t: float) -> float:
 @inlined_kernel
 def centre(p: Coefficients, w: Series) -> tuple[Array, Array]:
     """Series of the geometric centre."""
-    return (w.gx, w.gy) if p.eccentricity != 0.0 else (w.x, w.y)
+    return (w.gx, w.gy) if has_unbalance(p) else (w.x, w.y)
 
 
 @inlined_kernel
@@ -237,7 +238,7 @@ def bends(c: Array) -> tuple[float, float]:
 def gone_at(p: Coefficients, balls: Balls, knot: Array, j: int) -> float:
     """How far ball j has gone at a knot by its free speed, or how fast it goes."""
     total = 0.0
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         total += balls.drive[k, j] * knot[k]
     return total
 

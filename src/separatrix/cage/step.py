@@ -4,6 +4,14 @@ from __future__ import annotations
 
 import math
 
+from separatrix.cage.features import (
+    harmonics,
+    has_hertz_pockets,
+    has_inertia,
+    has_own_series,
+    is_out_of_round,
+    is_ramped,
+)
 from separatrix.cage.records import CLEAR, ORDER, RELEASED, Balls, Coefficients, Pace, Series, State
 from separatrix.cage.traction import fastest_ball
 from separatrix.compiled import inlined_kernel
@@ -29,12 +37,12 @@ SHORT = 0.2
 @inlined_kernel
 def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
     """Coefficient n of the force of a pocket in touch."""
-    if p.own:
+    if has_own_series(p):
         return float(balls.force[n, j])
     depth: float = (
         balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
     )
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         depth -= balls.drive[k, j] * w[n].felt[k]
     return p.stiffness * depth
 
@@ -54,10 +62,10 @@ def step_length(p: Coefficients, balls: Balls, w: Series, state: State, most: fl
         j = balls.touching[i]
         last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
         before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
-    if p.inertial:
+    if has_inertia(p):
         moves, ends, ends_before = fastest_ball(balls.moving, state.touching + state.coasting)
         speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
-    scale = (HERTZ_PRECISION if p.hertz != 0.0 else PRECISION) * speed
+    scale = (HERTZ_PRECISION if has_hertz_pockets(p) else PRECISION) * speed
     # |v_n| h^n = scale, for the last two terms
     h, power = most, most ** (ORDER - 1)
     if last * power * h > scale:
@@ -86,14 +94,14 @@ def distance_step(p: Coefficients, w: Series, share: float) -> float:
 def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
     """Time for which the series may be used: their own, and up to the next time at which something is due."""
     h = left
-    if state.touching > 0 and not p.own:
+    if state.touching > 0 and not has_own_series(p):
         # What is left of a penetration and what is new cancel: of more than this too little is left.
         h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
-    if p.inertial and state.touching + state.coasting > 0:
+    if has_inertia(p) and state.touching + state.coasting > 0:
         # Of a speed that has decayed to less a series of this length has nothing left
         h = min(h, SLOWED * p.coast_time * now.share)
-    if state.clock < p.ramp_time:
+    if is_ramped(p) and state.clock < p.ramp_time:
         h = min(h, p.ramp_time - state.clock)
-    if state.land == RELEASED or (state.land == CLEAR and p.roundness != 0.0):
+    if state.land == RELEASED or (state.land == CLEAR and is_out_of_round(p)):
         h = min(h, distance_step(p, w, now.share))
     return step_length(p, balls, w, state, h)

@@ -8,6 +8,7 @@ that no pocket touches coasts by itself until it is at rest in its free orbit.
 
 from __future__ import annotations
 
+from separatrix.cage.features import harmonics, has_hertz_pockets, has_inertia
 from separatrix.cage.law import LAST_ROW, blocks, coast, lanes_at
 from separatrix.cage.records import (
     AT_END,
@@ -92,7 +93,7 @@ def push_balls(p: Coefficients, balls: Balls, w: Series, count: int, n: int) -> 
     for i in range(count):
         j, b, m = balls.touching[i], i // LANES, i % LANES
         force = k * balls.moving[b, DEPTH, n, m]
-        for wave in range(2 * p.harmonics):
+        for wave in range(2 * harmonics(p)):
             balls.moving[b, DEPTH, n + 1, m] -= balls.drive[wave, j] * w[n + 1].gone[wave]
         balls.force[n, j], balls.depth[n + 1, j] = force, balls.moving[b, DEPTH, n + 1, m]
         sum_cos += force * balls.cosine[j]
@@ -110,16 +111,16 @@ def own_forces(
     gx, gy = centre(p, w)
     sum_cos = sum_sin = total = 0.0
     after, count = 1.0 / (n + 1), state.touching
-    if p.inertial:
+    if has_inertia(p):
         coast(p, balls.moving, count, count + state.coasting, now, n)
-        if p.hertz == 0.0:
+        if not has_hertz_pockets(p):
             return push_balls(p, balls, w, count, n)
     for i in range(count):
         j = balls.touching[i]
         # N_j = K |q_j|^1.5 sign q_j, or k q_j
-        force = hertz_power(p, balls, j, n) if p.hertz != 0.0 else p.stiffness * balls.depth[n, j]
+        force = hertz_power(p, balls, j, n) if has_hertz_pockets(p) else p.stiffness * balls.depth[n, j]
         balls.force[n, j] = force
-        if p.inertial:
+        if has_inertia(p):
             # m_e du_j/dt = N_j - F(u_j), and dq_j/dt = d(place_j)/dt - u_j, less the free speed
             speed, lane = balls.moving[i // LANES, SPEED], i % LANES
             give = speed[n, lane]
@@ -132,12 +133,12 @@ def own_forces(
         balls.depth[n + 1, j] = (
             gy[n + 1] * balls.cosine[j] - gx[n + 1] * balls.sine[j] + w[n + 1].s - give * after
         )
-        for k in range(2 * p.harmonics):
+        for k in range(2 * harmonics(p)):
             balls.depth[n + 1, j] -= balls.drive[k, j] * w[n + 1].gone[k]
         sum_cos += force * balls.cosine[j]
         sum_sin += force * balls.sine[j]
         total += force
-    if p.inertial:
+    if has_inertia(p):
         w[n].ex, w[n].ey = sum_cos, sum_sin
     # F = sum_j -N_j (e_t + sigma f e_r),  T / (M R) = -sum_j N_j
     return sum_sin - p.friction * sum_cos, -sum_cos - p.friction * sum_sin, -total
@@ -271,7 +272,7 @@ def dropped(list_of: Whole, count: int, j: int) -> int:
 def ball_energy(p: Coefficients, balls: Balls, state: State) -> float:
     """Kinetic energy of the balls beyond their free orbits, over the mass of the cage."""
     squares = 0.0
-    if p.inertial:
+    if has_inertia(p):
         for i in range(state.touching):
             squares += balls.own_speed[balls.touching[i]] ** 2
         for i in range(state.coasting):

@@ -10,6 +10,14 @@ import math
 
 import numpy as np
 
+from separatrix.cage.features import (
+    harmonics,
+    has_gravity,
+    has_hertz_pockets,
+    has_inertia,
+    has_own_series,
+    has_unbalance,
+)
 from separatrix.cage.law import traction_power
 from separatrix.cage.records import (
     CLEAR,
@@ -80,13 +88,13 @@ def place_points(p: Coefficients, w: Series, count: int, h: float, end: float, a
     at_points(w.vx, at.t, at.vx)
     at_points(w.vy, at.t, at.vy)
     at_points(w.vs, at.t, at.vs)
-    if count > 0 and (p.inertial or not p.own):
+    if count > 0 and (has_inertia(p) or not has_own_series(p)):
         at_late_points(w.ex, at.t, at.ex)
         at_late_points(w.ey, at.t, at.ey)
-        if not p.own:
+        if not has_own_series(p):
             at_late_points(w.es, at.t, at.es)
             at_late_points(w.kept, at.t, at.kept)
-    if p.eccentricity != 0.0:
+    if has_unbalance(p):
         at_points(w.gx, at.t, at.gx)
         at_points(w.gy, at.t, at.gy)
         for m in range(FEW, LAST):
@@ -109,10 +117,10 @@ def add_work(
     """Add the work that each source does from the start of the step to `end`."""
     at, count, length = room.points, state.touching, end * h
     place_points(p, w, count, h, end, at)
-    vx, vy = (at.gvx, at.gvy) if p.eccentricity != 0.0 else (at.vx, at.vy)
-    if p.inertial:
+    vx, vy = (at.gvx, at.gvy) if has_unbalance(p) else (at.vx, at.vy)
+    if has_inertia(p):
         work.race_dampers -= traction_work(p, balls.moving, count + state.coasting, at, length)
-    if count > 0 and not p.own and p.harmonics == 0:
+    if count > 0 and not has_own_series(p) and harmonics(p) == 0:
         pockets_work(p, balls, now, count, h, length, vx, vy, at, room.sums, work)
     elif count > 0:
         for m in range(FEW, LAST):
@@ -121,7 +129,7 @@ def add_work(
     frame_work(p, now, h, length, at, work)
     if land != CLEAR:
         land_work(p, w, land, h, length, vx, vy, at, work)
-    if p.gravity != 0.0:
+    if has_gravity(p):
         for m in range(FEW, LAST):
             pull = value(w.frame[:, 0], at.t[m]) * at.vx[m] - value(w.frame[:, 1], at.t[m]) * at.vy[m]
             work.gravity += WEIGHTS[m] * length * p.gravity * pull
@@ -171,7 +179,7 @@ def frame_work(p: Coefficients, now: Pace, h: float, length: float, at: Points, 
     # Omega^2 r . v, of which the part of the unbalance is Omega^2 epsilon . v; in a ramp also
     # Omega' (y v_x - x v_y - R^2 d(theta)/dt J / M R^2)
     share, rise, turning = now.share, now.rise * h, p.turning
-    x, y = (at.gx, at.gy) if p.eccentricity != 0.0 else (at.x, at.y)
+    x, y = (at.gx, at.gy) if has_unbalance(p) else (at.x, at.y)
     for m in range(FEW, LAST + 1):
         speed = turning * (share + rise * at.t[m])
         at.driving[m] = WEIGHTS[m] * (speed * speed) * (x[m] * at.vx[m] + y[m] * at.vy[m])
@@ -179,7 +187,7 @@ def frame_work(p: Coefficients, now: Pace, h: float, length: float, at: Points, 
     for m in range(FEW, LAST):
         driving += at.driving[m]
     work.moving_frame += length * driving
-    if p.eccentricity == 0.0 and now.rise == 0.0:
+    if not has_unbalance(p) and now.rise == 0.0:
         return
     for m in range(FEW, LAST):
         weight, speed = WEIGHTS[m] * length, turning * (share + rise * at.t[m])
@@ -240,21 +248,21 @@ def pocket_work(
     work: Ledger,
 ) -> None:
     """Add a point's share of the work of pockets, one by one; with inertia by the sums of the forces."""
-    if p.inertial:
+    if has_inertia(p):
         work.pocket_friction -= weight * p.friction * (at.ex[m] * vx + at.ey[m] * vy)
-        if p.harmonics == 0:
+        if harmonics(p) == 0:
             return
     t = at.t[m]
     grip = grip_at(w, t)
     for i in range(count):
         j = balls.touching[i]
         depth = depth_at(p, balls, w, grip, j, t)
-        load = p.hertz * depth * math.sqrt(abs(depth)) if p.hertz != 0.0 else p.stiffness * depth
-        if not p.inertial:
+        load = p.hertz * depth * math.sqrt(abs(depth)) if has_hertz_pockets(p) else p.stiffness * depth
+        if not has_inertia(p):
             along = balls.cosine[j] * vx + balls.sine[j] * vy
             work.pocket_friction -= weight * p.friction * load * along
             work.race_dampers -= weight * p.yielding * share * load * load
-        for k in range(2 * p.harmonics):
+        for k in range(2 * harmonics(p)):
             work.ball_drive -= weight * load * share * balls.drive[k, j] * value(w.frame[:, k], t)
 
 
@@ -263,11 +271,11 @@ def depth_at(
     p: Coefficients, balls: Balls, w: Series, grip: tuple[float, float, float, float], j: int, t: float
 ) -> float:
     """Penetration of a pocket in touch at a time of the step; `grip` as by `grip_at` there."""
-    if p.own:
+    if has_own_series(p):
         return value(balls.depth[:, j], t)
     ex, ey, es, kept = grip
     depth: float = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
-    for k in range(2 * p.harmonics):
+    for k in range(2 * harmonics(p)):
         depth -= balls.drive[k, j] * value(w.felt[:, k], t)
     return depth
 
