@@ -102,7 +102,7 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 
 def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs: int) -> Second:
-    """Time of the verdicts by the other model of a ball; none where the races transmit an impact of the kick."""
+    """Time of the verdicts by the other model of a ball; none if the races transmit the kick's impact."""
     from separatrix.cage import settings_for
     from separatrix.ranking.plausible import transmitted_force
     from separatrix.ranking.second import NOTICED, with_other_ball
