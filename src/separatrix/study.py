@@ -339,13 +339,13 @@ def _stiffness_of_unknown_origin(study: Study) -> _check.Problems:
         yield InputError("CageDesign.ball_cage_stiffness", rule, cure="Give the stiffness or the material.")
 
 
-def with_models(study: Study, models: Mapping[str, str]) -> Study:
-    """Return the study with other models of its cage: `motion` and `ball`, as on the command line.
+def chosen_models(models: Mapping[str, str]) -> dict[str, Enum]:
+    """Models of a cage by the keys of a study file, `motion` and `ball`, as the command line names them.
 
     Raises
     ------
     InputError
-        A model is not known, or the cage cannot have it.
+        A model is not known.
     """
     chosen: dict[str, Enum] = {}
     for name, kind in (("motion", MotionModel), ("ball", BallModel)):
@@ -354,6 +354,18 @@ def with_models(study: Study, models: Mapping[str, str]) -> Study:
             raise InputError(f"--{name}", f"must be one of {', '.join(known)}", shown(models[name]))
         if name in models:
             chosen[name] = known[models[name]]
+    return chosen
+
+
+def with_models(study: Study, models: Mapping[str, str]) -> Study:
+    """Return the study with other models of its cage.
+
+    Raises
+    ------
+    InputError
+        A model is not known, or the cage cannot have it.
+    """
+    chosen = chosen_models(models)
     if study.cage is None:
         raise InputError(study.name, "lacks the section [cage]")
     origins = {f"cage.{name}": f"--{name} {value.value}" for name, value in chosen.items()}

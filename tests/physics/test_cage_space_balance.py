@@ -128,6 +128,22 @@ def test_the_ledger_of_two_hundred_cages_closes():
     assert hits > 3000
 
 
+STUCK = [(15, 41), (2045, 43), (2053, 67), (2087, 94), (2093, 67)]
+"""Seed and number of drawn cages that do not pivot and whose sliding passes through zero or sticks,
+in pockets or on the land; with a pivoting speed of 1e-9 m/s they did not finish."""
+
+
+@pytest.mark.parametrize(("seed", "number"), STUCK)
+def test_a_sliding_through_zero_is_stepped_through(seed, number):
+    """Friction that turns round within 0.003 of the kick has steps that end, and its ledger closes."""
+    rng = np.random.default_rng(seed)
+    cage, start = [drawn(rng) for _ in range(number + 1)][-1]
+    assert cage.space.pivot_speed == 0.0
+    there = course(cage, 2e-3, samples=3, **start)
+    assert there.filled == 3
+    assert there.imbalance < 1e-9
+
+
 LEANS = {"dynamic_unbalance": 2e-3, "tilt_kick": 0.5}
 FALLS = {"axial_gravity": 300.0, "axial_kick": 0.3}
 

@@ -1,5 +1,6 @@
 """The models of a ball and of the cage's motion: keys, options, second verdicts, and what is refused."""
 
+import json
 import math
 from dataclasses import replace
 
@@ -120,6 +121,41 @@ def test_models_are_asked_for_on_the_command_line():
     cage = solve(study).cage_with(0.1)
     assert cage.space is not None
     assert cage.traction == solve(study).mobility.traction
+
+
+SHORT_WALLS = """
+extends = "cryogenic-turbopump"
+
+[cage]
+motion = "plane"
+inner_diameter = "66 mm"
+outer_diameter = "72 mm"
+width = "14 mm"
+
+[stability]
+duration = "2 ms"
+"""
+
+
+def test_the_option_counts_before_the_study_is_checked(capsys, tmp_path, monkeypatch):
+    """Walls that end short of the ball's equator are right in space and refused in the plane."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "short.toml").write_text(SHORT_WALLS)
+    said = refused(capsys, "simulate", "short.toml", "--ball", "traction")
+    assert "pitch diameter, 65 mm" in said
+    answer = document(capsys, "simulate", "short.toml", "--motion", "space")
+    assert answer["provenance"]["command"]["models"] == {"motion": "space"}
+    assert answer["provenance"]["reason"] is None
+    (tmp_path / "simulation.json").write_text(json.dumps(answer))
+    assert document(capsys, "reproduce", "simulation.json")["same"] is True
+    assert refused(capsys, "simulate", "short.toml", "--motion", "plane") == said
+
+
+@pytest.mark.parametrize("verb", ["simulate", "sweep"])
+def test_a_model_of_a_cage_that_is_not_there_is_refused(verb, capsys, tmp_path, monkeypatch):
+    """A study without a cage has no motion of it."""
+    monkeypatch.chdir(tmp_path)
+    assert "[cage] is missing; `--motion` needs it" in refused(capsys, verb, "le7", "--motion", "space")
 
 
 @pytest.mark.parametrize(("option", "known"), [("--motion", "plane, space"), ("--ball", "damper, traction")])

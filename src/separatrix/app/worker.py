@@ -147,18 +147,16 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
     from separatrix.notes import noted_warnings
     from separatrix.questions import verb_named
     from separatrix.regular_file import reading_only_in
-    from separatrix.study import with_models
     from separatrix.study_file import read_study, require
 
     question = dict(task.question)
     models = {name: question.pop(name) for name in ("motion", "ball") if question.get(name)}
     with noted_warnings() as notes, reading_only_in(task.root):
-        study = read_study(task.study)
+        study = read_study(task.study, models)
         if task.verb == REPORT:
             return _reported(task, study, notes, send)
         verb = verb_named(task.verb)
         require(study, verb.name, *verb.needs)
-        study = with_models(study, models) if models else study
         study = varied(study, task.values) if task.values else study
         return _written(verb, study, question, notes, task, send)
 

@@ -176,17 +176,15 @@ def _read_back(document: Mapping[str, Any], where: str) -> Study | None:
     from separatrix.cli.reproducing import kept_of, models_of, restored_study
     from separatrix.comparing.saved import Saved
     from separatrix.present import plain
-    from separatrix.study import with_models
     from separatrix.study_file import read_study, resolved
 
     saved = Saved(path=where, verb=str(document["verb"]), document=document)
     verb = verb_named(saved.verb)
     try:
         kept = kept_of(saved)
-        with noted_warnings(), restored_study(kept, where) as (entry, _, _):
-            study = read_study(entry)
         models = models_of(verb, kept["command"].get("models"))
-        study = with_models(study, models) if models else study
+        with noted_warnings(), restored_study(kept, where) as (entry, _, _):
+            study = read_study(entry, models)
     except InputError:  # it keeps no files, or those of another version
         return None
     return study if plain(resolved(study), "study") == document["study"] else None

@@ -83,7 +83,6 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     """Compute one answer from what it keeps."""
     from separatrix.present import document
     from separatrix.runner import Interrupted
-    from separatrix.study import with_models
     from separatrix.study_file import read_study, require
 
     if saved.document is None:
@@ -95,10 +94,8 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     verb = verb_named(saved.verb)
     with noted_warnings() as notes, restored_study(kept, saved.path) as (entry, root, changed):
         question = _question(verb, kept["command"].get("question"), root)
-        study = read_study(entry)
+        study = read_study(entry, models_of(verb, kept["command"].get("models")))
         require(study, verb.name, *verb.needs)
-        models = models_of(verb, kept["command"].get("models"))
-        study = with_models(study, models) if models else study
         with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
             found = computed(verb, study, question, jobs=jobs, progress=progress)
         if not found.is_complete:
@@ -181,7 +178,7 @@ def _content(one: Mapping[str, Any], name: str, where: str) -> bytes:
 
 
 def models_of(verb: Verb, given: object) -> dict[str, str]:
-    """Models of the command line; `with_models` judges their values."""
+    """Models of the command line; `read_study` judges their values."""
     known = ("motion", "ball") if verb.moves_a_cage else ()
     if not isinstance(given, dict) or not all(k in known and isinstance(v, str) for k, v in given.items()):
         raise InputError("models", f"must be models that {verb.name} takes", shown(given))

@@ -55,14 +55,11 @@ def run(verb: Verb, name: str, options: Options) -> int:
     SeparatrixError
         Wrong input, found before anything is computed where it can be.
     """
-    from separatrix.study import with_models
     from separatrix.study_file import read_study, require
 
     with noted_warnings() as notes, contextlib.ExitStack() as stack:
-        study = read_study(name)
+        study = read_study(name, options.models)
         require(study, verb.name, *verb.needs)
-        if options.models:
-            study = with_models(study, options.models)
         folder = options.out
         if folder is None and verb.writes_files and not options.json:
             folder = Path(study.name)

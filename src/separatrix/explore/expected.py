@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.cage import PlanarCage
+    from separatrix.chain.solution import Solution
     from separatrix.limits.map_records import MapQuestion
     from separatrix.study import StabilitySettings, Study
     from separatrix.units import Ratio, Second
@@ -18,6 +20,12 @@ SAMPLED = 3
 
 LONGEST_SAMPLE = 5.0
 """Time after which no further friction is timed [s]."""
+
+BRIEF = (1e-3, 1e-2, 1e-1)
+"""Shares of the duration at which a run is timed before it is timed whole."""
+
+SLOW = 0.1
+"""Share of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up."""
 
 DAMPINGS = (None, 0.0, 0.5, 1.0)
 """Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
@@ -68,23 +76,47 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
-    from separatrix.cage_choice import ranking_question
+    from separatrix.cage_choice import ranking_question, required_environment
     from separatrix.chain.solution import solve
 
     asked = ranking_question(study)
+    environment = required_environment(study, asked)
     keys: set[tuple[float, Ratio]] = set()
-    cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
+    own: set[tuple[float, Ratio]] = set()
+    solutions: dict[float, Solution] = {}
     for candidate in asked.candidates:
         solution = solve(study, candidate)
         stiffness = solution.ball_cage_stiffness
-        cages[stiffness] = solution.cage_with(0.0), solution.stability
+        solutions[stiffness] = solution
         keys |= {(stiffness, found.mean) for found in solution.frictions.values() if found is not None}
-    cage, settings = cages[sorted(cages)[len(cages) // 2]]
-    curves = len(cages) * expected_curve(cage, settings, jobs=jobs, band=False)
+        here = solution.frictions.get(environment)
+        own |= {(stiffness, here.mean)} if here is not None else set()
+    middle = solutions[sorted(solutions)[len(solutions) // 2]]
+    cage, settings = middle.cage_with(0.0), middle.stability
+    curves = len(solutions) * expected_curve(cage, settings, jobs=jobs, band=False)
     verdicts = expected_verdicts(cage, settings, [friction for _, friction in keys], jobs=jobs)
+    verdicts += _expected_seconds(middle, [friction for _, friction in own], jobs=jobs)
     if not study.distributions:
         return PICTURES + curves + verdicts
     return PICTURES + curves + 2.0 * verdicts + _expected_chains(study, settings.runs)
+
+
+def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs: int) -> Second:
+    """Time of the verdicts by the other model of a ball; none if the races transmit the kick's impact."""
+    from separatrix.cage import settings_for
+    from separatrix.ranking.plausible import transmitted_force
+    from separatrix.ranking.second import NOTICED, with_other_ball
+    from separatrix.runner import PART
+
+    cage = solution.cage_with(0.0)
+    settings = settings_for(solution.stability, cage)
+    force = max(settings.kicks) * math.sqrt(cage.ball_cage_stiffness * cage.mass / 2.0)
+    if force < NOTICED * transmitted_force(solution):
+        return 0.0
+    few = replace(settings, runs=min(PART, settings.runs))
+    other = with_other_ball(solution, 0.0)
+    middle = sorted(frictions)[len(frictions) // 2 :][:1]  # one for all: such runs may take long to time
+    return expected_verdicts(other, few, middle, jobs=jobs) * len(frictions)
 
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
@@ -185,10 +217,22 @@ def _mean(times: Iterable[Second]) -> Second:
 
 
 def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
-    """Time of a run, the mean over the kicks; the compiled code is loaded beforehand."""
+    """Time of a run, the mean over the kicks; the compiled code is loaded beforehand.
+
+    Where runs are slow, as of balls that the races of a slow bearing stop within nanoseconds, a brief one is
+    timed in place of the whole.
+    """
     from separatrix.cage import run_ensemble
 
-    run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1)
-    begun = time.perf_counter()
-    run_ensemble(cage, settings, runs=SAMPLED)
-    return (time.perf_counter() - begun) / (SAMPLED * len(settings.kicks))
+    def taken(share: Ratio, runs: int) -> Second:
+        some = replace(settings, duration=share * settings.duration)
+        begun = time.perf_counter()
+        run_ensemble(cage, some, runs=runs)
+        return (time.perf_counter() - begun) / (runs * share * len(settings.kicks))
+
+    taken(BRIEF[0], 1)
+    for share in BRIEF:
+        whole = taken(share, 1)
+        if whole * share * len(settings.kicks) > SLOW * LONGEST_SAMPLE:
+            return whole
+    return taken(1.0, SAMPLED)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.kept_files import noting
-from separatrix.study import Study
+from separatrix.study import Study, chosen_models, with_models
 from separatrix.study_file.cautions import cautions
-from separatrix.study_file.document import TEMPLATE, find, load, shipped_studies
+from separatrix.study_file.document import TEMPLATE, Document, find, load, shipped_studies
 from separatrix.study_file.kept import asked_by, keep, provenance_of
 from separatrix.study_file.provenance import resolved
 from separatrix.study_file.sections import LEFT_OUT, build_study
@@ -18,13 +19,22 @@ from separatrix.units import printable
 __all__ = ["asked_by", "provenance_of", "read_study", "require", "resolved", "shipped_studies", "template"]
 
 
-def read_study(study: str | Path) -> Study:
+def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:
     """Study of a file, or of the shipped example of that name.
+
+    Parameters
+    ----------
+    study : str or Path
+        Path of the file, or name of the example.
+    models : mapping, optional
+        `motion` and `ball` of the cage in place of those of the file. The study is checked with them: a ring
+        whose walls end short of the ball's equator is right in space and refused in the plane.
 
     Raises
     ------
     InputError
-        Everything that is wrong with the file, a line each: place, rule, value, cure.
+        Everything that is wrong with the file, a line each: place, rule, value, cure. Or a model is not
+        known, or there is no cage to have it.
 
     Warns
     -----
@@ -35,10 +45,20 @@ def read_study(study: str | Path) -> Study:
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
     with noting() as reading:
-        built = build_study(load(path), name)
+        built = build_study(_with_models(load(path), models or {}), name)
+    if models:
+        require(built, f"--{next(iter(models))}", "cage")
+        built = with_models(built, models)
     for sentence in cautions(built):
         warnings.warn(sentence, ValidityWarning, stacklevel=2)
     return keep(built, path, reading)
+
+
+def _with_models(document: Document, models: Mapping[str, str]) -> Document:
+    """Return the document with other models of its cage."""
+    if "cage" in document.sections:
+        document.sections["cage"] |= {name: model.value for name, model in chosen_models(models).items()}
+    return document
 
 
 def template() -> str:

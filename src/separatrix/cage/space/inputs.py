@@ -77,7 +77,7 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
         spin_z=spin[0],
         spin_r=spin[1],
         spin_t=spin[2],
-        pivoting=(max(body.pivot_speed, LEAST_PIVOT) * T) ** 2,
+        pivoting=(max(body.pivot_speed, LEAST_PIVOT * kick) * T) ** 2,
         lever=body.lever / R,
         yielding=M / (cage.race_damping * T) if law is None else 0.0,
         groove_yielding=M / (body.groove_damping * T),
@@ -107,8 +107,9 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
     return cast("Numbers", np.array([tuple(given)], dtype_of(Numbers))[0])
 
 
-LEAST_PIVOT = 1e-9
-"""Pivoting speed that keeps a friction finite where nothing slides [m/s]."""
+LEAST_PIVOT = 3e-3
+"""Pivoting speed, as a share of the kick, from which on a motion has steps that can be waited for where its
+sliding passes through zero or a contact sticks: the friction's own rate is that of the contact over it."""
 
 STILL_PLAY = 1e-9
 """Share of the clearance that a ball that is called at rest would still have gone."""
