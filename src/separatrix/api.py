@@ -26,8 +26,8 @@ from separatrix.chain.contacts import BearingState
 from separatrix.errors import ValidityWarning
 from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
 from separatrix.explore.sweep import Case, Sweep
-from separatrix.kept_files import noting
-from separatrix.notes import grouped, noted_warnings
+from separatrix.input_files import noting
+from separatrix.messages import grouped, noted_warnings
 from separatrix.runner import Progress, made_into
 from separatrix.study import Study
 from separatrix.study_file import asked_by, read_study, require

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from separatrix.errors import InputError
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.friction.tribometer import tribometer as reduced
-from separatrix.library import KINDS, Library, Record, as_material, beside, library_files, with_files
-from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state, other_phase
-from separatrix.toml_values import nearest
+from separatrix.library import Library, as_material, beside, library_files, with_files
+from separatrix.library.records import ATMOSPHERE, KINDS, Record, contradictions, fluid_state, other_phase
+from separatrix.toml_files import nearest
 from separatrix.units import Kelvin, Pascal, shown
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.friction.reduction import Reduction
-    from separatrix.library import FrictionTable
+    from separatrix.library.records import FrictionTable
     from separatrix.present.text.materials import Shown
     from separatrix.runner import Progress
 

@@ -169,7 +169,7 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
-    from separatrix.kept_files import noting
+    from separatrix.input_files import noting
     from separatrix.runner import Interrupted
     from separatrix.study_file import asked_by
 

@@ -13,7 +13,7 @@ from separatrix import figures
 from separatrix.figures.animation import animate
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_page import write_page
-from separatrix.plain_text import harmless
+from separatrix.messages import harmless
 from separatrix.present import dataset, in_words, save
 from separatrix.staged import staged
 from separatrix.workbook import results_workbook

@@ -15,7 +15,7 @@ from separatrix.distribution import Distribution, LogNormal, Normal, described, 
 from separatrix.errors import InputError
 from separatrix.study import SECTIONS as SECTIONS
 from separatrix.study import BallBearing, Material, Study, Wear, key_of
-from separatrix.toml_values import nearest
+from separatrix.toml_files import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
 
 WHOLE = ""

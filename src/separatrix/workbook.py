@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cage import Judgement
 from separatrix.present.walk import field_units
-from separatrix.ranking import Ranked
+from separatrix.ranking.records import Ranked
 from separatrix.workbook_looks import (
     BAND,
     HEADING,

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of, unreadable
+from separatrix.input_files import size_of, unreadable
 from separatrix.units import printable
 
 MOST_BYTES = 512 * 1024**2

@@ -8,7 +8,7 @@ import separatrix
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.friction.logs import tdms
-from separatrix.regular_file import size_of
+from separatrix.input_files import size_of
 from separatrix.workbook_guard import refuse_unsafe
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))

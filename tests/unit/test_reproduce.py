@@ -14,7 +14,7 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix import kept_files
+from separatrix import input_files
 from separatrix.cli import main
 from separatrix.study import with_models
 from separatrix.study_file import kept, provenance_of, read_study
@@ -257,7 +257,7 @@ HOSTILE = {
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_a_hostile_answer_is_refused_in_one_line(stored, put, capsys, kind, monkeypatch):
     """Nothing is read or written outside a temporary folder."""
-    monkeypatch.setattr(kept_files, "MOST_BYTES", 100_000 if kind != "large" else 2000)
+    monkeypatch.setattr(input_files, "MOST_BYTES", 100_000 if kind != "large" else 2000)
     spoil, said = HOSTILE[kind]
     asked = next(one for one in ASKED if one[0] == "simulate")
     path = put(changed(stored[asked], lambda answer: spoil(answer["provenance"])))

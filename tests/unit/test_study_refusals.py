@@ -8,7 +8,7 @@ import pytest
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study, require
-from separatrix.toml_text import lines_of_keys
+from separatrix.toml_files import lines_of_keys
 
 VALID = """\
 title = "A valid study"

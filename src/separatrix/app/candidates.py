@@ -11,7 +11,7 @@ from tomlkit.items import Array, InlineTable
 
 from separatrix.app.draft import MEND, parsed, put, typed
 from separatrix.errors import InputError
-from separatrix.toml_text import lines_of_keys
+from separatrix.toml_files import lines_of_keys
 
 SECTION, KEY = "ranking", "candidates"
 AT = f"[{SECTION}] {KEY}"

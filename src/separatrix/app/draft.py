@@ -17,14 +17,14 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.errors import InputError
-from separatrix.notes import grouped, noted_warnings
-from separatrix.regular_file import reading_only_in
+from separatrix.input_files import reading_only_in
+from separatrix.messages import grouped, noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.study_file.document import Document, load
 from separatrix.study_file.offered import NOTHING, Offered, offered_by
 from separatrix.study_file.templates import is_name
-from separatrix.toml_text import MOST_BYTES, read_text
+from separatrix.toml_files import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
 
 DRAFT = ".{}.draft"

@@ -20,12 +20,12 @@ from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError
 from separatrix.figures.hover import Series, stability_plot
 from separatrix.figures.style import VERMILION
+from separatrix.input_files import reading_only_in
 from separatrix.limits.map_parameters import parameters, value_in, varied
 from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import Side
 from separatrix.limits.threshold import restitution_threshold
-from separatrix.notes import noted_warnings
-from separatrix.regular_file import reading_only_in
+from separatrix.messages import noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.units import format_quantity

@@ -12,7 +12,7 @@ from separatrix.app.draft import Checked
 from separatrix.app.fields import Field, field_of
 from separatrix.study_file.document import SECTIONS
 from separatrix.study_file.templates import TemplateKey, choices_of, section_remarks, template_keys
-from separatrix.toml_values import folded
+from separatrix.toml_files import folded
 
 TESTED = (SECTION, "materials")
 """The key whose names are those of the tests that the study names."""

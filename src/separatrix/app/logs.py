@@ -19,7 +19,7 @@ from separatrix.friction.file import friction_text
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
-from separatrix.notes import noted_warnings
+from separatrix.messages import noted_warnings
 from separatrix.present.text.tribometer import tribometer as in_words
 from separatrix.present.tribometer import page_data
 from separatrix.units import format_number

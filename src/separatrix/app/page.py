@@ -21,7 +21,7 @@ from separatrix.app.files import Folder
 from separatrix.app.jobs import Jobs
 from separatrix.errors import InputError
 from separatrix.questions import VERBS
-from separatrix.toml_text import read_text
+from separatrix.toml_files import read_text
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:

@@ -143,10 +143,10 @@ def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) 
 
 def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
+    from separatrix.input_files import reading_only_in
     from separatrix.limits.map_parameters import varied
-    from separatrix.notes import noted_warnings
+    from separatrix.messages import noted_warnings
     from separatrix.questions import verb_named
-    from separatrix.regular_file import reading_only_in
     from separatrix.study import with_models
     from separatrix.study_file import read_study, require
 
@@ -172,7 +172,7 @@ def _written(
     send: Callable[[Report], None],
 ) -> tuple[str, str]:
     """Compute and write the answer of a verb."""
-    from separatrix.notes import grouped
+    from separatrix.messages import grouped
     from separatrix.present import document
     from separatrix.questions import computed
     from separatrix.saving import save_answer
@@ -191,7 +191,7 @@ def _written(
 
 def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report], None]) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.notes import grouped, noted_warnings
+    from separatrix.messages import grouped, noted_warnings
     from separatrix.questions import computed, verb_named
     from separatrix.reporting.content import report_of
     from separatrix.reporting.kept import Kept, answers_of, keep

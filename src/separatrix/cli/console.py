@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
 from separatrix.errors import InputError
-from separatrix.plain_text import harmless, one_line
+from separatrix.messages import harmless, one_line
 
 if TYPE_CHECKING:
     from separatrix.units import Second

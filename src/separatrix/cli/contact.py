@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from separatrix.cli.console import answer, progress_bar
-from separatrix.plain_text import harmless
+from separatrix.messages import harmless
 from separatrix.staged import staged, writable_folder
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def contact(path: Path, folder: Path | None, *, as_json: bool, quiet: bool) -> i
     """
     from separatrix.contact_file import read_contact
     from separatrix.contact_file.solving import solve_cases
-    from separatrix.notes import grouped, noted_warnings
+    from separatrix.messages import grouped, noted_warnings
     from separatrix.present.contact import contact as document
     from separatrix.present.text.contact import contact as in_words
 

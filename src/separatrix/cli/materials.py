@@ -14,7 +14,7 @@ from separatrix.cli.verbs import Json
 from separatrix.errors import InputError
 
 if TYPE_CHECKING:
-    from separatrix.library import Content
+    from separatrix.library.reading import Content
     from separatrix.present.text.materials import Shown
 
 KIND_HELP = "bearing material, cage material, film, fluid, friction table."
@@ -75,7 +75,8 @@ def _show(
 def _check(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file.")], json: Json = False
 ) -> None:
-    from separatrix.library import joined, read_library
+    from separatrix.library import joined
+    from separatrix.library.reading import read_library
 
     content = read_library(file)
     joined([content])

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cli.console import answer, interrupted
 from separatrix.cli.run import ANSWERED, Options, computed_with_progress
 from separatrix.errors import InputError
-from separatrix.notes import grouped, noted_warnings
-from separatrix.plain_text import harmless
+from separatrix.messages import grouped, harmless, noted_warnings
 from separatrix.questions import verb_named
 from separatrix.staged import staged, writable_folder
 

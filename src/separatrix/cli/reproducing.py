@@ -17,7 +17,7 @@ from separatrix.cli.verbs import OPTIONS
 from separatrix.comparing.agreement import Agreement, agreement
 from separatrix.comparing.saved import Saved, read_answers
 from separatrix.errors import InputError
-from separatrix.notes import grouped, noted_warnings
+from separatrix.messages import grouped, noted_warnings
 from separatrix.questions import Verb, computed, verb_named
 from separatrix.units import printable, shown
 
@@ -138,7 +138,7 @@ def kept_of(saved: Saved) -> dict[str, Any]:
 @contextlib.contextmanager
 def restored_study(kept: Mapping[str, Any], where: str) -> Iterator[tuple[Path, Path, list[str]]]:
     """Yield the study file and its folder, restored, and the names of files that were changed."""
-    from separatrix.kept_files import restored
+    from separatrix.input_files import restored
     from separatrix.study_file.document import shipped_studies
     from separatrix.study_file.kept import SHIPPED, shipped_checksums
 

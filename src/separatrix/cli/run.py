@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cli.console import answer, complain, interrupted, progress_bar
 from separatrix.errors import InputError
 from separatrix.ledger import NAME as LEDGER
-from separatrix.notes import grouped, noted_warnings
+from separatrix.messages import grouped, noted_warnings
 from separatrix.questions import Computed, Verb, computed
 from separatrix.staged import refuse_existing, writable_folder, write_new
 

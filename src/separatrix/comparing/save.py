@@ -11,7 +11,7 @@ from separatrix.comparing.records import Comparison
 from separatrix.comparing.saved import Saved
 from separatrix.comparing.text import in_words
 from separatrix.figures import save_all
-from separatrix.plain_text import harmless
+from separatrix.messages import harmless
 from separatrix.present import plain
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of, unreadable
-from separatrix.toml_text import path_text
+from separatrix.input_files import size_of, unreadable
+from separatrix.toml_files import path_text
 from separatrix.units import printable, shown
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from separatrix.contact_file.question import (
     Motion,
 )
 from separatrix.errors import InputError
-from separatrix.toml_text import Kind, label_of, read_text
+from separatrix.toml_files import Kind, label_of, read_text
 from separatrix.units import Array
 
 MM = 1e-3

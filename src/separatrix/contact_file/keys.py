@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import TypeVar
 
 from separatrix.chain.traction.exact.contact import LARGEST_CREEP, LARGEST_SIDE, SMALLEST_SIDE
 from separatrix.chain.traction.exact.flexibility import NEARLY_INCOMPRESSIBLE
 from separatrix.contact_file.question import Motion
 from separatrix.errors import InputError
-from separatrix.toml_values import Reader, choice, list_of, quantity, ratio, text, whole
+from separatrix.toml_files import Reader, choice, list_of, quantity, ratio, text, truth, whole
 from separatrix.units import NUMBER, parse, shown
+
+Number = TypeVar("Number", float, int)
+Made = TypeVar("Made")
 
 MOST_CASES = 2000
 LARGEST_MODULUS = 1e13  # [Pa]
@@ -19,39 +22,39 @@ LARGEST_MODULUS = 1e13  # [Pa]
 _PER = re.compile(rf"({NUMBER}) ?(?:rad|1)/([a-z]+)([2²]?)")
 
 
-def per_length(power: int) -> Reader:
+def per_length(power: int) -> Reader[float]:
     """Read an inverse length to a power, like "0.2 1/mm", "0.2 rad/mm" or "3 1/mm2", in SI units."""
     unit = "1/mm" if power == 1 else "1/mm2"
 
-    def read(value: Any, where: str) -> float:
+    def read(value: object, where: str) -> float:
         found = _PER.fullmatch(value.strip()) if isinstance(value, str) and len(value) <= 60 else None
         if found is None or bool(found[3]) != (power == 2):
-            raise InputError(
-                where, f"must be a number in {unit}", shown(value), f'Write it like "0.2 {unit}".'
-            )
+            cure = f'Write it like "0.2 {unit}".'
+            raise InputError(where, f"must be a number in {unit}", shown(value), cure)
         return float(found[1]) / parse(f"1 {found[2]}", "m", where) ** power
 
     return read
 
 
-def or_list(reader: Reader) -> Reader:
+def or_list(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
     """Read one value or a list of them: a batch."""
 
-    def read(value: Any, where: str) -> tuple[float, ...]:
+    def read(value: object, where: str) -> tuple[Made, ...]:
         if not isinstance(value, list):
             return (reader(value, where),)
         if not 1 <= len(value) <= MOST_CASES:
             raise InputError(where, f"must have 1 to {MOST_CASES} values", f"{len(value)}")
-        found: tuple[float, ...] = list_of(reader)(value, where)
-        return found
+        return list_of(reader)(value, where)
 
     return read
 
 
-def within(reader: Reader, low: float, high: float, unit: str, *, open_low: bool = False) -> Reader:
+def within(
+    reader: Reader[Number], low: float, high: float, unit: str, *, open_low: bool = False
+) -> Reader[Number]:
     """Read a number that must lie between two others."""
 
-    def read(value: Any, where: str) -> Any:
+    def read(value: object, where: str) -> Number:
         found = reader(value, where)
         if not low <= found <= high or (open_low and found == low):
             ends = f"be above {low:g} and at most {high:g}" if open_low else f"lie from {low:g} to {high:g}"
@@ -61,34 +64,23 @@ def within(reader: Reader, low: float, high: float, unit: str, *, open_low: bool
     return read
 
 
-def logical(value: Any, where: str) -> bool:
-    """Read true or false."""
-    if not isinstance(value, bool):
-        raise InputError(where, "must be true or false", shown(value))
-    return value
-
-
-def _anything(value: Any, where: str) -> Any:  # noqa: ARG001
-    return value
-
-
 _LENGTH = within(quantity("m"), 0.0, 1e3, "m", open_low=True)
 _MODULUS = within(quantity("Pa"), 0.0, LARGEST_MODULUS, "Pa", open_low=True)
 _CREEP = or_list(within(ratio, -LARGEST_CREEP, LARGEST_CREEP, "-"))
 _COEFFICIENT = within(ratio, 0.0, 100.0, "-")
 _CELLS = within(whole, SMALLEST_SIDE, LARGEST_SIDE, "-")
-_SOLID: dict[str, Reader] = {
+_SOLID: dict[str, Reader[object]] = {
     "material": text,
     "elastic_modulus": _MODULUS,
     "shear_modulus": _MODULUS,
     "poisson_ratio": within(ratio, 0.0, 0.5, "-"),
 }
-BODY = _SOLID | {"layers": _anything}
-LAYER: Mapping[str, Reader] = _SOLID | {
+BODY = _SOLID | {"layers": lambda value, _: value}
+LAYER: Mapping[str, Reader[object]] = _SOLID | {
     "thickness": _LENGTH,
     "poisson_ratio": within(ratio, 0.0, NEARLY_INCOMPRESSIBLE, "-"),
 }
-SECTIONS: Mapping[str, Mapping[str, Reader]] = {
+SECTIONS: Mapping[str, Mapping[str, Reader[object]]] = {
     "contact": {
         "load": within(quantity("N"), 0.0, 1e12, "N", open_low=True),
         **dict.fromkeys(
@@ -113,7 +105,7 @@ SECTIONS: Mapping[str, Mapping[str, Reader]] = {
     },
     "motion": {"kind": choice(Motion)},
     "grid": {"columns": _CELLS, "rows": _CELLS},
-    "pressure": {"own": logical, "coupled": logical, "two_way": logical},
+    "pressure": {"own": truth, "coupled": truth, "two_way": truth},
 }
 """Sections of a contact file and how each key is read; the keys of [motion] depend on its kind."""
 
@@ -125,8 +117,8 @@ _ROLLS = {
     "spin": or_list(per_length(1)),
     "curvature": or_list(per_length(2)),
 }
-MOTIONS: Mapping[Motion, Mapping[str, Reader]] = {
-    Motion.ROLLING: _ROLLS | {"slope": logical},
+MOTIONS: Mapping[Motion, Mapping[str, Reader[object]]] = {
+    Motion.ROLLING: _ROLLS | {"slope": truth},
     Motion.TRANSIENT: _ROLLS | {"distance": or_list(_LENGTH)},
     Motion.SHIFT: {
         "kind": choice(Motion),

@@ -21,8 +21,7 @@ from separatrix.contact_file.question import ContactCase, ContactQuestion, Conta
 from separatrix.errors import InputError, ValidityWarning, noted, together
 from separatrix.library import beside, with_files
 from separatrix.study_file.values import named_material, using
-from separatrix.toml_text import Kind, Places, label_of, places_of, read_toml
-from separatrix.toml_values import Reader, choice, nearest, text
+from separatrix.toml_files import Kind, Places, Reader, choice, label_of, nearest, places_of, read_toml, text
 from separatrix.units import format_quantity, printable, shown
 
 FILE = Kind(noun="a contact file", empty="docs/how-to/contact.md has one to start from.")
@@ -39,7 +38,9 @@ class _File:
     places: Places
     problems: list[InputError] = field(default_factory=list)
 
-    def section(self, name: str, readers: Mapping[str, Reader], *, needed: bool = False) -> dict[str, Any]:
+    def section(
+        self, name: str, readers: Mapping[str, Reader[object]], *, needed: bool = False
+    ) -> dict[str, Any]:
         """Values of a section that could be read; None is a value that was refused."""
         given = self.data.get(name, {} if not needed else None)
         if not isinstance(given, dict):
@@ -49,7 +50,7 @@ class _File:
         return self.table(given, f"[{name}] ", readers, f"[{name}]")
 
     def table(
-        self, given: Mapping[str, Any], prefix: str, readers: Mapping[str, Reader], what: str
+        self, given: Mapping[str, Any], prefix: str, readers: Mapping[str, Reader[object]], what: str
     ) -> dict[str, Any]:
         """Values of a table, whose keys are `what`'s."""
         found: dict[str, Any] = {}

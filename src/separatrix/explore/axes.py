@@ -67,7 +67,7 @@ def find_parameter(name: str, option: str) -> Parameter:
         There is none, or it is no number.
     """
     from separatrix.limits.map_parameters import SHORT, other_keys, parameters
-    from separatrix.toml_values import nearest
+    from separatrix.toml_files import nearest
 
     known = parameters()
     name = SHORT.get(name, name)

@@ -14,7 +14,7 @@ from separatrix.explore.axes import find_parameter, plain_number, read_axis
 from separatrix.explore.envelope import TIME_SHARE
 from separatrix.explore.sweep import MOST_CASES, Case
 from separatrix.limits.map_parameters import Parameter
-from separatrix.toml_text import Kind, path_text, read_text
+from separatrix.toml_files import Kind, path_text, read_text
 from separatrix.units import NUMBER, parse, shown
 
 POINTS = 10

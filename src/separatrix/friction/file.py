@@ -14,8 +14,19 @@ from typing import Any
 
 from separatrix.errors import InputError, together
 from separatrix.friction.records import NAMES, UNITS, FrictionTest, place
-from separatrix.toml_text import Kind, label_of, read_toml
-from separatrix.toml_values import Reader, build, list_of, nearest, quantity, ratio, table, text
+from separatrix.toml_files import (
+    Kind,
+    Reader,
+    build,
+    label_of,
+    list_of,
+    nearest,
+    quantity,
+    ratio,
+    read_toml,
+    table,
+    text,
+)
 from separatrix.units import parse, printable, shown
 
 MOST_TESTS = 10_000
@@ -156,7 +167,7 @@ def _alike(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]
                 yield InputError(where, rule, shown(name), cure)
 
 
-def _interval(unit: str) -> Reader:
+def _interval(unit: str) -> Reader[tuple[float, float]]:
     """Read one quantity, or a list of the lowest and the highest."""
 
     def read(value: Any, where: str) -> tuple[float, float]:
@@ -171,7 +182,7 @@ def _interval(unit: str) -> Reader:
     return read
 
 
-_READERS: dict[str, Reader] = {
+_READERS: dict[str, Reader[object]] = {
     "material": text,
     "counterface": text,
     "medium": text,

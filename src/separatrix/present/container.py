@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of
+from separatrix.input_files import size_of
 from separatrix.units import printable
 
 MOST_BYTES = 512 * 1024**2

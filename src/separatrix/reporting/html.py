@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
-from separatrix.plain_text import harmless
+from separatrix.messages import harmless
 from separatrix.reporting.record import Picture, Report, Table
 
 SHORT = 24

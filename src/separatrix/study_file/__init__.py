@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.kept_files import noting
+from separatrix.input_files import noting
 from separatrix.study import Study
 from separatrix.study_file.cautions import cautions
 from separatrix.study_file.document import TEMPLATE, find, load, shipped_studies

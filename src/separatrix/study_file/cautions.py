@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from separatrix.library.fluids import contradictions
+from separatrix.library.records import contradictions
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.study import CageDesign, Guidance, Study
 from separatrix.units import Kilogram, format_quantity

@@ -18,8 +18,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeGuard
 
 from separatrix.errors import InputError
-from separatrix.kept_files import note
-from separatrix.regular_file import size_of, unreadable
+from separatrix.input_files import note, size_of, unreadable
 from separatrix.units import NUMBER, printable, shown
 from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
 

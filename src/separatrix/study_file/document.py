@@ -13,10 +13,9 @@ from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, noted, together
-from separatrix.kept_files import place
+from separatrix.input_files import place
 from separatrix.library import Library, beside, library_files, with_files
-from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
-from separatrix.toml_values import folded, nearest
+from separatrix.toml_files import Places, folded, label_of, nearest, path_text, places_of, read_toml
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")

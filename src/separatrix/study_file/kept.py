@@ -15,7 +15,7 @@ from typing import Any
 
 import separatrix
 from separatrix.errors import InputError
-from separatrix.kept_files import MOST_BYTES, MOST_FILES, Reading, checksum_of_name, refuse_unsafe
+from separatrix.input_files import MOST_BYTES, MOST_FILES, Reading, checksum_of_name, refuse_unsafe
 from separatrix.study import Study, with_models
 
 KEPT, ASKED = "provenance.files", "provenance.command"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.errors import DataError, InputError
-from separatrix.kept_files import place
+from separatrix.input_files import place
 from separatrix.library import Library
 from separatrix.study_file.document import Document, library_of
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
-from separatrix.friction.records import FrictionTest
+from separatrix.friction.file import FrictionTest
 from separatrix.study import SECTIONS, CageDesign, Film, Friction, Material, RankingQuestion, Study, Wear
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of

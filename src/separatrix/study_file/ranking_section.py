@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING, Any
 from separatrix.cage_choice import NAMELESS
 from separatrix.distribution import Normal
 from separatrix.errors import InputError, noted, together
-from separatrix.friction.file import read_friction
+from separatrix.friction.file import CONDITIONS, read_friction
 from separatrix.friction.law import StatedFriction
-from separatrix.friction.records import CONDITIONS
-from separatrix.kept_files import place
-from separatrix.library import FrictionTable
+from separatrix.input_files import place
+from separatrix.library.records import FrictionTable
 from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import CageDesign, Candidate, Friction, RankingQuestion
 from separatrix.study_file import values
 from separatrix.study_file.document import Document, Unfinished
 from separatrix.study_file.sections import record_of
 from separatrix.study_file.values import Uncertain, friction_deviation, gathered, number, unwrapped
-from separatrix.toml_values import Reader, build, folded, nearest, ratio, table, text, whole
+from separatrix.toml_files import Reader, build, folded, nearest, ratio, table, text, whole
 from separatrix.units import shown
 
 if TYPE_CHECKING:

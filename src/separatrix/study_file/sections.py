@@ -27,7 +27,7 @@ from separatrix.study_file.document import (
 )
 from separatrix.study_file.wear import wear
 from separatrix.study_numbers import ANGLE_FROM, MOST_DISTRIBUTIONS, contact_angle_of, settled_in
-from separatrix.toml_values import Reader, choice, list_of, nearest, quantity, ratio, text, whole
+from separatrix.toml_files import Reader, choice, list_of, nearest, quantity, ratio, text, whole
 from separatrix.units import printable, shown, unit_of
 
 Record = TypeVar("Record")

@@ -10,7 +10,7 @@ from enum import Enum
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from separatrix import library
+from separatrix.library import Library
 from separatrix.study import SECTIONS as RECORDS
 from separatrix.study import (
     BallModel,
@@ -189,7 +189,7 @@ def choices_of(section: str, key: str) -> tuple[tuple[str, ...], bool]:
     name = f"{section}.{key}"
     if name in _CHOICES:
         return tuple(str(one.value) for one in _CHOICES[name]), False
-    return (library.names(_NAMES[name]), True) if name in _NAMES else ((), True)
+    return (Library().names(_NAMES[name]), True) if name in _NAMES else ((), True)
 
 
 def is_name(section: str, key: str) -> bool:

@@ -24,7 +24,7 @@ from separatrix.distribution import (
 from separatrix.errors import InputError
 from separatrix.library import Library
 from separatrix.study import Material
-from separatrix.toml_values import (
+from separatrix.toml_files import (
     Reader,
     build,
     cut_list,

@@ -9,10 +9,20 @@ from typing import Any
 
 from separatrix.errors import InputError, noted, together
 from separatrix.film_design import MOST_PLACES, Wear, Worn
-from separatrix.kept_files import place
+from separatrix.input_files import place
 from separatrix.study_file import values
-from separatrix.toml_text import Kind, path_text, read_text
-from separatrix.toml_values import Reader, build, choice, list_of, quantity, table, text
+from separatrix.toml_files import (
+    Kind,
+    Reader,
+    build,
+    choice,
+    list_of,
+    path_text,
+    quantity,
+    read_text,
+    table,
+    text,
+)
 from separatrix.units import parse, shown
 
 _CURE = 'Write its first row like "y [mm],thickness [um]".'

@@ -36,8 +36,7 @@ from separatrix.study_file.cells import (
 )
 from separatrix.study_file.document import SECTIONS, TOP, Document
 from separatrix.study_numbers import numbers_of
-from separatrix.toml_text import Places, label_of
-from separatrix.toml_values import nearest
+from separatrix.toml_files import Places, label_of, nearest
 from separatrix.units import UNITS, missing_unit, printable, shown, unit_of
 
 STUDY_SHEET = "study"

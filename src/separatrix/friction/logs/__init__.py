@@ -19,7 +19,7 @@ from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
 from separatrix.friction.logs.raw import raw_log
 from separatrix.friction.logs.sliding import motion_columns
-from separatrix.regular_file import size_of, unreadable
+from separatrix.input_files import size_of, unreadable
 from separatrix.units import format_quantity, printable, shown, unit_of
 
 __all__ = ["column_map", "described", "read_column_map", "read_log"]

@@ -13,7 +13,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
 from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
 from separatrix.friction.records import place
-from separatrix.toml_text import Kind, read_toml
+from separatrix.toml_files import Kind, read_toml
 from separatrix.units import printable, shown
 
 KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')

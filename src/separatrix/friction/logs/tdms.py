@@ -18,7 +18,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs.header import layout_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts, ranks
-from separatrix.regular_file import size_of, unreadable
+from separatrix.input_files import size_of, unreadable
 from separatrix.units import Array, printable, shown
 from separatrix.workbook_guard import MOST_BYTES
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from separatrix.library import Datum, FrictionTable, LibraryFile, Record
-from separatrix.library.fluids import FluidState
+from separatrix.library.records import Datum, Facts, FluidState, FrictionTable, LibraryFile, Record
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -126,7 +125,7 @@ def shown(records: Sequence[Shown]) -> str:
 def _whole(one: Shown) -> str:
     record, file = one.record, one.record.file
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
-    known = record.facts if isinstance(record, Record) else {}
+    known: Facts = record.facts if isinstance(record, Record) else {}
     values = ((key, known.get(key) or getattr(record, key, None)) for key in keys)
     about = [(key.capitalize(), str(value)) for key, value in values if value]
     if isinstance(record, FrictionTable):
@@ -141,8 +140,8 @@ def _whole(one: Shown) -> str:
         whole = section("Friction", friction_table(record.environments, record.friction))
     else:
         whole = section("Data", *_data(record, one))
-    if known.get("aliases"):
-        about.append(("Also", ", ".join(known["aliases"])))
+    if aliases := known.get("aliases"):
+        about.append(("Also", ", ".join(aliases)))
     origin = "shipped" if file.shipped else "of the user"
     about.append(("Library", f"{file.label}, {origin}, sha256 {file.checksum[:12]}..."))
     blocks = [heading(f"{record.name} ({record.kind})"), facts(about), whole]

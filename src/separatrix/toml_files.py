@@ -1,21 +1,26 @@
-"""A TOML file as text: read with care, checked before it is parsed, and every key traced to its line.
+"""TOML files that people write: checked before they are parsed, every key with its line, values by readers.
 
-Shared by the files that people write: studies, materials, friction.
+A `Reader` takes a value and the name of its place, and returns what a record has, or raises InputError.
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from separatrix.errors import InputError
-from separatrix.kept_files import note
-from separatrix.regular_file import size_of, unreadable
-from separatrix.units import printable, shown
+from separatrix.errors import InputError, noted, together
+from separatrix.input_files import note, size_of, unreadable
+from separatrix.units import NUMBER, missing_unit, parse, printable, shown
+
+Made = TypeVar("Made")
+Choice = TypeVar("Choice", bound=Enum)
+Reader = Callable[[object, str], Made]
 
 MOST_BYTES = 256 * 1024
 LONGEST_LINE = 4000
@@ -34,6 +39,9 @@ class Kind:
 
 
 STUDY = Kind()
+
+_BESIDE = ("ring", "race", "land", "guided")
+"""Words that may follow a choice."""
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
 _DOTTED = rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*"
@@ -192,7 +200,7 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
         raise InputError(where, "is not UTF-8 text", cure=cure) from None
     for number, content in enumerate(text.split("\n"), 1):
         if "\0" in content:
-            raise InputError(f"{label}, line {number}", "holds a NUL character: this is not a text file")
+            raise InputError(f"{label}, line {number}", "contains a NUL character: this is not a text file")
         if len(content) > LONGEST_LINE:
             raise InputError(f"{label}, line {number}", f"is longer than {LONGEST_LINE} characters")
     return text
@@ -221,3 +229,141 @@ def _cure(line: str) -> str:
     if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
         return f'Put quantities in quotes: "{printable(bare[1].strip())}".'
     return "Put text in quotes." if re.search(r"=\s*[A-Za-z]", line) else ""
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name in lower case: what two spellings of it have in common."""
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
+    choices = list(known)
+    by_case = {c.casefold(): c for c in choices}
+    if near := get_close_matches(name[:80].casefold(), by_case, 1, 0.6):
+        return f"Did you mean {by_case[near[0]]}?"
+    return cut_list(f"Known: {', '.join(choices)}.")
+
+
+def cut_list(listed: str) -> str:
+    """A sentence with a list, cut after a comma where it is long."""
+    return listed if len(listed) <= 200 else listed[: listed.rindex(",", 0, 200)] + ", ..."
+
+
+def quantity(unit: str) -> Reader[float]:
+    """Read a number with a unit, as text; of a ratio, without a unit, a plain number."""
+
+    def read(value: object, where: str) -> float:
+        if not isinstance(value, str):
+            raise missing_unit(value, unit, where)
+        return parse(value, unit, where)
+
+    return ratio if unit == "-" else read
+
+
+def ratio(value: object, where: str) -> float:
+    """Read a plain number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        cure = _as_number(value)
+        raise InputError(where, "must be a plain number, without a unit", shown(value), cure)
+    if not -1e300 < value < 1e300:  # an integer may be too long for a float
+        raise InputError(where, "must be a finite number", shown(value))
+    return float(value)
+
+
+def whole(value: object, where: str) -> int:
+    """Read an integer."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        near = isinstance(value, float) and abs(value) < 1e15 and value.is_integer()
+        cure = f"Write {value:.0f}." if near else _as_number(value)
+        raise InputError(where, "must be a whole number", shown(value), cure)
+    return value
+
+
+def truth(value: object, where: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        raise InputError(where, "must be true or false, without quotes", shown(value))
+    return value
+
+
+def text(value: object, where: str) -> str:
+    """Read a line of printable text."""
+    if not isinstance(value, str):
+        raise InputError(where, "must be text", shown(value))
+    if not 0 < len(value.strip()) <= 200 or not value.isprintable():
+        raise InputError(where, "must be one line of 1 to 200 printable characters", shown(value))
+    return value
+
+
+def choice(options: type[Choice]) -> Reader[Choice]:
+    """Read one of the values of an Enum, in any spelling: "Inner ring" is "inner"."""
+    names = [option.value for option in options]
+    known = {folded(f"{name} {word}"): name for name in names for word in ("", *_BESIDE)}
+
+    def read(value: object, where: str) -> Choice:
+        found = known.get(folded(value)) if isinstance(value, str) else None
+        if found is None:
+            rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
+            raise InputError(where, rule, shown(value))
+        return options(found)
+
+    return read
+
+
+def list_of(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
+    """Read a list, each item with one reader."""
+
+    def read(value: object, where: str) -> tuple[Made, ...]:
+        if not isinstance(value, list):
+            raise InputError(where, "must be a list in [brackets]", shown(value))
+        return tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(value, 1))
+
+    return read
+
+
+def table(
+    value: object,
+    where: str,
+    readers: Mapping[str, Reader[object]],
+    required: tuple[str, ...] = (),
+    what: str = "this table",
+) -> dict[str, Any]:
+    """Read a table in place, every key known and every required key there; all faults are collected."""
+    if not isinstance(value, dict):
+        raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
+    given: dict[str, Any] = {}
+    problems: list[InputError] = []
+    for key, item in value.items():
+        at = f"{where}.{printable(key)}"
+        with noted(problems):
+            if key not in readers:
+                raise InputError(at, f"is not a key of {what}", cure=nearest(key, readers))
+            given[key] = readers[key](item, at)
+    if missing := [key for key in required if key not in value]:
+        problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
+    if problems:
+        raise together(problems)
+    return given
+
+
+def build(record: Callable[..., Made], values: Mapping[str, object], where: str) -> Made:
+    """Build a record from a table; the place of the table is put before its refusals."""
+    try:
+        return record(**values)
+    except InputError as error:
+        found = [p.at(f"{where}.{p.path.partition('.')[2]}") for p in error.problems or (error,)]
+        raise together(found) from None
+
+
+def _as_number(value: object) -> str:
+    """Cure for a number that is written as text."""
+    if not isinstance(value, str):
+        return ""
+    number = value.replace(",", ".")
+    if number.endswith("%") and re.fullmatch(NUMBER, share := number.removesuffix("%").strip()):
+        return f"Write {float(share) / 100.0:.12g}."
+    if re.fullmatch(NUMBER, number.strip()) is None:
+        return ""
+    point = " with a decimal point" if "," in value else ""
+    return f"Write {number.strip()} as a number{point}, not as text."

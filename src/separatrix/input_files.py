@@ -1,13 +1,15 @@
-"""Files that a study is read from: noted while they are read, and restored to be read again.
+"""Files that a user names: checked before they are opened, noted while read, restored to be read again.
 
-A study is read again from what its answer keeps. Then every file that a file names is one of those kept:
-`place` refuses any other, so that the files of a stranger's answer reach nothing of this machine.
+A pipe or a device may never end, so `size_of` comes before every opening. A study is read again from what its
+answer keeps. Then every file that a file names is one of those kept: `place` refuses any other, so that the
+files of a stranger's answer reach nothing of this machine.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,13 +18,15 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from separatrix.errors import InputError
-from separatrix.regular_file import reading_only_in
 from separatrix.units import printable, shown
 
 MOST_BYTES = 64 * 1024**2
 """Of all files that an answer keeps together."""
 
 MOST_FILES, LONGEST_NAME = 500, 400
+
+_PACKAGE = Path(__file__).resolve().parent
+"""What the package ships may be read from everywhere."""
 
 
 @dataclass(slots=True)
@@ -34,14 +38,55 @@ class Reading:
     """Absolute paths that the files name, as they are written."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Restored:
-    root: Path
-    links: Mapping[str, str]
-
-
+_only_in: ContextVar[Path | None] = ContextVar("only_in", default=None)
 _reading: ContextVar[Reading | None] = ContextVar("reading", default=None)
-_restored: ContextVar[_Restored | None] = ContextVar("restored", default=None)
+_restored: ContextVar[tuple[Path, Mapping[str, str]] | None] = ContextVar("restored", default=None)
+"""Folder of the files of an answer, and the name there of each absolute path."""
+
+
+@contextmanager
+def reading_only_in(folder: Path) -> Iterator[None]:
+    """Refuse, within it, every file that is outside a folder, be it by a link, and that we do not ship."""
+    token = _only_in.set(folder.resolve())
+    try:
+        yield
+    finally:
+        _only_in.reset(token)
+
+
+def size_of(path: Path, where: str) -> int:
+    """Size in bytes of a regular file, links followed; nothing else is to be opened.
+
+    Parameters
+    ----------
+    path : Path
+        As the user named it.
+    where : str
+        Its name in the refusal.
+
+    Raises
+    ------
+    InputError
+        There is none, it is a folder, a pipe or a device, or it is outside of `reading_only_in`.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:
+        raise unreadable(where, error) from None
+    if stat.S_ISDIR(found.st_mode):
+        raise InputError(where, "is a folder, not a file", cure="Name a file in it.")
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError(where, "is not a regular file", cure="Save what it gives to a file, and name that.")
+    folder, real = _only_in.get(), path.resolve()
+    if folder is not None and not (real.is_relative_to(folder) or real.is_relative_to(_PACKAGE)):
+        raise InputError(where, "is outside the folder that may be read", cure="Copy it into the folder.")
+    return found.st_size
+
+
+def unreadable(where: str, error: OSError | ValueError) -> InputError:
+    """Refusal of a file that the system does not give; a ValueError is that of a NUL in its name."""
+    reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
+    return InputError(where, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
 
 
 @contextmanager
@@ -76,12 +121,13 @@ def place(folder: Path, name: str) -> Path:
         if reading is not None and is_absolute:
             reading.absolute.add(name)
         return folder / name
+    root, links = restored
     found = folder / name
-    if not folder.is_relative_to(restored.root):  # of a shipped study
+    if not folder.is_relative_to(root):  # of a shipped study
         return found
     if is_absolute:
-        found = restored.root / restored.links.get(checksum_of_name(name), "..")
-    if not Path(os.path.abspath(found)).is_relative_to(restored.root):
+        found = root / links.get(checksum_of_name(name), "..")
+    if not Path(os.path.abspath(found)).is_relative_to(root):
         raise InputError(shown(name), "names a file that the answer does not keep")
     return found
 
@@ -121,7 +167,7 @@ def restored(files: Mapping[str, bytes], links: Mapping[str, str]) -> Iterator[P
                     file.write(content)
             except OSError as error:
                 raise InputError(shown(name), f"cannot be restored ({error.strerror})") from None
-        token = _restored.set(_Restored(root, dict(links)))
+        token = _restored.set((root, dict(links)))
         try:
             with reading_only_in(root):
                 yield root
