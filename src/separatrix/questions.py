@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -127,11 +128,27 @@ def verb_named(name: str) -> Verb:
     return found
 
 
+def asked_study(verb: Verb, study: str | Path, models: Mapping[str, str]) -> Study:
+    """Return the study of a file or a shipped name, with other models of its cage if there are any.
+
+    Raises
+    ------
+    InputError
+        The file is wrong, lacks a section that the verb needs, or cannot have these models.
+    """
+    from separatrix.study import with_models
+    from separatrix.study_file import read_study, require
+
+    found = read_study(study)
+    require(found, verb.name, *verb.needs)
+    return with_models(found, models) if models else found
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Computed:
-    """The record of an answer, whether it is all that was asked, and the runs kept by an earlier call.
+    """The record of an answer, whether it is complete, and the number of runs kept by an earlier call.
 
-    `study` is the one asked, with the question for the provenance of its answer.
+    `study` has the question, for the provenance of its answer.
     """
 
     record: Any
@@ -143,14 +160,14 @@ class Computed:
 def computed(
     verb: Verb,
     study: Study,
-    question: Mapping[str, Any],
+    question: Mapping[str, object],
     *,
     jobs: int | None = None,
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Computed:
-    """Answer a verb, or give the part that was finished before an interrupt.
+    """Answer a verb, or return the part that was finished before an interrupt.
 
     Parameters
     ----------
@@ -158,7 +175,9 @@ def computed(
         What is asked, of which study.
     question : mapping
         Options of the verb alone, by the names of its function in `separatrix.verbs`.
-    jobs, folder, cluster, progress
+    jobs : int, optional
+        Threads, by default one for each processor.
+    folder, cluster, progress
         As for `separatrix.verbs.long_job`.
 
     Raises
@@ -174,13 +193,14 @@ def computed(
     from separatrix.study_file import asked_by
 
     function = getattr(verbs, verb.name)
+    is_complete, taken = True, 0
     with noting() as reading:
         if not verb.keeps_runs:
-            record, is_complete, taken = function(study, **question), True, 0
+            record = function(study, **question)
         else:
-            with verbs.long_job(jobs, folder, cluster, progress) as runner:
+            with verbs.long_job(jobs or processors(), folder, cluster, progress) as runner:
                 try:
-                    record, is_complete = function(study, runner, **question), True
+                    record = function(study, runner, **question)
                 except Interrupted as stop:
                     if stop.finished is None:
                         raise
@@ -188,3 +208,8 @@ def computed(
             taken = runner.ledger.taken if runner.ledger is not None else 0
     asked = asked_by(study, verb.name, question, reading)
     return Computed(record=record, study=asked, is_complete=is_complete, runs_taken=taken)
+
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

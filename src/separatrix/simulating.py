@@ -13,8 +13,8 @@ from separatrix.cage import simulate as follow
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.limits.growth import cage_at
-from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force
+from separatrix.limits.response import cage_at
+from separatrix.ranking.reason import Moved, beyond_motion, transmitted_force
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
 from separatrix.units import NUMBER, Metre, MetrePerSecond, Newton, Ratio, parse, printable
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -35,20 +34,18 @@ from separatrix.chain.solution import Solution, solve
 from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
-from separatrix.explore.cases import asked_cases
+from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
 from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
-from separatrix.explore.sweep import Case, Sweep
+from separatrix.explore.sweep import Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
 from separatrix.ledger import NAME, Ledger
-from separatrix.limits import stability_curve
+from separatrix.limits.curve import stability_curve
 from separatrix.limits.map import stability_map, value_here
-from separatrix.limits.map_parameters import KICK
-from separatrix.limits.map_records import MapQuestion
-from separatrix.ranking import rank as rank_materials
+from separatrix.limits.map_records import KICK, MapQuestion
 from separatrix.ranking.drawn import frictions_to_draw
+from separatrix.ranking.rank import rank as rank_materials
 from separatrix.runner import Progress, Runner, made_into
 from separatrix.simulating import kick_speed, warn_of_extrapolation
 from separatrix.simulating import simulate as simulate
@@ -62,14 +59,14 @@ SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 
 @contextlib.contextmanager
 def long_job(
-    jobs: int | None, folder: str | Path | None, cluster: str | None, progress: Progress | None
+    jobs: int, folder: str | Path | None, cluster: str | None, progress: Progress | None
 ) -> Iterator[Runner]:
-    """Yield the runner of a long job: `folder` keeps its finished runs, `cluster` makes them.
+    """Yield the runner of a long job of `jobs` threads: `folder` keeps its finished runs.
 
-    Without `jobs` there is a thread for each processor.
+    `cluster` is the address of a Dask scheduler, or ``local:N``; the runs are made there.
     """
     with contextlib.ExitStack() as stack:
-        ledger, executor, threads = None, None, jobs or os.cpu_count() or 1
+        ledger, executor, threads = None, None, jobs
         if folder is not None:
             Path(folder).mkdir(parents=True, exist_ok=True)
             ledger = Ledger(Path(folder) / NAME)

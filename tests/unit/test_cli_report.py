@@ -273,7 +273,7 @@ def test_an_edited_answer_is_refused(folder, capsys):
     rank = json.loads((folder / "rank.json").read_text())
     del rank["pocket"]["slip_speed"], rank["provenance"]
     Path("d", "rank.json").write_text(json.dumps(rank))
-    assert "holds an answer that is not complete; got KeyError('slip_speed')" in refused(
+    assert "contains an incomplete answer; got KeyError('slip_speed')" in refused(
         capsys, "report", "d"
     )
 

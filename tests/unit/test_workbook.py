@@ -12,7 +12,7 @@ import pytest
 from minimal_xlsx import Formula, Shown, workbook
 
 from separatrix import saving
-from separatrix.cli import main, run
+from separatrix.cli import main
 from separatrix.errors import ValidityWarning
 from separatrix.study_file import read_study, shipped_studies
 from separatrix.study_file.cells import COLUMNS, sheets_of
@@ -173,7 +173,8 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
         (tmp_path / taken).write_text("mine")
     (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
     built = []
-    monkeypatch.setattr(run, "_new_study", lambda *, excel: built.append(excel) or b"")
+    monkeypatch.setattr("separatrix.study_file.template", lambda: built.append("text") or "")
+    monkeypatch.setattr("separatrix.study_file.templates.template_workbook", lambda: built.append("workbook") or b"")
     path = tmp_path / name
     assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
     line = f"separatrix: {path} exists already. It was not touched; name a new file.\n"

@@ -86,7 +86,7 @@ class Jobs:
         *,
         name: str,
         title: str = "",
-        question: Mapping[str, Any] | None = None,
+        question: Mapping[str, object] | None = None,
         values: Mapping[str, float] | None = None,
     ) -> Job:
         """Put a question into the queue; the same one that still waits or runs is not asked twice.

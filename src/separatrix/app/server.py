@@ -16,11 +16,10 @@ from fastapi import FastAPI, Request
 from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 
-from separatrix.app import editing, exploring, handing, logs, results
-from separatrix.app.files import Folder
+from separatrix.app import editing, exploring, logs, results
 from separatrix.app.guard import Guard
 from separatrix.app.jobs import Jobs
-from separatrix.app.page import TEMPLATES, Page
+from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
@@ -43,9 +42,8 @@ def plotly_file() -> Path:
     """Return the file of JavaScript in the Python package of Plotly, without importing the package."""
     found = find_spec("plotly")
     if found is None or found.origin is None:
-        raise InputError(
-            "separatrix app", "needs its extra", cure='Install it: pip install "separatrix[app]".'
-        )
+        cure = 'Install it: pip install "separatrix[app]".'
+        raise InputError("separatrix app", "needs its extra", cure=cure)
     return Path(found.origin).parent / "package_data" / "plotly.min.js"
 
 
@@ -67,14 +65,16 @@ def application(root: Path) -> FastAPI:
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
-    for routes in (editing.routes, results.routes, handing.routes, exploring.routes, logs.routes):
+    for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
         app.include_router(routes(page))
 
     @app.exception_handler(SeparatrixError)
     def refused(request: Request, error: SeparatrixError) -> Response:
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
         template = "refusal.html" if "hx-request" in request.headers else "refused.html"
-        return page.html(template, status=422, faults=[str(one) for one in problems])
+        found = page.html(template, faults=[str(one) for one in problems])
+        found.status_code = 422
+        return found
 
     @app.get("/static/plotly.min.js")
     def plotly() -> FileResponse:
@@ -118,18 +118,14 @@ def listening(port: int) -> socket.socket:
     return found
 
 
-def link_of(port: int, token: str) -> str:
-    """Return the link that opens the page."""
-    return f"http://{HOST}:{port}/?token={token}"
-
-
 class Server(uvicorn.Server):
     """The page of a folder behind its guard; `link` opens it."""
 
     def __init__(self, root: Path, *, port: int = 0) -> None:
         self.socket, token = listening(port), secrets.token_urlsafe(24)
-        self.link = link_of(self.socket.getsockname()[1], token)
-        guarded = Guard(application(root), token=token, port=self.socket.getsockname()[1])
+        port = self.socket.getsockname()[1]
+        self.link = f"http://{HOST}:{port}/?token={token}"
+        guarded = Guard(application(root), token=token, port=port)
         super().__init__(
             uvicorn.Config(
                 guarded,

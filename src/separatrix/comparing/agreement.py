@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from separatrix.comparing.records import is_number
 from separatrix.units import Ratio
 
 ROUNDING = 1e-9
@@ -49,12 +49,13 @@ class Agreement:
         return self.agreement != DIFFERENT
 
 
-def agreement(stored: Mapping[str, Any], computed: Mapping[str, Any]) -> Agreement:
+def agreement(stored: Mapping[str, object], computed: Mapping[str, object]) -> Agreement:
     """Compare two documents, but for the version and the provenance in them."""
     first, second = ({k: v for k, v in one.items() if k not in IGNORED} for one in (stored, computed))
     found = list(_differing(first, second, "", None))
     beyond = [one for one in found if one.relative is None or one.relative > ROUNDING]
-    largest = max((one for one in found if one.relative is not None), key=_relative, default=None)
+    numbers = [one for one in found if one.relative is not None]
+    largest = max(numbers, key=lambda one: one.relative or 0.0, default=None)
     return Agreement(
         agreement=DIFFERENT if beyond else ROUNDED if found else EXACT,
         largest_difference=None if largest is None else largest.relative,
@@ -64,16 +65,7 @@ def agreement(stored: Mapping[str, Any], computed: Mapping[str, Any]) -> Agreeme
     )
 
 
-def _relative(one: Differing) -> float:
-    return one.relative or 0.0
-
-
-def is_number(value: object) -> bool:
-    """Whether a value of a document is a number; true and false are none."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _differing(a: Any, b: Any, key: str, scale: float | None) -> Iterator[Differing]:
+def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Differing]:
     """Yield what differs; numbers of a list are compared with the largest of that list."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for name in {**a, **b}:

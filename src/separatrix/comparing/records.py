@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeGuard
 
 from separatrix.units import Ratio
 
 Plain = float | int | str | bool | None
 
 
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value of a document is a number; true and false are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 class Noise(StrEnum):
-    """What a difference is, held against the scatter of the runs."""
+    """A difference compared with the scatter of the runs."""
 
     BEYOND = "more than counting noise"
     WITHIN = "within counting noise"

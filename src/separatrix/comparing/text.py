@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from separatrix.comparing.agreement import is_number
-from separatrix.comparing.records import Comparison, Noise, Plain, Row, Value
+from separatrix.comparing.records import Comparison, Noise, Row, Value, is_number
 from separatrix.comparing.results import UNCOUNTED_VERBS
 from separatrix.present.text.tables import (
     ABSENT,
@@ -57,13 +56,9 @@ def in_words(found: Comparison, *, full: bool = False) -> str:
         for which, one in zip(("first", "second"), found.answers, strict=True)
     ]
     blocks = [heading(f"Two answers of {found.of}"), facts(named)]
-    if found.verdicts:
-        rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
-        blocks.append(
-            _part("Verdicts that changed", ("", "", "first", "second"), rows, "verdicts", full, left=2)
-        )
-    else:
-        blocks.append(section("Verdicts that changed", paragraph("None.")))
+    rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
+    heads: tuple[str, ...] = ("", "", "first", "second")
+    blocks.append(_part("Verdicts that changed", heads, rows, "verdicts", full, left=2))
     changed, own = list(shown_rows(found, full=full)), "" if full else found.environment or ""
     rows = [result_words(row, own) for row in changed]
     heads = ("", "", "first\n(95 %)", "second\n(95 %)", "change", "noise")
@@ -135,18 +130,14 @@ def pair_words(row: Row) -> list[str]:
 
 
 def _value(one: Value, unit: str | None) -> str:
-    text = _plain(one.value, unit)
+    text = ABSENT if one.value is None else str(one.value)
+    if is_number(one.value):
+        text = _number(one.value, unit)
     if one.low is None or one.high is None:
         return text
     if unit == "-" and one.high - one.low > COARSE and is_number(one.value):
-        return interval(float(one.value), one.low, one.high)  # type: ignore[arg-type]
+        return interval(float(one.value), one.low, one.high)
     return f"{text} ({_number(one.low, unit)} to {_number(one.high, unit)})"
-
-
-def _plain(value: Plain, unit: str | None) -> str:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return ABSENT if value is None else str(value)
-    return _number(value, unit)
 
 
 def _number(value: float, unit: str | None, *, sign: bool = False) -> str:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from separatrix.present.text.tables import ABSENT, grouped, interval, number, rate
+from separatrix.present.text.tables import ABSENT, grouped, number, rate
 from separatrix.reporting.kept import Kept, differing
 from separatrix.reporting.pictures import picture
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import (
+from separatrix.reporting.record import (
+    Block,
+    Paragraph,
     Row,
+    Section,
+    Table,
     facts,
     margin,
     own_rows,
@@ -18,6 +21,7 @@ from separatrix.reporting.words import (
     quantity,
     threshold,
     verdict,
+    with_interval,
 )
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
@@ -100,7 +104,7 @@ def _other_ball(rank: Row, rows: list[Row]) -> Table:
         ("candidate", "verdict", "P(stable) (95 %)", "pocket force", "runs"),
         tuple(
             (
-                *(str(row["name"]), str(row["other_ball_verdict"]), _share(row, "other_ball")),
+                *(str(row["name"]), str(row["other_ball_verdict"]), probability(row, "other_ball_")),
                 *(quantity(row["other_ball_largest_contact_force"], "N", 3), str(row["other_ball_runs"])),
             )
             for row in rows
@@ -143,26 +147,11 @@ def _motion(row: Row) -> tuple[str, ...]:
     )
 
 
-def _share(row: Row, kind: str) -> str:
-    """Return P(stable) with its interval, over the inputs or by the other model of the ball."""
-    low, high = row[f"{kind}_probability_low"], row[f"{kind}_probability_high"]
-    return interval(row[f"{kind}_probability_stable"], low, high)
-
-
-def _factor(row: Row) -> str:
-    """Return the median restitution factor of the drawn bearings, and the range of nine in ten."""
-    if row.get("restitution_factor") is None:
-        return ABSENT
-    return interval(row["restitution_factor"], row["restitution_factor_low"], row["restitution_factor_high"])
-
-
 def uncertainty(kept: Mapping[str, Kept]) -> Section:
     """Return the verdicts over the uncertain inputs, and the next test; or how to get them."""
-    if "sensitivity" in kept:
-        blocks = tuple(_sensitivity(kept["sensitivity"]))
-    else:
-        blocks = tuple(_without_sensitivity(kept))
-    return Section("Uncertainty and the next test", blocks)
+    found = kept.get("sensitivity")
+    blocks = _without_sensitivity(kept) if found is None else _sensitivity(found)
+    return Section("Uncertainty and the next test", tuple(blocks))
 
 
 def _without_sensitivity(kept: Mapping[str, Kept]) -> Iterator[Block]:
@@ -176,7 +165,7 @@ def _without_sensitivity(kept: Mapping[str, Kept]) -> Iterator[Block]:
     if "rank" in kept:
         rows = [row for row in own_rows(kept["rank"].document) if row.get("uncertain_verdict")]
         for row in rows:
-            found = f"{row['uncertain_verdict']}, {_share(row, 'uncertain')}"
+            found = f"{row['uncertain_verdict']}, {probability(row, 'uncertain_')}"
             yield Paragraph(f"{row['name']} with the uncertain inputs drawn: P(stable) {found}.")
     if document["study"].get("ranking"):
         yield Paragraph(
@@ -195,7 +184,7 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
                 str(row["name"]),
                 verdict(row),
                 probability(row),
-                _factor(row),
+                with_interval(row, "restitution_factor"),
                 ABSENT if row.get("runs") is None else str(row["runs"]),
             )
             for row in rows

@@ -7,9 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
 from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import own_candidates, picture
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import (
+from separatrix.reporting.record import (
+    Block,
+    Paragraph,
     Row,
+    Section,
+    Table,
     margin,
     own_rows,
     places,
@@ -35,11 +38,9 @@ EXPLAINED = (
 def first_page(kept: Mapping[str, Kept], about: Sequence[str]) -> Section:
     """Return the answer on one page; `about` are caveats on the answers themselves."""
     if "rank" in kept:
-        blocks = [*_ranking(kept["rank"])]
-    elif "stability" in kept:
-        blocks = [*_stability(kept["stability"])]
+        blocks = _ranking(kept["rank"])
     else:
-        blocks = [*_without_cage(kept)]
+        blocks = _stability(kept["stability"]) if "stability" in kept else _without_cage(kept)
     main = next(kept[verb] for verb in ("rank", "stability", *kept) if verb in kept).document
     return Section("Answer", (*blocks, *_caveats(main, about)))
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from separatrix.present.text.tables import ABSENT, number
 from separatrix.reporting.kept import Kept
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, entry, facts
+from separatrix.reporting.record import Block, Paragraph, Row, Section, Table, entry, facts
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 PROPERTIES = {
@@ -59,13 +57,8 @@ def _materials(study: Row) -> Iterator[tuple[str, ...]]:
             place = (record.get("taken") or {}).get(key)
             taken = record["data"][key][place] if place is not None else {}
             source, confidence = taken.get("source"), taken.get("confidence")
-            yield (
-                *(str(one["name"]), words, entry(value)),
-                *(
-                    str(confidence or one.get("confidence") or ABSENT),
-                    str(source or one.get("source") or ABSENT),
-                ),
-            )
+            known = (confidence or one.get("confidence"), source or one.get("source"))
+            yield str(one["name"]), words, entry(value), *(str(text or ABSENT) for text in known)
 
 
 def _frictions(ranking: Row) -> Iterator[Block]:
@@ -99,11 +92,8 @@ def provenance(kept: Mapping[str, Kept]) -> Section:
     blocks: list[Block] = [
         facts(
             ("Study", f"{first['name']}: {first['title']}"),
-            (
-                "Version of separatrix",
-                ", ".join(sorted({str(v.document["separatrix_version"]) for v in kept.values()})),
-            ),
-            ("Seed", ", ".join(sorted({str(v.document["seed"]) for v in kept.values()}))),
+            ("Version of separatrix", _each(kept, "separatrix_version")),
+            ("Seed", _each(kept, "seed")),
         )
     ]
     commands = [(verb, _command(verb, one.document)) for verb, one in kept.items()]
@@ -143,7 +133,7 @@ def _libraries(entry_of: object) -> Iterator[tuple[str, str]]:
         for one in entry_of:
             yield from _libraries(one)
     if isinstance(entry_of, dict):
-        library: Any = entry_of.get("library")
+        library = entry_of.get("library")
         if isinstance(library, dict) and library.get("sha256"):
             shipped = " (shipped with this version)" if library.get("shipped") else ""
             yield f"{library['file']}{shipped}", str(library["sha256"])

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from separatrix.comparing.inputs import differences, of_study
-from separatrix.comparing.saved import read_file
+from separatrix.comparing.pair import differences, of_study
+from separatrix.comparing.saved import Document, read_file
 from separatrix.errors import InputError
+from separatrix.messages import grouped, noted_warnings
 from separatrix.present import load
+from separatrix.questions import Computed, Verb, verb_named
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from separatrix.questions import Computed
     from separatrix.study import Study
 
 NEEDED = {
@@ -37,7 +38,7 @@ ALWAYS = ("separatrix_version", "title", "name", "study", "seed", "warnings")
 class Kept:
     """One answer: its document, and its dataset if that was kept, too."""
 
-    document: Mapping[str, Any]
+    document: Document
     data: xr.Dataset | None = None
 
 
@@ -69,7 +70,7 @@ def read_folder(folder: Path, *, needed: bool = True) -> dict[str, Kept]:
     return found
 
 
-def read_document(path: Path, verb: str) -> Mapping[str, Any]:
+def read_document(path: Path, verb: str) -> Document:
     """Return a saved document; one that is not of this verb, or lacks what a report needs, is refused."""
     where, cure = str(path), "Compute this answer again, or remove the file."
     saved = read_file(path)
@@ -82,13 +83,12 @@ def read_document(path: Path, verb: str) -> Mapping[str, Any]:
     return found
 
 
-def differing(first: Mapping[str, Any], second: Mapping[str, Any]) -> list[str]:
+def differing(first: Document, second: Document) -> list[str]:
     """Return the names of the inputs that differ between two documents, and the version if that does."""
     ours, theirs = (dict(of_study(one["study"])) for one in (first, second))
-    versions = {one["separatrix_version"] for one in (first, second)}
-    seeds = {one["seed"] for one in (first, second)}
     names = [at.key for at in differences(ours, theirs)]
-    return names + ["version of separatrix"] * (len(versions) > 1) + ["seed"] * (len(seeds) > 1)
+    beside = {"version of separatrix": "separatrix_version", "seed": "seed"}
+    return names + [words for words, key in beside.items() if first[key] != second[key]]
 
 
 def verbs_of(study: Study) -> Iterator[str]:
@@ -105,21 +105,28 @@ def answers(kept: Kept, study: Study) -> bool:
     from separatrix.present import plain
     from separatrix.study_file import resolved
 
-    document = kept.document
+    found = kept.document
     asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
-    same = all(document[key] == value for key, value in asked.items())
-    return same and document["separatrix_version"] == __version__ and document.get("complete", True) is True
+    asked["separatrix_version"] = __version__
+    return all(found[key] == value for key, value in asked.items()) and found.get("complete", True) is True
 
 
-def keep(verb: str, made: Computed, notes: list[str], folder: Path | None) -> Kept:
-    """Return a computed answer; its files are written if there is a folder, its figures are in the report."""
+def keeping(
+    compute: Callable[[Verb], Computed], notes: list[str], folder: Path | None
+) -> Callable[[str], Kept]:
+    """Return what computes an answer; its files are written if there is a folder, without figures."""
     from separatrix.present import dataset, document
     from separatrix.saving import save_answer
 
-    found = document(verb, made.record, made.study, notes)
-    if folder is not None:
-        save_answer(folder, made.record, made.study, found, pictures=False)
-    return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
+    def kept(verb: str) -> Kept:
+        with noted_warnings() as own:
+            made = compute(verb_named(verb))
+        found = document(verb, made.record, made.study, [*notes, *grouped(own)])
+        if folder is not None:
+            save_answer(folder, made.record, made.study, found, pictures=False)
+        return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
+
+    return kept
 
 
 def answers_of(

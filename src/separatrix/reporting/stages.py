@@ -8,8 +8,7 @@ from math import degrees
 from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
 from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import drawing, equation, picture
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, both, entry, facts, quantity
+from separatrix.reporting.record import Block, Paragraph, Row, Section, Table, entry, facts, quantity
 
 CONTACT = {
     "load": ("Load Q", "N"),
@@ -24,7 +23,6 @@ CREEP = {
     "creep_spin": ("Creep by spin s", "1/m"),
     "creep_curvature": ("Creep by curvature q", "1/m2"),
 }
-RACES = ("quantity", "inner race", "outer race")
 MISSING = "Not in this folder: run `separatrix {verb} {name}` into it, then the report again."
 
 
@@ -164,8 +162,7 @@ def _contacts(kept: Kept) -> Iterator[Block]:
         r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
         "Hertz: maximum pressure p\u2080 of the ellipse with semi-axes a and b.",
     )
-    rows = both(at["inner"], at["outer"], CONTACT)
-    yield Table(RACES, rows, "Contacts of the most loaded ball.")
+    yield _both_races(at, CONTACT, "Contacts of the most loaded ball.")
     yield from picture(
         "bearing",
         kept.data,
@@ -182,9 +179,16 @@ def _creep(kept: Kept) -> Iterator[Block]:
         "Creep across the groove [14, 16]: free-rolling offset, spin, curvature (Heathcote), and the "
         "increment that an impact of the cage adds.",
     )
-    yield Table(
-        RACES, both(at["inner"], at["outer"], CREEP), "Creep in the contacts of the most loaded ball."
+    yield _both_races(at, CREEP, "Creep in the contacts of the most loaded ball.")
+
+
+def _both_races(contacts: Row, names: Mapping[str, tuple[str, str]], caption: str) -> Table:
+    """Return a table of both races; `names` has words and unit of each key."""
+    rows = tuple(
+        (words, *(quantity(contacts[race].get(key), unit, 4) for race in ("inner", "outer")))
+        for key, (words, unit) in names.items()
     )
+    return Table(("quantity", "inner race", "outer race"), rows, caption)
 
 
 def _traction(kept: Kept) -> Iterator[Block]:
