@@ -18,8 +18,7 @@ from separatrix.chain.restitution import Restitution
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction.exact.contact import ContactProblem
 from separatrix.comparing.records import Comparison
-from separatrix.explore.envelope import Duty, WorstCase
-from separatrix.explore.sweep import Sweep
+from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
 from separatrix.present.contact import GIVEN, NUMBERS

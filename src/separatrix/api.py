@@ -365,8 +365,8 @@ def report(
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.reporting.content import report_of
-    from separatrix.reporting.kept import Kept, answers_of
+    from separatrix.reporting.content import answers_of, report_of
+    from separatrix.reporting.record import Kept
 
     asked = study if isinstance(study, Study) else read_study(study)
 

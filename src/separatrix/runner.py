@@ -40,15 +40,9 @@ class Expecting(Progress, Protocol):
         """Take in an estimate, which costs something to make."""
 
 
-LOOK = 0.1
-"""Time between two looks at whether the work was interrupted [s]."""
-
-PART = 16
-"""Runs from each kick that the ledger keeps together."""
-
-SOON = 1.0
-"""Time of the runs between two looks at whether to stop, if one run does not take longer [s]."""
-
+LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
+PART = 16  # runs from each kick that the ledger keeps together
+SOON = 1.0  # time of the runs between two looks at whether to stop, if one run does not take longer [s]
 BY_BALL = ("pocket_impacts", "pocket_rubbing")
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
 

@@ -9,20 +9,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from cages import threshold_points
 from commands import document, refused
 
 from separatrix.app.plotly import spec
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.explore.envelope import duty, orders, time_shares, worst_case
-from separatrix.explore.sweep import sweep
+from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
 from separatrix.figures.envelope import has_envelope
 from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
 from separatrix.figures.hover import plain
-from separatrix.limits import own_threshold, restitution_threshold, threshold_points
-from separatrix.limits.curve import COARSE
+from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load
 from separatrix.reporting.pictures import picture
 from separatrix.runner import Runner

@@ -12,9 +12,7 @@ from separatrix.distribution import LogNormal, Normal
 from separatrix.draws import UncertainInput
 from separatrix.explore import counting
 from separatrix.explore.counting import is_plain, settles_more
-from separatrix.explore.drivers import CHANCE, drivers, fitted
-from separatrix.explore.next_test import next_tests, reducible_shares
-from separatrix.explore.shares import sobol_shares
+from separatrix.explore.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.ranking.drawn import Case
 from separatrix.study import Candidate, Friction
 

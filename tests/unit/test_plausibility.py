@@ -9,7 +9,7 @@ import pytest
 from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.ranking.plausible import (
+from separatrix.ranking.reason import (
     Moved,
     beyond_motion,
     pocket_pressure,

@@ -10,7 +10,7 @@ from reference_meanings import lines_of
 from reference_tables import VERBS, json_page, keys_without_line, names_of, records_of, study_page
 
 import separatrix
-from separatrix.ranking import Ranked
+from separatrix.ranking.records import Ranked
 
 BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""

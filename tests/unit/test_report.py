@@ -13,7 +13,7 @@ from separatrix.present import in_words, whereabouts
 from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
-from separatrix.ranking import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.reporting.first_page import verdict_sentences
 from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study

@@ -17,14 +17,13 @@ from separatrix.app.plotly import spec
 from separatrix.app.worker import REPORT
 from separatrix.comparing.pair import compared
 from separatrix.comparing.saved import VERBS, Saved, read_answers
-from separatrix.comparing.text import in_words, input_words, pair_words, result_words, shown_rows
+from separatrix.comparing.shown import in_words, input_words, pair_words, result_words, shown_rows
 from separatrix.errors import InputError
-from separatrix.figures.envelope import has_envelope
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
+from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.scene import scene
 from separatrix.figures.space import is_in_space
-from separatrix.figures.space_page import view as space_view
+from separatrix.figures.space_film import view as space_view
 from separatrix.figures.style import OUTCOMES, study_of
 from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -32,6 +33,10 @@ EVERY = 0.2
 """Least time between two reports of progress [s]."""
 
 
+Send = Callable[..., None]
+"""Sends the page what has changed of a job, by the names of `separatrix.app.jobs.Job`."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
     """A question: the verb, the study file, the folder of the answer, options of the verb, models of motion.
@@ -49,34 +54,22 @@ class Task:
     values: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Report:
-    """How far a task is: the fields that are not None have changed."""
-
-    number: int
-    state: str | None = None
-    done: int | None = None
-    total: int | None = None
-    expected: float | None = None
-    message: str | None = None
-
-
 class Reporter:
     """Reports how far a long job is, and what time it will take."""
 
-    def __init__(self, number: int, send: Callable[[Report], None]) -> None:
-        self.number, self.send, self._last = number, send, 0.0
+    def __init__(self, send: Send) -> None:
+        self.send, self._last = send, 0.0
 
     def __call__(self, done: int, total: int) -> None:
         """Report the points done, now and then and at the end."""
         now = time.monotonic()
         if done == total or now - self._last > EVERY:
             self._last = now
-            self.send(Report(number=self.number, done=done, total=total))
+            self.send(done=done, total=total)
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:  # noqa: ARG002
         """Report the time that the work is expected to take."""
-        self.send(Report(number=self.number, expected=float(estimate())))
+        self.send(expected=float(estimate()))
 
 
 def work(pipe: Connection) -> None:
@@ -105,9 +98,9 @@ def work(pipe: Connection) -> None:
 
     threading.Thread(target=listen, daemon=True).start()
 
-    def send(report: Report) -> None:
+    def send(number: int, **changes: object) -> None:
         try:
-            pipe.send(report)
+            pipe.send((number, changes))
         except OSError:  # the page is gone; the task ends by itself
             in_hand.clear()
 
@@ -116,15 +109,15 @@ def work(pipe: Connection) -> None:
             task = waiting.get()
             if task is None:
                 return
-            _report_end(task, in_hand, send)
+            _compute(task, in_hand, partial(send, task.number))
         except KeyboardInterrupt:  # a cancel of a task that had just ended
             in_hand.clear()
 
 
-def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) -> None:
+def _compute(task: Task, in_hand: list[int], send: Send) -> None:
     """Compute a task and report how it ended."""
     in_hand.append(task.number)
-    send(Report(number=task.number, state="running"))
+    send(state="running")
     try:
         state, message = _answered(task, send)
     except KeyboardInterrupt:
@@ -133,14 +126,13 @@ def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) 
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
         state, message = "refused", "\n".join(str(one) for one in problems)
     in_hand.clear()
-    end = Report(number=task.number, state=state, message=message)
     try:
-        send(end)
+        send(state=state, message=message)
     except KeyboardInterrupt:  # as above; the page must receive the end
-        send(end)
+        send(state=state, message=message)
 
 
-def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
+def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
     from separatrix.input_files import reading_only_in
     from separatrix.limits.map_records import varied
@@ -159,18 +151,19 @@ def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
         task.folder.mkdir(parents=True, exist_ok=True)
 
         def compute(one: Verb) -> Computed:
-            progress = Reporter(task.number, send)
+            progress = Reporter(send)
             return computed(one, study, question, folder=task.folder, progress=progress)
 
         if verb is None:
             return _reported(task, study, notes, compute, send)
         found = compute(verb)
-        send(Report(number=task.number, message="Drawing the figures and writing the files."))
+        send(message="Drawing the figures and writing the files.")
         answer = document(verb.name, found.record, found.study, grouped(notes))
         save_answer(task.folder, found.record, found.study, answer)
         if not found.is_complete:
             return INTERRUPTED
-        return "finished", f"{found.runs_taken} runs were taken from an earlier job." * bool(found.runs_taken)
+        taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
+        return "finished", taken
 
 
 def _reported(
@@ -178,20 +171,19 @@ def _reported(
     study: Study,
     notes: list[str],
     compute: Callable[[Verb], Computed],
-    send: Callable[[Report], None],
+    send: Send,
 ) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.reporting.content import report_of
+    from separatrix.reporting.content import answers_of, keeping, report_of
     from separatrix.reporting.formats import write
-    from separatrix.reporting.kept import answers_of, keeping
 
     def announced(verb: Verb) -> Computed:
-        send(Report(number=task.number, message=f"Computing {verb.name} for the report."))
+        send(message=f"Computing {verb.name} for the report.")
         return compute(verb)
 
     found, missing, is_complete = answers_of(study, task.folder, keeping(announced, notes, task.folder))
     if not is_complete:
         return INTERRUPTED
-    send(Report(number=task.number, message="Writing the report."))
+    send(message="Writing the report.")
     write(report_of(found, missing), task.folder, with_pdf=find_spec("typst") is not None)
     return "finished", ""

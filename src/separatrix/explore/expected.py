@@ -13,12 +13,8 @@ if TYPE_CHECKING:
     from separatrix.study import StabilitySettings, Study
     from separatrix.units import Ratio, Second
 
-SAMPLED = 3
-"""Runs from each kick that are timed at a friction."""
-
-LONGEST_SAMPLE = 5.0
-"""Time after which no further friction is timed [s]."""
-
+SAMPLED = 3  # runs from each kick that are timed at a friction
+LONGEST_SAMPLE = 5.0  # time after which no further friction is timed [s]
 DAMPINGS = (None, 0.0, 0.5, 1.0)
 """Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
 
@@ -26,12 +22,8 @@ FACTORS = (0.0, 0.7, 1.5)
 """Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
 and about it, for runs far above end soon."""
 
-MAP_POINTS_NOT_TIMED = 30
-"""A map of so few points needs no estimate."""
-
-PICTURES = 5.0
-"""Time of a ranking's figures and files [s]."""
-
+MAP_POINTS_NOT_TIMED = 30  # a map of so few points needs no estimate
+PICTURES = 5.0  # time of a ranking's figures and files [s]
 CURVE_POINTS = 16.0
 """Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
 it bends more, its points take longer, too."""
@@ -39,8 +31,8 @@ it bends more, its points take longer, too."""
 
 def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
     """Time of a stability curve, with its band at every point or only at the cage's own damping."""
-    from separatrix.limits.growth import GrowthCounter
     from separatrix.limits.point import linear_guess
+    from separatrix.limits.response import GrowthCounter
 
     counts = GrowthCounter(cage, settings)
     some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
@@ -123,11 +115,8 @@ def _expected_chains(study: Study, count: int) -> Second:
     return count * (time.perf_counter() - start)
 
 
-SOBOL_DRAWS = 256
-"""Draws of each matrix behind the shares of what the chain computes smoothly (`shares`)."""
-
-SHARE_RUN = 0.7
-"""Of the runs of all cases, those that are made, with what the inverse questions take."""
+SOBOL_DRAWS = 256  # draws of each matrix behind the shares of what the chain computes smoothly (`shares`)
+SHARE_RUN = 0.7  # of the runs of all cases, those that are made, with what the inverse questions take
 
 
 def expected_map(question: MapQuestion, *, jobs: int) -> Second:

@@ -17,10 +17,8 @@ from separatrix.chain.solution import solve
 from separatrix.distribution import described
 from separatrix.draws import Case, UncertainInput
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.explore.allowed import allowed_film, allowed_friction
-from separatrix.explore.counting import BLOCK, RISK, counted, settles
-from separatrix.explore.drivers import drivers, fitted
-from separatrix.explore.next_test import next_tests, reducible_shares
+from separatrix.explore.counting import BLOCK, RISK, allowed_film, allowed_friction, counted, settles
+from separatrix.explore.drivers import drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.explore.records import (
     AllowedFilm,
     AllowedFriction,
@@ -36,23 +34,25 @@ from separatrix.explore.records import (
     UncertainRow,
     UncertainStudy,
 )
-from separatrix.explore.shares import sobol_shares
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
-from separatrix.ranking.plausible import Moved, beyond_motion, within_a_turn
-from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
-from separatrix.ranking.second import Pocket, pocket_of
+from separatrix.ranking.order import MeanFriction, lowest_among, overall
+from separatrix.ranking.reason import (
+    NOT_FINISHED,
+    Moved,
+    Pocket,
+    beyond_motion,
+    not_finite,
+    not_measured,
+    pocket_of,
+    within_a_turn,
+)
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array, Ratio
 
-FEWEST = 64
-"""Bearings below which no probability is worth a table."""
-
-CLOUD = 256
-"""Bearings of a case that are kept for the pictures."""
-
+FEWEST = 64  # bearings below which no probability is worth a table
+CLOUD = 256  # bearings of a case that are kept for the pictures
 Counted = tuple[Judgement, Ensemble]
 
 
@@ -176,7 +176,7 @@ def _rows(drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]
         known = [drawn.stated[case] for case in cases if case in drawn.stated]
         means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
     measured = {name: one for name, one in means.items() if one is not None}
-    lowest = lowest_among(measured).probabilities
+    lowest = lowest_among(measured)
     rows = [_row(drawn, Case(n, environment), f, lowest.get(n), judged) for n, f in measured.items()]
     others = (NotDrawn(name=n, reason=not_measured(environment)) for n in means if n not in measured)
     return (*sorted(rows, key=_best_first), *others)
@@ -292,8 +292,7 @@ def _words(case: Case) -> str:
     return f"{case.candidate} in {case.environment}"
 
 
-SHARES = "shares"
-"""Names the piece of work behind what the chain computes smoothly."""
+SHARES = "shares"  # names the piece of work behind what the chain computes smoothly
 
 
 def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothShares, ...]:

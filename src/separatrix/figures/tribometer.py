@@ -25,7 +25,7 @@ from separatrix.figures.style import (
     literal,
     settled,
 )
-from separatrix.friction.records import in_words
+from separatrix.friction.file import in_words
 from separatrix.friction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 

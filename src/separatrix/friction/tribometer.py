@@ -10,18 +10,17 @@ from pathlib import Path
 from typing import TypeVar
 
 from separatrix.errors import InputError, together
+from separatrix.friction.file import NAMES, FrictionTest
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
 from separatrix.friction.logs.log import RawLog, in_order, joined
-from separatrix.friction.records import NAMES, FrictionTest
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
 from separatrix.units import printable
 
 _T = TypeVar("_T")
 _S = TypeVar("_S")
-Progress = Callable[[int, int], None]
-"""Called with the number of steps done and their total."""
+Progress = Callable[[int, int], None]  # called with the number of steps done and their total
 
 OTHERS = frozenset(
     {".toml", ".md", ".json", ".nc", ".png", ".jpg", ".jpeg", ".pdf", ".py", ".svg", ".gif", ".docx"}
@@ -39,10 +38,8 @@ class ReducedLogs:
     """One for each test, with its log, its friction and the series behind it."""
     friction_tests: tuple[FrictionTest, ...] | None
     """The tests as a friction file keeps them; None where some do not state what slid on what."""
-    fit: FrictionFit | None
-    """Friction of each material over the conditions; None as above."""
-    notes: tuple[str, ...] = ()
-    """What concerns all of them together."""
+    fit: FrictionFit | None  # friction of each material over the conditions; None as above
+    notes: tuple[str, ...] = ()  # what concerns all of them together
 
     @property
     def logs(self) -> list[RawLog]:

@@ -35,7 +35,7 @@ from separatrix.explore.records import NotDrawn, UncertainMaterial
 from separatrix.explore.sweep import Sweep
 from separatrix.present.walk import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.walk import shape as shape
-from separatrix.ranking import NotFinished, NotMeasured, Ranked
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
 from separatrix.units import Rows
 
 Key = TypeVar("Key")

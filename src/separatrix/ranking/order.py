@@ -1,37 +1,130 @@
-"""Ranks with ties: within the scatter nobody is first."""
+"""Mean friction of each candidate with its error, which is the lowest, and ranks with ties."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, log, sqrt
 
-from separatrix.ranking.lowest import may_be_lower
+import numpy as np
+
+from separatrix.chain.pocket import standard_error
+from separatrix.ranking.records import Ranked
+from separatrix.study import Friction
 from separatrix.units import Ratio
 
-if TYPE_CHECKING:
-    from separatrix.ranking.lowest import MeanFriction
-    from separatrix.ranking.records import Ranked
 
-Interval = tuple[Ratio, Ratio, Ratio]
-"""A margin with the low and the high end of its scatter."""
+@dataclass(frozen=True, slots=True)
+class MeanFriction:
+    """Mean friction with its scatter, and what to report with it."""
+
+    mean: Ratio
+    error: Ratio | None = None  # standard error, with that of extrapolation; None if no scatter is known
+    deviation: Ratio | None = None  # standard deviation of a new sample
+    assumed: bool = False  # whether the scatter was not measured
+    extrapolation: tuple[str, ...] = ()
+
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """95 % interval of the mean; the mean twice if its scatter is not known."""
+        half = 1.96 * (self.error or 0.0)
+        return max(0.0, self.mean - half), self.mean + half
+
+
+def measured(friction: Friction) -> MeanFriction:
+    """Mean and standard error of one measurement, with the widening for what was not tested."""
+    error = standard_error(friction)
+    return MeanFriction(
+        friction.mean,
+        None if error is None else hypot(error, friction.widening),
+        friction.standard_deviation,
+        friction.assumed_scatter,
+        friction.extrapolation,
+    )
+
+
+def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
+    """Mean over the measured environments, each counting once; None if there is none."""
+    found = [measured(friction) for friction in frictions if friction is not None]
+    if not found:
+        return None
+    mean = sum(one.mean for one in found) / len(found)
+    errors = [one.error for one in found if one.error is not None]
+    return MeanFriction(
+        mean,
+        sqrt(sum(e * e for e in errors)) / len(found) if errors else None,
+        assumed=any(one.assumed for one in found),
+        extrapolation=tuple(dict.fromkeys(text for one in found for text in one.extrapolation)),
+    )
+
+
+TIED_FROM: Ratio = 0.05  # probability of being below the leader from which a candidate is tied with it
+_LEAST_ERROR = 1e-9
+NODES = 32  # of Gauss's rule, between two of the places where a factor falls: the error is rounding
+_REACH = 9.0
+_STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
+"""Where a factor begins to fall, falls, and has fallen, in its own standard deviations."""
+
+
+def lowest_among(known: Mapping[str, MeanFriction]) -> dict[str, Ratio]:
+    """Probability that each mean friction is the lowest of all; none of a single one, which is not compared.
+
+    Each is log-normal about its mean with its standard error, 0 where there is none.
+    """
+    if len(known) < 2:
+        return {}
+    logs, errors = zip(*map(_log, known.values()), strict=True)
+    return dict(zip(known, lowest_of(logs, errors), strict=True))
+
+
+def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio]:
+    r"""Probability that each of several independent normal numbers is the smallest.
+
+    :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
+    Gauss's rule between the places where a factor begins to fall, falls, and has fallen.
+    """
+    from scipy.special import ndtr
+
+    mu, sigma = np.array(means, dtype=float), np.array(deviations, dtype=float)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    found = []
+    for i in range(mu.size):
+        others, widths = np.delete(mu, i), np.delete(sigma, i)
+        edges = (others - mu[i] + np.outer(_STEPS, widths)) / sigma[i]
+        ends = np.unique(np.clip(np.append(edges.ravel(), [-_REACH, 0.0, _REACH]), -_REACH, _REACH))
+        half = 0.5 * np.diff(ends)[:, None]
+        x = ends[:-1, None] + half * (1.0 + nodes)
+        beyond = ndtr((others - mu[i] - sigma[i] * x[..., None]) / widths).prod(axis=-1)
+        share = float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi))
+        found.append(min(share, 1.0))  # rounding may leave 2e-15 more
+    return found
+
+
+def may_be_lower(one: MeanFriction, leader: MeanFriction) -> bool:
+    """Whether a mean friction lies below a leader's with a probability of `TIED_FROM` or more."""
+    from scipy.special import ndtr
+
+    (mean, error), (least, other) = _log(one), _log(leader)
+    return bool(ndtr((least - mean) / hypot(other, error)) >= TIED_FROM)
+
+
+def _log(friction: MeanFriction) -> tuple[float, float]:
+    """Logarithm of a mean, and its standard error; the least of either instead of 0."""
+    mean = max(friction.mean, 1e-300)
+    return log(mean), max((friction.error or 0.0) / mean, _LEAST_ERROR)
+
+
+Interval = tuple[Ratio, Ratio, Ratio]  # a margin with the low and the high end of its scatter
 
 
 def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None = None) -> list[int]:
     """Rank of each margin, the largest first.
 
-    The best one leads the first group. Whoever cannot be told from the leader is tied with it; the best of
-    the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3). Groups are told by
-    their leader, so being tied is transitive: a chain of small steps does not tie the first with the last.
-
-    Parameters
-    ----------
-    margins : sequence
-        (value, low, high) of each candidate [-].
-    tied : callable, optional
-        Whether the first of two cannot be told from the second, its leader; by default if their intervals
-        meet.
+    The best one leads the first group. Those that do not differ from it beyond their scatter are tied with
+    it; the best of the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3).
+    As only the leader is compared, a chain of small steps does not tie the first with the last. `tied`
+    compares a candidate with its leader; by default their intervals are compared.
     """
-    alike = tied or (lambda i, leader: meet(margins[i], margins[leader]))
+    alike = tied or (lambda i, leader: _meet(margins[i], margins[leader]))
     order = sorted(range(len(margins)), key=lambda i: (-margins[i][0], -margins[i][2]))
     found = [0] * len(margins)
     leader, rank = None, 0
@@ -42,13 +135,12 @@ def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None =
     return found
 
 
-def meet(other: Interval, leader: Interval) -> bool:
+def _meet(other: Interval, leader: Interval) -> bool:
     """Whether the interval of the smaller margin reaches that of its leader."""
     return other[2] >= leader[1]
 
 
-POCKET = ("ball_cage_stiffness", "pocket_clearance", "land_clearance")
-"""What candidates with one curve have alike."""
+POCKET = ("ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike for candidates of one curve
 
 
 def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
@@ -61,7 +153,7 @@ def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) ->
         return True
     if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
-    return meet(margin_interval(row), margin_interval(leader))
+    return _meet(margin_interval(row), margin_interval(leader))
 
 
 def margin_interval(row: Ranked) -> Interval:

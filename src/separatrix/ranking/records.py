@@ -7,7 +7,7 @@ from typing import Annotated
 
 from separatrix.cage import Judgement
 from separatrix.chain.pocket import PocketConditions
-from separatrix.limits import StabilityCurve
+from separatrix.limits.curve import StabilityCurve
 from separatrix.study import BallModel, MotionModel
 from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
 
@@ -47,68 +47,34 @@ class NotFinished:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ranked:
-    """One candidate in one environment, or for its mean friction over all of them.
+    """One candidate in one environment, or for its mean friction over all of them."""
 
-    Attributes
-    ----------
-    name : str
-        The candidate.
-    friction, friction_error : float or None
-        Mean pocket friction as the cage sees it, and its standard error [-].
-    friction_deviation : float or None
-        Standard deviation of a new sample about that mean, larger where it is extrapolated; not overall [-].
-    probability_lowest_friction : float or None
-        Probability that no other candidate's mean friction is lower there, by their standard errors; None if
-        no other was measured there [-].
-    friction_scatter_assumed : bool
-        Whether the scatter is the default of an unrepeated test.
-    extrapolation : tuple of str
-        In what respect the friction is extrapolated beyond its tests, in words.
-    ball_cage_stiffness, restitution_factor : float
-        Of its pocket [N/m], and of the chain with it [-].
-    pocket_clearance, land_clearance : float
-        Of its cage as it runs; None without a land [m].
-    restitution_threshold, restitution_threshold_low, restitution_threshold_high : float
-        Largest restitution factor at which it is stable, and its 95 % interval [-].
-    margin : float
-        Threshold less the chain's restitution factor [-].
-    rank : int
-        By margin; those within the scatter of the best one share its rank.
-    within_reach : bool
-        Whether the threshold reaches the restitution factor that the paper grants solid lubrication.
-    judgement : Judgement
-        Verdict and evidence at the central values of the study.
-    over_inputs : Judgement or None
-        The same, where every run draws its own bearing from the uncertain inputs; None if the study states
-        none.
-    other_ball : Judgement or None
-        By the other model of a ball, in the bearing's own environment, where a run presses a pocket with more
-        than a tenth of the races' capacity; else None.
-    reason : str
-        A sentence with the numbers.
-    """
-
-    name: str
-    friction: Ratio
-    friction_error: Ratio | None
+    name: str  # of the candidate
+    friction: Ratio  # mean, as the cage sees it
+    friction_error: Ratio | None  # standard error of the mean
     friction_deviation: Ratio | None
+    """Of a new sample about the mean, larger where extrapolated; null overall."""
     probability_lowest_friction: Ratio | None = None
-    friction_scatter_assumed: bool
-    extrapolation: tuple[str, ...]
-    ball_cage_stiffness: NewtonPerMetre
-    pocket_clearance: Metre
-    land_clearance: Metre | None
-    restitution_factor: Ratio
-    restitution_threshold: Ratio
-    restitution_threshold_low: Ratio
-    restitution_threshold_high: Ratio
-    margin: Ratio
-    rank: int = 0
-    within_reach: bool
-    judgement: Judgement
+    """That no other candidate's mean friction is lower; null without another."""
+    friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
+    extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
+    ball_cage_stiffness: NewtonPerMetre  # of its own pocket
+    pocket_clearance: Metre  # running, along the circumference
+    land_clearance: Metre | None  # running, diametral; null without a land
+    restitution_factor: Ratio  # of the chain with its pocket
+    restitution_threshold: Ratio  # largest restitution factor at which it is stable
+    restitution_threshold_low: Ratio  # lower end of its 95 % interval
+    restitution_threshold_high: Ratio  # upper end of its 95 % interval
+    margin: Ratio  # threshold less the restitution factor
+    rank: int = 0  # by margin; those within the scatter of the best one share its rank
+    within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
+    judgement: Judgement  # verdict and evidence at the central values of the study
     over_inputs: Judgement | None = None
+    """Each run with its own bearing drawn from the uncertain inputs; null without them."""
     other_ball: Judgement | None = None
-    reason: str
+    """By the other model of a ball, where a pocket is pressed with more than a tenth of the races'
+    capacity."""
+    reason: str  # a sentence with the numbers
 
 
 Row = Ranked | NotFinished | NotMeasured

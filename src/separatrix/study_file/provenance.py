@@ -1,16 +1,36 @@
-"""What a study resolved to: every value in SI with its unit and origin, every record with its source."""
+"""Provenance of an answer: every resolved input with its origin, the question, the files, the versions."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+import base64
+import hashlib
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from enum import Enum
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
+import separatrix
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.distribution import Distribution, described
+from separatrix.errors import InputError
 from separatrix.friction.file import FrictionTest
-from separatrix.study import SECTIONS, CageDesign, Film, Friction, Material, RankingQuestion, Study, Wear
+from separatrix.input_files import MOST_BYTES, MOST_FILES, Reading, checksum_of_name, refuse_unsafe
+from separatrix.study import (
+    SECTIONS,
+    CageDesign,
+    Film,
+    Friction,
+    Material,
+    RankingQuestion,
+    Study,
+    Wear,
+    with_models,
+)
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
@@ -70,18 +90,18 @@ def resolved(study: Study) -> dict[str, Any]:
         "name": study.name,
         "title": study.title,
         **{name: _section(study, name) for name in SECTIONS},
-        "kinematics": {"model": _origin(study, "kinematics.model", {"value": study.kinematics.value})},
+        "kinematics": {"model": _with_origin(study, "kinematics.model", {"value": study.kinematics.value})},
         "ranking": None if study.ranking is None else _ranking(study, study.ranking),
         "uncertain_inputs": uncertain,
     }
 
 
-def _section(study: Study, section: str) -> dict[str, Any] | None:
+def _section(study: Study, section: str) -> dict[str, object] | None:
     record = getattr(study, section)
     if record is None:
         return None
     names = [f.name for f in fields(record) if f.name != "material_name"]
-    values: dict[str, Any] = {name: _value(study, record, section, name) for name in names}
+    values: dict[str, object] = {name: _value(study, record, section, name) for name in names}
     if isinstance(record, Film):
         values["is_bare"] = record.material is None
         if record.wear is not None:
@@ -90,38 +110,37 @@ def _section(study: Study, section: str) -> dict[str, Any] | None:
             values |= {f"wear.{name}": _value(study, record.wear, "film.wear", name) for name in names}
     if isinstance(record, CageDesign):  # whose friction the cage has, where it has not its own
         candidate = None if record.ball_cage_friction is not None else cage_candidate(study)
-        environment = environment_of(study.ranking) if study.ranking and candidate else None
-        whose = {"candidate": candidate.name if candidate else None, "environment": environment}
-        values["ball_cage_friction"] |= whose
+        values["ball_cage_friction"] = {
+            **_value(study, record, section, "ball_cage_friction"),
+            "candidate": candidate.name if candidate else None,
+            "environment": environment_of(study.ranking) if study.ranking and candidate else None,
+        }
     return values
 
 
-def _value(study: Study, record: object, section: str, name: str) -> dict[str, Any]:
+def _value(study: Study, record: object, section: str, name: str) -> dict[str, object]:
     value, unit, key = getattr(record, name), unit_of(type(record), name), f"{section}.{name}"
     if isinstance(value, Material):
-        item = _material(value)
-        for number in ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion"):
-            one = study.distributions.get(f"{section if section == 'film' else key}.{number}")
-            if one is not None:
-                item[number]["distribution"] = _distribution(one, item[number]["unit"])
-        return _origin(study, key, item)
+        inside = f"{section if section == 'film' else key}."
+        own = {name.removeprefix(inside): one for name, one in study.distributions.items()}
+        return _with_origin(study, key, _material(value, own))
     plain = value.value if isinstance(value, Enum) else list(value) if isinstance(value, tuple) else value
     item = {"value": plain, **({"unit": unit} if unit else {})}
     if key in study.records:
         item["record"] = study.records[key]
     if key in study.distributions:
         item["distribution"] = _distribution(study.distributions[key], unit)
-    return _origin(study, key, item)
+    return _with_origin(study, key, item)
 
 
-def _distribution(one: Distribution, unit: str) -> dict[str, Any]:
+def _distribution(one: Distribution, unit: str) -> dict[str, object]:
     names = ("kind", "mean", "standard_deviation", "low", "high")
     item = {name: getattr(one, name) for name in names}
     return {**item, "words": described(one, unit), "written": one.text or None}
 
 
-def _origin(study: Study, key: str, item: Mapping[str, Any]) -> dict[str, Any]:
-    """The item with where it was given; without any origins the study was built in Python."""
+def _with_origin(study: Study, key: str, item: Mapping[str, object]) -> dict[str, object]:
+    """The item with its origin; a study without any was built in Python."""
     origin = study.origins.get(key)
     if origin is None:
         origin = "default" if study.origins else "given in Python"
@@ -132,11 +151,16 @@ def _origin(study: Study, key: str, item: Mapping[str, Any]) -> dict[str, Any]:
     return {**item, "origin": origin}
 
 
-def _material(material: Material) -> dict[str, Any]:
-    numbers = ("elastic_modulus", "poisson_ratio", "density", "compressive_strength", "thermal_expansion")
+def _material(material: Material, distributions: Mapping[str, Distribution]) -> dict[str, object]:
+    numbers: dict[str, dict[str, object]] = {}
+    for name in ("elastic_modulus", "poisson_ratio", "density", "compressive_strength", "thermal_expansion"):
+        unit = unit_of(Material, name)
+        numbers[name] = {"value": getattr(material, name), "unit": unit}
+        if name in distributions:
+            numbers[name]["distribution"] = _distribution(distributions[name], unit)
     return {
         "name": material.name,
-        **{key: {"value": getattr(material, key), "unit": unit_of(Material, key)} for key in numbers},
+        **numbers,
         "source": material.source,
         "confidence": material.confidence,
         "cautions": list(material.cautions),
@@ -144,14 +168,14 @@ def _material(material: Material) -> dict[str, Any]:
     }
 
 
-def _ranking(study: Study, question: RankingQuestion) -> dict[str, Any]:
+def _ranking(study: Study, question: RankingQuestion) -> dict[str, object]:
     from separatrix.friction.fit import TestedFriction
 
     candidates = [
         {
             "name": candidate.name,
             "friction": {env: f and _friction(f) for env, f in candidate.friction.items()},
-            "material": candidate.material and _material(candidate.material),
+            "material": candidate.material and _material(candidate.material, {}),
         }
         for candidate in question.candidates
     ]
@@ -168,21 +192,214 @@ def _ranking(study: Study, question: RankingQuestion) -> dict[str, Any]:
         "other_tests": [_test(test) for test in tests if test.material not in ranked],
     }
     key = "ranking.candidates" if "ranking.candidates" in study.origins else "ranking.friction"
-    return _origin(study, key, item)
+    return _with_origin(study, key, item)
 
 
-def _friction(friction: Friction) -> dict[str, Any]:
+def _friction(friction: Friction) -> dict[str, object]:
     """A friction, and every test behind it if it comes from a friction file."""
     from separatrix.friction.fit import TestedFriction
 
     names = ("mean", "standard_deviation", "count", "source", "confidence")
-    item: dict[str, Any] = {name: getattr(friction, name) for name in names}
+    item: dict[str, object] = {name: getattr(friction, name) for name in names}
     if isinstance(friction.law, TestedFriction):
         item["tests"] = [_test(test) for test in friction.law.own]
     return item
 
 
-def _test(test: FrictionTest) -> dict[str, Any]:
+def _test(test: FrictionTest) -> dict[str, object]:
     """A friction test in SI units; pairs are the lowest and the highest value."""
-    values = {f.name: getattr(test, f.name) for f in fields(test)}
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+    values = ((f.name, getattr(test, f.name)) for f in fields(test))
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
+
+
+KEPT, ASKED = "provenance.files", "provenance.command"
+"""Records of a study: the files that it was read from, and the question."""
+
+SHIPPED = "shipped:"
+"""Before the name of a file that comes with the package: its checksum is kept, not its content."""
+
+ELSEWHERE = "elsewhere-"
+"""Before the number of a folder that is named by an absolute path."""
+
+_IN_PYTHON = "The study was made in Python, not read from a file."
+_CHANGED = "The study was changed in Python after it was read."
+_TOO_MUCH = f"The files of the study are more than {MOST_FILES}, or larger than {MOST_BYTES >> 20} MB."
+_APART = "The files of the study have no folder in common."
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kept:
+    """Files of a study by relative names with slashes; `reason` says why there are none.
+
+    `links` has the name of each absolute path that a file names. `as_read` is the study as its files have it.
+    """
+
+    entry: str | None = None
+    files: Mapping[str, Mapping[str, str]]
+    links: Mapping[str, str]
+    reason: str | None = None
+    as_read: Study | None = None
+
+
+def keep(study: Study, path: Path, reading: Reading) -> Study:
+    """Return a study with the files that it was just read from."""
+    return replace(study, records={**study.records, KEPT: _kept(path, reading, study)})
+
+
+def _kept(path: Path, reading: Reading, study: Study) -> Kept:
+    own = {file: content for file, content in reading.files.items() if _shipped_name(file) is None}
+    shipped = {name: {"sha256": checksum} for name, checksum in _checksums("library/data").items()}
+    for file, content in reading.files.items():
+        if name := _shipped_name(file):
+            shipped[name] = {"sha256": _sha256(content)}
+    if len(own) > MOST_FILES or sum(map(len, own.values())) > MOST_BYTES:
+        return Kept(files={}, links={}, reason=_TOO_MUCH, as_read=study)
+    entry = _shipped_name(path)
+    if entry is not None:
+        return Kept(entry=entry, files=shipped, links={}, as_read=study)
+    try:
+        names = _Names(path, own, reading.absolute)
+        files = {names.of(file): _content(content) for file, content in own.items()}
+        links = {checksum_of_name(name): names.of(Path(name)) for name in reading.absolute}
+        entry = names.of(path)
+        for name in files:
+            refuse_unsafe(name)
+    except ValueError as error:  # InputError is one
+        reason = f"{error}" if isinstance(error, InputError) else _APART
+        return Kept(files={}, links={}, reason=reason, as_read=study)
+    return Kept(entry=entry, files={**files, **shipped}, links=links, as_read=study)
+
+
+class _Names:
+    """Relative names of files, under which they name each other as they do where they are.
+
+    The root is the deepest folder of all, except for what is named by an absolute path elsewhere.
+
+    Raises
+    ------
+    ValueError
+        There is no such folder but that of the whole drive.
+    """
+
+    def __init__(self, entry: Path, files: Iterable[Path], absolute: Iterable[str]) -> None:
+        home = _absolute(entry).parent
+        far = {_absolute(Path(name)).parent for name in absolute}
+        far = {one for one in far if not any(one != two and one.is_relative_to(two) for two in far)}
+        paths = [_absolute(file) for file in files]
+        near = [one for one in paths if one.is_relative_to(home) or not any(map(one.is_relative_to, far))]
+        self.root = Path(os.path.commonpath([home, *(one.parent for one in near)]))
+        if self.root.parent == self.root != home:
+            raise ValueError
+        self.far = sorted(one for one in far if not one.is_relative_to(self.root))
+
+    def of(self, file: Path) -> str:
+        """Name of a file or folder."""
+        path = _absolute(file)
+        if path.is_relative_to(self.root):
+            return path.relative_to(self.root).as_posix()
+        for number, folder in enumerate(self.far, start=1):
+            if path.is_relative_to(folder):
+                return f"{ELSEWHERE}{number}/{path.relative_to(folder).as_posix()}"
+        raise ValueError
+
+
+def _absolute(path: Path) -> Path:
+    """Path without ``..``; a link on the way must not change where that leads."""
+    found = Path(os.path.abspath(path))
+    if found != path and not (found.exists() and found.samefile(path)):
+        raise ValueError
+    return found
+
+
+def _content(raw: bytes) -> dict[str, str]:
+    """Content of a file as JSON can have it, byte for byte."""
+    try:
+        return {"sha256": _sha256(raw), "text": raw.decode("utf-8")}
+    except UnicodeDecodeError:
+        return {"sha256": _sha256(raw), "base64": base64.b64encode(raw).decode("ascii")}
+
+
+def _sha256(raw: bytes) -> str:
+    return hashlib.sha256(raw).hexdigest()
+
+
+_PACKAGE = Path(separatrix.__file__).resolve().parent
+
+
+def _shipped_name(path: Path) -> str | None:
+    is_shipped = path.resolve().parent in (_PACKAGE / "examples", _PACKAGE / "library/data")
+    return f"{SHIPPED}{path.name}" if is_shipped else None
+
+
+@cache
+def _checksums(folder: str) -> dict[str, str]:
+    paths = sorted((_PACKAGE / folder).glob("*.toml"))
+    return {f"{SHIPPED}{path.name}": _sha256(path.read_bytes()) for path in paths}
+
+
+def shipped_checksums() -> dict[str, str]:
+    """Checksum of every shipped file of this version by its name in an answer."""
+    return _checksums("library/data") | _checksums("examples")
+
+
+def asked_by(
+    study: Study, verb: str, question: Mapping[str, object], reading: Reading | None = None
+) -> Study:
+    """Return the study with the question, for `provenance_of`.
+
+    Parameters
+    ----------
+    question : mapping
+        Options of the verb as they were given.
+    reading : Reading, optional
+        Files that were read to answer: a table of cases is one.
+    """
+    given, files = dict(question), dict[str, Mapping[str, str]]()
+    table = given.get("cases")
+    if isinstance(table, Path):
+        content = None if reading is None else reading.files.get(table)
+        name = f"cases/{table.name}"
+        given["cases"] = name
+        files = {} if content is None else {name: _content(content)}
+    return replace(study, records={**study.records, ASKED: (verb, given, files)})
+
+
+def provenance_of(study: Study, verb: str) -> dict[str, object]:
+    """Return, as plain data, all that is needed to compute an answer of a verb again."""
+    _, question, more = study.records.get(ASKED, (verb, {}, {}))
+    found = _of(study)
+    return {
+        "command": {"verb": verb, "question": question, "models": _models(study)},
+        "entry": found.entry,
+        "files": dict(found.files) | (dict(more) if found.entry else {}),
+        "links": dict(found.links),
+        "reason": found.reason,
+        "versions": versions(),
+    }
+
+
+def _of(study: Study) -> Kept:
+    found: Kept | None = study.records.get(KEPT)
+    if found is None:
+        return Kept(files={}, links={}, reason=_IN_PYTHON)
+    if found.as_read is not None and found.reason is None:
+        models = _models(study)
+        expected = with_models(found.as_read, models) if models else found.as_read
+        if expected != study:
+            return Kept(files={}, links={}, reason=_CHANGED)
+    return found
+
+
+def _models(study: Study) -> dict[str, str]:
+    """Models that the command line chose in place of those of the study."""
+    origins = {name: study.origins.get(f"cage.{name}", "").partition(" ") for name in ("motion", "ball")}
+    return {name: value for name, (option, _, value) in origins.items() if option == f"--{name}"}
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that compute, without separatrix."""
+    return {
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy", "numba")},
+    }

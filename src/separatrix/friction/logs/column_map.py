@@ -10,9 +10,9 @@ from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
+from separatrix.friction.file import place
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
 from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
-from separatrix.friction.records import place
 from separatrix.toml_files import Kind, read_toml
 from separatrix.units import printable, shown
 
@@ -34,7 +34,6 @@ QUANTITIES = {
 
 TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
 RUN_IN_END = "run_in_end"  # where running-in ends: not a condition, but stated with them
-
 _AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
 _DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
 

@@ -189,8 +189,7 @@ class _Table:
         return [Meant(i, "time", CLOCK, Scale(), LAST)] if unit == CLOCK else []
 
 
-Options = dict[int, list[Meant]]
-"""What each column that the map does not name may mean."""
+Options = dict[int, list[Meant]]  # what each column that the map does not name may mean
 
 
 def _decided(options: Options, given: dict[str, Meant], headers: Sequence[str]) -> Understood:

@@ -18,9 +18,7 @@ _MISSING = (
     "#ref! #name? #wert! inf +inf -inf infinity -infinity 1.#inf -1.#inf 1.#qnan -1.#qnan 1.#ind -1.#ind "
     "nan(ind) -nan(ind)"
 )
-MISSING = frozenset({"", *_MISSING.split()})
-"""How files write a missing value, in small letters."""
-
+MISSING = frozenset({"", *_MISSING.split()})  # how files write a missing value, in small letters
 SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
 
@@ -240,7 +238,6 @@ def _binary(source: str) -> InputError:
 
 CLOCK = "clock"  # unit of a column of times as text
 SHORT_CLOCKS = ("hh:mm", "h:min", "mm:ss", "min:s", "m:s")  # units of times of two numbers
-
 _DAY = 86_400.0
 _MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec"
 _DATE = r"(?P<a>\d{1,4})(?P<sign>[-/. ])(?P<b>\d{1,2}|[A-Za-z]{3})[a-z]*(?P=sign)(?P<c>\d{1,4})"

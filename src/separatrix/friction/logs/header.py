@@ -34,7 +34,6 @@ _REMARKS = frozenset(
 
 _PAIR = re.compile(r"[\s#%]*([^:=\t;,]{1,60}?)\s*(?:[:=\t;,]\s*)+(\S.*?)[\s;,]*$")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)\s*(\d+)\s*$", re.IGNORECASE)
-
 MOST = 400  # pairs kept of one table
 
 

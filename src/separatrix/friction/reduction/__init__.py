@@ -9,8 +9,8 @@ import numpy as np
 
 from separatrix import _check
 from separatrix.errors import InputError
+from separatrix.friction.file import UNITS, in_words, place
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.records import UNITS, in_words, place
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
 from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
@@ -21,7 +21,6 @@ PREFERRED = ("distance", "time", "cycles")  # the abscissa of ends and drift is 
 FEWEST_TESTS = 4  # tests from which an outlier can be detected
 OUTLIER = 1.5  # friction over the median of the others, or the reverse, from which a test may be an outlier
 FAR = 5.0  # distance from that median over the usual one, in standard deviations
-
 _PERCENT = _check.must(_check.between, 0.0, 100.0)
 
 
@@ -33,8 +32,7 @@ class ReductionOptions:
     """Where running-in ends, for instance ``"200 m"``, ``"10 min"`` or ``"500 cycles"``; None to find it."""
     axis: str | None = None
     """Abscissa of ends and drift; None for the first of distance, time, cycles that the log has."""
-    whole_cycles: bool = True
-    """Whether means are over whole cycles, where those are known."""
+    whole_cycles: bool = True  # whether means are over whole cycles, where those are known
     find_cycle: bool = False
     """Whether the length of an unknown cycle is taken from the strongest line of the spectrum."""
     seizure_ratio: Ratio = field(
@@ -79,31 +77,22 @@ class TestFriction:
     source: str  # name of the file, and of the part of it
     checksum: str  # SHA-256 of the file
     conditions: Conditions  # under which it was run
-    friction: Ratio
-    """Mean over the steady part."""
+    friction: Ratio  # mean over the steady part
     standard_error: Ratio
     """Of that mean: neighbouring values are alike, some running-in may be left, digits are few."""
-    degrees_of_freedom: int
-    """Of Student's t for its interval."""
+    degrees_of_freedom: int  # of Student's t for its interval
     standard_deviation: Ratio
     """Of the means of whole cycles in the steady part; of its rows where no cycle is known."""
-    effective_count: float
-    """Independent values that would have the same standard error."""
-    run_in_end: float
-    """In the SI unit of `run_in_axis`; the steady part begins here."""
-    run_in_axis: str
-    """``"time"``, ``"distance"`` or ``"cycles"``."""
+    effective_count: float  # independent values that would have the same standard error
+    run_in_end: float  # in the SI unit of `run_in_axis`; the steady part begins here
+    run_in_axis: str  # ``"time"``, ``"distance"`` or ``"cycles"``
     run_in_method: str  # how the end of running-in was found
-    steady_end: float
-    """Where the steady part ends, in the SI unit of `run_in_axis`."""
+    steady_end: float  # where the steady part ends, in the SI unit of `run_in_axis`
     rows: int  # of the log
     steady_rows: int  # of them in the steady part
-    cycles: int
-    """Whole cycles averaged; 0 where none are."""
-    drift_rate: float
-    """Change of friction per SI unit of `run_in_axis`, over the steady part."""
-    drift_error: float
-    """Standard error of `drift_rate`."""
+    cycles: int  # whole cycles averaged; 0 where none are
+    drift_rate: float  # change of friction per SI unit of `run_in_axis`, over the steady part
+    drift_error: float  # standard error of `drift_rate`
     stick_slip_amplitude: Ratio
     """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
     stick_slip_frequency: float

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
+from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.records import in_words
 from separatrix.friction.reduction.cycles import FEWEST, Spans, means
 from separatrix.friction.reduction.steady import LONG
 from separatrix.units import Ratio, format_number, format_quantity

@@ -28,7 +28,6 @@ from separatrix.friction.reduction.steady import steady_mean
 from separatrix.units import Array, Ratio
 
 METHOD = "longest tail whose mean agrees with that of each later part"
-
 PLACES = 96  # places where the steady part may begin, at most
 LATEST = 0.75  # share of the test beyond which no steady part begins
 COSINES = 8  # cosines from which the noise of a tail is estimated

@@ -37,9 +37,7 @@ stretch to none."""
 FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])  # white part of the spectrum at zero frequency
 FLAT = 0.75  # A cosine counts if the fitted spectrum has at least this share of its height at zero there
 FEWEST_COSINES, MOST_COSINES = 6, 60
-
 LONG = 4.5  # corner below which the correlation is too long for the stated interval: 7 % of the stretch
-
 ROUNDING = 1e-12  # share of friction below which differences are those of rounding
 MIXED = 0.2  # white part from which the correlated one is only a guess
 LIKELY = 0.5  # weight of the spectra of a long correlation from which it counts as long: more likely than not

@@ -25,12 +25,12 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-from separatrix.ranking import NotMeasured, Ranked
+from separatrix.ranking.records import NotMeasured, Ranked
 
 if TYPE_CHECKING:
     from separatrix.answers import RankingAnswer
     from separatrix.cage import Judgement
-    from separatrix.ranking import RankedEnvironment, Ranking, Row
+    from separatrix.ranking.records import RankedEnvironment, Ranking, Row
     from separatrix.study import Study
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from separatrix.present.text.tables import interval, paragraph, quantity, section, table
-from separatrix.ranking import NotMeasured
+from separatrix.ranking.records import NotMeasured
 from separatrix.study import BallModel
 
 if TYPE_CHECKING:
     from separatrix.cage import Judgement
-    from separatrix.ranking import Ranking, Row
+    from separatrix.ranking.records import Ranking, Row
 
 HEADERS = ("material", "damper:\nverdict", "force over\ncapacity")
 MORE_HEADERS = ("traction:\nverdict", "P(stable)\n(95 %)", "force over\ncapacity")

@@ -28,7 +28,7 @@ from separatrix.present.walk import field_units
 
 if TYPE_CHECKING:
     from separatrix.answers import MapAnswer, StabilityAnswer
-    from separatrix.limits import StabilityCurve
+    from separatrix.limits.curve import StabilityCurve
     from separatrix.limits.map_records import Inference, MapAxis, MapChange, StabilityMap, Stopping
     from separatrix.study import Study
 
