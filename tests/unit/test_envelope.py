@@ -18,8 +18,7 @@ from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
-from separatrix.figures.envelope import has_envelope
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
+from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import plain
 from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load

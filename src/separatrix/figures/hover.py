@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import cycle
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from separatrix.figures.map import axis_label, axis_values, cells, is_proportional, parameter
 from separatrix.figures.ranking import own_environment, shift, text_order
@@ -20,6 +21,12 @@ Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""
 
 Kind = Literal["line", "points", "band", "upright", "cells", "bars"]
+POINTS = 72.0
+"""Points of an inch: the unit of matplotlib's SVG."""
+
+Place = tuple[float, float, str]
+"""Centre in points of an SVG, from its upper left corner, and text."""
+
 SYMBOLS = {r"$\eta$": "\N{GREEK SMALL LETTER ETA}", r"$f_{BC}$": "f_BC", r"$C_T$": "C_T"}
 """Symbols of labels, and as plain text."""
 
@@ -253,7 +260,7 @@ def map_plot(data: xr.Dataset) -> Plot:
     )
 
 
-def _cell_text(cell: dict[str, Any], share: float) -> str:
+def _cell_text(cell: Mapping[str, object], share: float) -> str:
     """Return what is known of one point of a map."""
     if str(cell["decision"]) == "" or not np.isfinite(share):
         return str(cell["reason"]) or "not run"
@@ -331,3 +338,32 @@ def _between(value: float, low: float, high: float) -> str:
     """Return a friction with its interval; an open end is left out."""
     ends = [significant(one, 2) for one in (low, high) if np.isfinite(one)]
     return significant(value, 2) + (f" ({ends[0]} to {ends[1]})" if len(ends) == 2 else "")
+
+
+def places(axes: Axes, plot: Plot, most: int, *names: str) -> Iterator[Place]:
+    """Yield where the points of a plot are in an SVG of its figure.
+
+    Parameters
+    ----------
+    axes : Axes
+        Of a finished figure: nothing moves afterwards.
+    plot : Plot
+        Its series with text; all of them, or those of these names.
+    most : int
+        Points of a series that has more than this are thinned evenly to at most this number.
+    """
+    figure = axes.figure.get_figure(root=True)
+    if figure is None:
+        return
+    scale, height = POINTS / figure.dpi, figure.get_size_inches()[1] * POINTS
+    left, right = sorted(axes.get_xlim())
+    low, high = sorted(axes.get_ylim())
+    for series in plot.series:
+        if names and series.name not in names:
+            continue
+        step = -(-len(series.text) // most) if series.text else 1
+        for x, y, text in [*zip(series.x, series.y, series.text, strict=False)][::step]:
+            if x is None or y is None or not (left <= x <= right and low <= y <= high):
+                continue
+            across, up = axes.transData.transform((x, y))
+            yield float(across * scale), float(height - up * scale), text

@@ -1,14 +1,23 @@
-"""What figures and films draw of a run: boundaries and path of the cage centre, and its whirl spectrum."""
+"""What figures and films draw of a run: its time, boundaries and path of the cage centre, whirl spectrum."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
 from separatrix.units import Array, Hertz
+
+Part = tuple[list[Artist], Callable[[int], None]]
+"""What moves in a picture, and what puts it where it is in a frame."""
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 """Directions in which boundaries are drawn: a quarter of a degree apart."""
@@ -34,6 +43,50 @@ SHORTEST, BANDS = 8, 12.0
 
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
+
+GOES_ON = 1e-3
+"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
+
+MOST_FRAMES, A_TURN = 360, 6
+"""Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
+
+GAP = 1.5
+"""Steps over the usual one from which frames have a gap."""
+
+
+def milliseconds(data: xr.Dataset) -> Array:
+    """Return the times of the samples [ms]."""
+    return 1e3 * np.asarray(data["time"].values, dtype=float)
+
+
+def is_logarithmic(*runs: xr.Dataset) -> bool:
+    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
+    return any(
+        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
+        for run in runs
+    )
+
+
+def _goes_on(data: xr.Dataset) -> bool:
+    """Whether a cage in space still moves in the last fifth of its run."""
+    energy = data["kinetic_energy"].values
+    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
+
+
+def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
+    """Return both ends of the axis of time [ms]; a millisecond if nothing but the start is there."""
+    times = [time for time in map(milliseconds, runs) if time.size > 1]
+    last = max((float(time[-1]) for time in times), default=0.0)
+    first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
+    return first, last if last > first else first + 1.0
+
+
+def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
+    """Set the axis of time for one or several runs."""
+    axes.set(xlim=time_limits(*runs), xlabel="time [ms]")
+    if is_logarithmic(*runs):
+        axes.set(xscale="log", xlim=time_limits(*runs), xlabel="time, logarithmic [ms]")
+        axes.xaxis.set_major_formatter("{x:g}")
 
 
 def ring(radius: Array | float, angle: Array) -> Array:
@@ -203,3 +256,46 @@ def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xlim=(0.0, min(whole, last or whole)), xlabel="time [ms]")
     axes.set(ylim=(-1e-3 * most, 1e-3 * most), ylabel="frequency [kHz]")
     colour_bar(mesh, [axes], "level under the largest [dB]", pad=0.02, aspect=20)
+
+
+def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
+    """Return the samples that become frames, rising, with the first and the last.
+
+    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
+    of the whirl; if the whole run would take too many, its beginning and its end are shown.
+    """
+    time, (first, last), logarithmic = milliseconds(data), time_limits(data), is_logarithmic(data)
+    wanted = np.searchsorted(time, (np.geomspace if logarithmic else np.linspace)(first, last, most))
+    even = np.unique(np.append(0, wanted.clip(0, time.size - 1)))[-most:]
+    turns = fastest_whirl(data) * float(data["time"].values[-1])
+    step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
+    if logarithmic or int(np.diff(even).max(initial=1)) <= step:
+        return even
+    half = np.arange(most // 2) * step
+    return np.unique(np.concatenate([half, time.size - 1 - half]))
+
+
+def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
+    """Return beginning and end of each part of the run that the frames show [ms]."""
+    time = milliseconds(data)[moments]
+    if is_logarithmic(data) or time.size < 3:
+        return [(float(time[0]), float(time[-1]))]
+    steps = np.diff(moments)
+    cuts = np.flatnonzero(steps > GAP * np.median(steps) + 1) + 1
+    return [(float(part[0]), float(part[-1])) for part in np.split(time, cuts)]
+
+
+def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.Image]:
+    """Yield frames of a figure; what does not move is drawn once."""
+    canvas = FigureCanvasAgg(figure)
+    for artist in (artist for moving, _ in parts for artist in moving):
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for frame in range(count):
+        canvas.restore_region(still)
+        for moving, move in parts:
+            move(frame)
+            for artist in moving:
+                figure.draw_artist(artist)
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())

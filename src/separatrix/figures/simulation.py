@@ -14,7 +14,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from separatrix.figures import motion
-from separatrix.figures.motion import LAND, POCKETS, land_boundary, largest_play
+from separatrix.figures.motion import (
+    LAND,
+    POCKETS,
+    is_logarithmic,
+    land_boundary,
+    largest_play,
+    milliseconds,
+    time_axis,
+)
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -47,9 +55,6 @@ WIDE = 30.0
 
 COLUMNS = 600
 """Most columns of the picture of the forces; each shows the largest force of its samples."""
-
-GOES_ON = 1e-3
-"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
 
 TURNS, FEWEST, BEFORE = 6.0, 40, 0.15
 """Turns of the whirl and least samples of the close view; its least share before the largest force."""
@@ -88,41 +93,6 @@ def run(data: xr.Dataset) -> Figure:
     motion.draw_against_time(against_time, data)
     against_time.set_title("f  Whirl spectrum against time")
     return figure
-
-
-def milliseconds(data: xr.Dataset) -> Array:
-    """Return the times of the samples [ms]."""
-    return 1e3 * np.asarray(data["time"].values, dtype=float)
-
-
-def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
-    return any(
-        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
-        for run in runs
-    )
-
-
-def _goes_on(data: xr.Dataset) -> bool:
-    """Whether a cage in space still moves in the last fifth of its run."""
-    energy = data["kinetic_energy"].values
-    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
-
-
-def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
-    """Return both ends of the axis of time [ms]; a millisecond if nothing but the start is there."""
-    times = [time for time in map(milliseconds, runs) if time.size > 1]
-    last = max((float(time[-1]) for time in times), default=0.0)
-    first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
-    return first, last if last > first else first + 1.0
-
-
-def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
-    """Set the axis of time for one or several runs."""
-    axes.set(xlim=time_limits(*runs), xlabel="time [ms]")
-    if is_logarithmic(*runs):
-        axes.set(xscale="log", xlim=time_limits(*runs), xlabel="time, logarithmic [ms]")
-        axes.xaxis.set_major_formatter("{x:g}")
 
 
 def works(data: xr.Dataset) -> dict[str, Array]:

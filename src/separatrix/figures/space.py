@@ -14,7 +14,8 @@ from matplotlib.ticker import MaxNLocator
 
 from separatrix.cage.space.contacts import touches
 from separatrix.figures import motion, simulation
-from separatrix.figures.simulation import is_logarithmic, milliseconds, time_axis
+from separatrix.figures.motion import is_logarithmic, milliseconds, time_axis
+from separatrix.figures.scene import axial_play
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -127,12 +128,6 @@ def _limits(rows: Any, data: xr.Dataset) -> None:
         axes.set_ylim(-most if axes is rows[1] else 0.0, most)
         ends = [(float(axes.get_xlim()[1]), size, name, look["color"]) for size, look, name in near]
         label_lines(axes, ends, gap=0.16)
-
-
-def axial_play(data: xr.Dataset) -> float | None:
-    """Half the clearance of the pockets along the axis [m]; None if it is not known."""
-    play = float(data["cage_space_axial_play"])
-    return play if np.isfinite(play) and play > 0.0 else None
 
 
 def lean_limits(data: xr.Dataset) -> list[tuple[float, Look, str]]:

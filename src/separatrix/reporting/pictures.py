@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from separatrix.figures import draw
 from separatrix.figures.drawing import bearing_drawing, guesses
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
-from separatrix.figures.hover import candidates_plot, map_plot, stability_plot, traction_plot
+from separatrix.figures.envelope import envelope_plots, sweep_plots
+from separatrix.figures.hover import Place, candidates_plot, map_plot, places, stability_plot, traction_plot
 from separatrix.figures.ranking import file_name, own_environment
-from separatrix.figures.style import journal, settled
-from separatrix.figures.svg import Place, formula, places, svg_of
+from separatrix.figures.style import formula, journal, settled, svg_of
 from separatrix.reporting.record import Equation, Picture, Row, Target
 
 if TYPE_CHECKING:
