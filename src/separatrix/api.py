@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from separatrix.comparing.records import Comparison
     from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
-    from separatrix.present.json import Document
+    from separatrix.present.nodes import Document
     from separatrix.reporting.record import Report
 
 Record = TypeVar("Record")
@@ -129,15 +129,15 @@ class ContactCases:
 
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.present.contact import contact
+        from separatrix.present.contact import document
 
-        return contact(self.record, self.notes)
+        return document(self.record, self.notes)
 
     def summary(self) -> str:
         """Text, as the command line prints it."""
-        from separatrix.present.text.contact import contact
+        from separatrix.present.contact import in_words
 
-        return contact(self.record, self.notes)
+        return in_words(self.record, self.notes)
 
     def to_xarray(self) -> xr.Dataset:
         """Numbers and fields of the cases with their units, as they are saved in netCDF files."""

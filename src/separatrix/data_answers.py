@@ -36,13 +36,13 @@ class TribometerAnswer(ReducedLogs):
 
     def document(self) -> dict[str, Any]:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.present.tribometer import tribometer as document
+        from separatrix.present.tribometer import document
 
         return document(self, written=None)
 
     def summary(self) -> str:
         """Text, as the command line prints it."""
-        from separatrix.present.text.tribometer import tribometer as in_words
+        from separatrix.present.tribometer import in_words
 
         return in_words(self, written=None, plots=None)
 

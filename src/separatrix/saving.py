@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 from separatrix import figures
 from separatrix.figures.animation import animate
 from separatrix.figures.space import is_in_space
-from separatrix.figures.space_page import write_page
+from separatrix.figures.space_film import write_page
 from separatrix.messages import harmless
 from separatrix.present import dataset, in_words, save
 from separatrix.staged import staged
 from separatrix.workbook import results_workbook
-from separatrix.workbook_looks import add_table, new_workbook, text_for_cell, workbook_bytes
+from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from separatrix.present.json import Document
+    from separatrix.present.nodes import Document
     from separatrix.runner import Progress
     from separatrix.study import Study
 

@@ -15,8 +15,8 @@ from separatrix import figures
 from separatrix.cage import wilson_interval
 from separatrix.cli import main
 from separatrix.comparing.results import difference_interval, differing, units
-from separatrix.comparing.save import pictures
 from separatrix.comparing.saved import read_answers
+from separatrix.comparing.shown import pictures
 
 FEW = """extends = "cryogenic-turbopump"
 [stability]

@@ -12,7 +12,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from separatrix.app.worker import CANCEL, END, Report, Task, work
+from separatrix.app.worker import CANCEL, END, Task, work
 from separatrix.errors import InputError
 
 WAITING, RUNNING = "waiting", "running"
@@ -189,24 +189,18 @@ class Jobs:
         """Take in what the process reports, until it ends."""
         while True:
             try:
-                report = pipe.recv()
+                number, changes = pipe.recv()
             except (EOFError, OSError):
-                report = None
-            with self._lock:
-                if report is None:
+                with self._lock:
                     self._lost(pipe)
-                    return
-                self._take_in(report)
-
-    def _take_in(self, report: Report) -> None:
-        known = ("state", "done", "total", "expected", "message")
-        new = {name: value for name in known if (value := getattr(report, name)) is not None}
-        if report.state is not None and report.state not in ACTIVE:
-            new["ended"] = time.monotonic()
-            if (job := self._state.jobs.get(report.number)) is not None:
-                threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
-        self._change(report.number, **new)
-        self._feed()
+                return
+            with self._lock:
+                if changes.get("state", RUNNING) not in ACTIVE:
+                    changes["ended"] = time.monotonic()
+                    if (job := self._state.jobs.get(number)) is not None:
+                        threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
+                self._change(number, **changes)
+                self._feed()
 
     def _lost(self, pipe: Connection) -> None:
         """Note that the process has ended in the middle of a job, and go on with the next."""

@@ -20,8 +20,7 @@ from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
 from separatrix.messages import noted_warnings
-from separatrix.present.text.tribometer import tribometer as in_words
-from separatrix.present.tribometer import page_data
+from separatrix.present.tribometer import in_words, page_data
 from separatrix.units import format_number
 
 UNITS = {"time": "s", "distance": "m", "cycles": ""}

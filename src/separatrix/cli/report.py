@@ -19,8 +19,7 @@ from separatrix.staged import writable_folder
 
 if TYPE_CHECKING:
     from separatrix.comparing.saved import Document, Saved
-    from separatrix.reporting.kept import Kept
-    from separatrix.reporting.record import Report
+    from separatrix.reporting.record import Kept, Report
     from separatrix.study import Study
 
     Compute = Callable[..., Computed]
@@ -118,7 +117,7 @@ def _read(asked: str) -> tuple[Study, list[str]]:
 def _answers(
     study: Study, notes: list[str], folder: Path | None, compute: Compute
 ) -> tuple[dict[str, Kept], list[str], bool]:
-    from separatrix.reporting.kept import answers_of, keeping
+    from separatrix.reporting.content import answers_of, keeping
 
     return answers_of(study, folder, keeping(lambda verb: compute(verb, study, folder=folder), notes, folder))
 
@@ -136,8 +135,7 @@ def _of_folder(folder: Path, compute: Compute) -> Report:
 
     One whose documents were edited is refused.
     """
-    from separatrix.reporting.content import report_of
-    from separatrix.reporting.kept import NEEDED, add_missing, keeping, read_folder, verbs_of
+    from separatrix.reporting.content import NEEDED, add_missing, keeping, read_folder, report_of, verbs_of
 
     found, missing = read_folder(folder), list[str]()
     study = _read_back(next(iter(found.values())).document, str(folder))

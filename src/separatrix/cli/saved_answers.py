@@ -16,7 +16,7 @@ import typer
 
 from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
 from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
-from separatrix.comparing.agreement import Agreement, agreement
+from separatrix.comparing.pair import Agreement, agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
 from separatrix.errors import InputError
 from separatrix.messages import grouped, noted_warnings
@@ -48,8 +48,7 @@ def compare(
     """
     to = folder(out) or (None if json else Path("compare"))
     from separatrix.comparing.pair import compared, pair_of
-    from separatrix.comparing.save import comparison_document, save_comparison
-    from separatrix.comparing.text import in_words
+    from separatrix.comparing.shown import comparison_document, in_words, save_comparison
 
     one, other, also = pair_of(read_answers(first), read_answers(second))
     found = compared(one, other, also)

@@ -48,8 +48,7 @@ def contact(
     place = folder(out)
     from separatrix.contact_file import read_contact
     from separatrix.contact_file.solving import solve_cases
-    from separatrix.present.contact import contact as document
-    from separatrix.present.text.contact import contact as in_words
+    from separatrix.present.contact import document, in_words
 
     with noted_warnings() as notes, contextlib.ExitStack() as stack:
         asked = read_contact(path)
@@ -145,8 +144,7 @@ def tribometer(
             _draw_pages(found, pages, quiet=quiet)
         if to is not None:
             _write_friction(found, to)
-        from separatrix.present.text.tribometer import tribometer as in_words
-        from separatrix.present.tribometer import tribometer as document
+        from separatrix.present.tribometer import document, in_words
 
         written = None if to is None else str(to)
         if json:

@@ -22,7 +22,7 @@ from separatrix.cage import Judgement, KickCount
 from separatrix.cage.verdict import NORMAL_95
 from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
 from separatrix.explore.sweep import Sweep
-from separatrix.present.walk import field_units
+from separatrix.present.nodes import field_units
 from separatrix.units import printable
 
 if TYPE_CHECKING:

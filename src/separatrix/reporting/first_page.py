@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
-from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import own_candidates, picture
 from separatrix.reporting.record import (
     Block,
+    Kept,
     Paragraph,
     Row,
     Section,

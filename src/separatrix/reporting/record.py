@@ -4,16 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from separatrix.present.text import tables
 from separatrix.present.text.tables import ABSENT, interval
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Row = Mapping[str, Any]
 """A document of an answer, or a part of one."""
 
 MICRO = ("um", "uJ", "uW", "us", "uN")
 """Units that the program writes in ASCII."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """One answer: its document, and its dataset if that was kept, too."""
+
+    document: Row
+    data: xr.Dataset | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from math import degrees
 
 from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
-from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import drawing, equation, picture
-from separatrix.reporting.record import Block, Paragraph, Row, Section, Table, entry, facts, quantity
+from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, entry, facts, quantity
 
 CONTACT = {
     "load": ("Load Q", "N"),
