@@ -21,6 +21,9 @@ from separatrix.units import NUMBER, missing_unit, parse, printable, shown
 Made = TypeVar("Made")
 Choice = TypeVar("Choice", bound=Enum)
 Reader = Callable[[object, str], Made]
+Values = dict[str, Any]
+"""Values of a table by their keys, each of the type that the reader of its key returns."""
+
 
 MOST_BYTES = 256 * 1024
 LONGEST_LINE = 4000
@@ -68,7 +71,7 @@ def path_text(path: Path) -> str:
     return text if len(text) <= 80 else label_of(path)
 
 
-def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str, int]]:
+def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
     """Content of a TOML file, and the line of each key as a dotted path.
 
     Raises
@@ -79,7 +82,7 @@ def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str,
     return parsed(read_text(path, kind), label_of(path), kind)
 
 
-def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, Any], dict[str, int]]:
+def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
     """Content of TOML text, and the line of each key as a dotted path."""
     _, too_deep = _statements(text)
     if too_deep:
@@ -133,7 +136,7 @@ class Places:
         return f"{self.of(path)}: {path}" if path else self.label
 
 
-def places_of(label: str, data: dict[str, Any], lines: Mapping[str, int]) -> Places:
+def places_of(label: str, data: Mapping[str, object], lines: Mapping[str, int]) -> Places:
     """Return the places of the keys of a TOML file, from the lines of its dotted keys."""
     places = Places(label)
     for dotted, line in lines.items():
@@ -142,10 +145,10 @@ def places_of(label: str, data: dict[str, Any], lines: Mapping[str, int]) -> Pla
     return places
 
 
-def _paths(dotted: str, data: dict[str, Any]) -> Iterator[str]:
+def _paths(dotted: str, data: Mapping[str, object]) -> Iterator[str]:
     """Yield a dotted key as the paths of faults, and those of what it is in."""
     name, *keys = dotted.split(".")
-    inside: Any = data.get(name)
+    inside = data.get(name)
     if not keys and not isinstance(inside, dict | list):
         yield name
         return
@@ -287,12 +290,12 @@ def truth(value: object, where: str) -> bool:
     return value
 
 
-def text(value: object, where: str) -> str:
+def text(value: object, where: str, longest: int = 200, cure: str = "") -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text", shown(value))
-    if not 0 < len(value.strip()) <= 200 or not value.isprintable():
-        raise InputError(where, "must be one line of 1 to 200 printable characters", shown(value))
+        raise InputError(where, "must be text", shown(value), cure)
+    if not 0 < len(value.strip()) <= longest or not value.isprintable():
+        raise InputError(where, f"must be one line of 1 to {longest} printable characters", shown(value))
     return value
 
 
@@ -328,11 +331,11 @@ def table(
     readers: Mapping[str, Reader[object]],
     required: tuple[str, ...] = (),
     what: str = "this table",
-) -> dict[str, Any]:
+) -> Values:
     """Read a table in place, every key known and every required key there; all faults are collected."""
     if not isinstance(value, dict):
         raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
-    given: dict[str, Any] = {}
+    given: Values = {}
     problems: list[InputError] = []
     for key, item in value.items():
         at = f"{where}.{printable(key)}"

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cage import Judgement
-from separatrix.present.walk import field_units
+from separatrix.present.nodes import field_units
 from separatrix.ranking.records import Ranked
-from separatrix.workbook_looks import (
+from separatrix.workbook_files import (
     BAND,
     HEADING,
     SMALL,
@@ -169,7 +169,7 @@ def _completed(row: Document) -> Document:
     return found
 
 
-def _cell(value: Any, column: Column) -> Cell:
+def _cell(value: object, column: Column) -> Cell:
     if isinstance(value, list):
         value = "; ".join(map(str, value)) or None
     elif isinstance(value, float):
@@ -303,13 +303,12 @@ def _inputs(study: Document) -> Iterator[list[Cell]]:
 
 
 def _materials(study: Document) -> Iterator[tuple[object, ...]]:
-    used: list[tuple[str, Any]] = [
-        (role, (study.get(section) or {}).get(key)) for (section, key), role in ROLES.items()
-    ]
-    used = [(role, one) for role, one in used if one and one.get("name") is not None]
+    used = [(role, (study.get(section) or {}).get(key)) for (section, key), role in ROLES.items()]
     candidates = (study.get("ranking") or {}).get("candidates", ())
-    used += [(f"candidate {one['name']}", one["material"]) for one in candidates if one.get("material")]
+    used += [(f"candidate {one['name']}", one.get("material")) for one in candidates]
     for role, one in used:
+        if not one or one.get("name") is None:
+            continue
         modulus = one["elastic_modulus"]["value"]
         numbers = one["poisson_ratio"]["value"], one["density"]["value"]
         words = one.get("confidence"), one.get("source")

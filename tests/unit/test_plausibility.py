@@ -17,8 +17,7 @@ from separatrix.ranking.reason import (
     within_a_turn,
 )
 from separatrix.study import BallBearing, Operation, Study
-from separatrix.study_file import read_study
-from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
+from separatrix.study_file import beyond_bearings, plausible_cage_masses, read_study
 
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage

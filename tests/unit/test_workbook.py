@@ -17,11 +17,11 @@ from separatrix.errors import ValidityWarning
 from separatrix.study_file import read_study, shipped_studies
 from separatrix.study_file.cells import COLUMNS, sheets_of
 from separatrix.study_file.document import SECTIONS, load
-from separatrix.study_file.sections import READERS
 from separatrix.study_file.templates import template_keys, template_workbook
+from separatrix.study_file.values import READERS
 from separatrix.units import parse
 from separatrix.workbook import OWN_SHEETS, results_workbook
-from separatrix.workbook_looks import (
+from separatrix.workbook_files import (
     add_sheet,
     new_workbook,
     put,
@@ -174,7 +174,9 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
     (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
     built = []
     monkeypatch.setattr("separatrix.study_file.template", lambda: built.append("text") or "")
-    monkeypatch.setattr("separatrix.study_file.templates.template_workbook", lambda: built.append("workbook") or b"")
+    monkeypatch.setattr(
+        "separatrix.study_file.templates.template_workbook", lambda: built.append("workbook") or b""
+    )
     path = tmp_path / name
     assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
     line = f"separatrix: {path} exists already. It was not touched; name a new file.\n"

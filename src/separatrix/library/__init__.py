@@ -136,7 +136,7 @@ def joined(contents: Sequence[Content]) -> Library:
 def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
     """Refuse a record that would replace another without stating so."""
     if old is None and new.replaces:
-        rule = f"has replaces = true, but no {new.kind} of this name is shipped"
+        rule = f"replaces a {new.kind} that is not shipped"
         raise InputError(_header(new), rule, cure="Leave replaces out, or correct the name.")
     if old is not None and not old.file.shipped:
         cure = "Rename or remove one of them."

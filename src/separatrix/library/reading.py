@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -51,9 +52,10 @@ LIBRARY = Kind(
 SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
 """Kind of the records of each section of a file."""
 
-MOST_RECORDS, MOST_DATA, MOST_PROBLEMS, LONGEST_TEXT = 2000, 100, 100, 1000
+MOST_RECORDS, MOST_DATA, MOST_PROBLEMS = 2000, 100, 100
 TOP = ("title",)
 Given = TypeVar("Given")
+_long_text = partial(text, longest=1000, cure="Put it in quotes.")
 BLANK = "What is not known is left out, never given as 0."
 
 
@@ -261,16 +263,6 @@ def _names(value: object, where: str) -> tuple[str, ...]:
     if len(set(value)) < len(value):
         raise InputError(where, "names an environment twice")
     return tuple(value)
-
-
-def _long_text(value: object, where: str) -> str:
-    """Read printable text on one line, up to `LONGEST_TEXT` characters."""
-    if not isinstance(value, str):
-        raise InputError(where, "must be text", shown(value), "Put it in quotes.")
-    if not 0 < len(value.strip()) <= LONGEST_TEXT or not value.isprintable():
-        rule = f"must be one line of 1 to {LONGEST_TEXT} printable characters"
-        raise InputError(where, rule, shown(value))
-    return value
 
 
 def _that(

@@ -20,7 +20,7 @@ from typing import IO, TYPE_CHECKING, Any, TypeGuard
 from separatrix.errors import InputError
 from separatrix.input_files import note, size_of, unreadable
 from separatrix.units import NUMBER, printable, shown
-from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
+from separatrix.workbook_files import SAVE_AGAIN, refuse_unsafe
 
 if TYPE_CHECKING:
     from openpyxl.cell.read_only import ReadOnlyCell
@@ -188,7 +188,11 @@ def _formulas(part: IO[bytes], place: str, most: int) -> dict[tuple[int, int], s
 
 
 def _sheet(
-    saved: Any, formulas: Mapping[tuple[int, int], str], sheet: Sheet, most: int, has_links: bool
+    saved: Any,
+    formulas: Mapping[tuple[int, int], str],
+    sheet: Sheet,
+    most: int,
+    has_links: bool,
 ) -> Sheet:
     found: dict[tuple[int, int], Cell | InputError] = {}
     saved.reset_dimensions()  # what a file states of its size may be wrong

@@ -9,7 +9,6 @@ from difflib import get_close_matches
 from functools import cache
 from os.path import exists, isfile
 from pathlib import Path
-from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, noted, together
@@ -67,14 +66,14 @@ class Document:
     """
 
     path: Path
-    top: dict[str, Any] = field(default_factory=dict)
-    sections: dict[str, dict[str, Any]] = field(default_factory=dict)
+    top: dict[str, object] = field(default_factory=dict)
+    sections: dict[str, dict[str, object]] = field(default_factory=dict)
     places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
     """Of the uncertain numbers, by their names, as they are read."""
 
-    libraries: list[tuple[Path, Any]] = field(default_factory=list)
+    libraries: list[tuple[Path, object]] = field(default_factory=list)
     """The study files of the chain, and what each has as `library`: these and their neighbours are read."""
 
     friction_folder: Path = field(default_factory=Path)
@@ -202,7 +201,7 @@ def _merged(base: Document, document: Document) -> Document:
     return merged
 
 
-def _kept(name: str, below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+def _kept(name: str, below: dict[str, object], above: dict[str, object]) -> dict[str, object]:
     """Keys of the base that the variant does not replace by an alternative."""
     dropped: set[str] = set()
     one, other = ALTERNATIVES.get(name, ((), ()))
@@ -238,7 +237,7 @@ def library_of(document: Document) -> Library:
     return with_files(paths)
 
 
-def _named(folder: Path, name: Any) -> list[Path]:
+def _named(folder: Path, name: object) -> list[Path]:
     if not isinstance(name, str) or not name or not name.isprintable():
         raise InputError("library", "must be the path of a file or a folder, in quotes", shown(name))
     path = place(folder, name)

@@ -7,7 +7,7 @@ import hashlib
 import os
 import platform
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from functools import cache
 from importlib.metadata import version
@@ -69,7 +69,7 @@ _WITHOUT = {
     "cage.land_spacing": "not given",
     "cage.land_diameter": "default: of the ring's shape, or the pitch diameter",
 }
-"""What the absence of a value means."""
+"""Meaning of an absent value."""
 
 
 def resolved(study: Study) -> dict[str, Any]:
@@ -77,9 +77,8 @@ def resolved(study: Study) -> dict[str, Any]:
 
     Each quantity is ``{"value": ..., "unit": ..., "origin": ...}``, in SI. The origin is the place and text
     in the study file, or ``"default"``. An uncertain one has its mean as value, and a ``"distribution"``;
-    all of these are in ``"uncertain_inputs"`` too. Each material has its source and confidence, and the whole
-    record of the library behind it, with the checksum of its file: a later change of the library changes
-    nothing here.
+    ``"uncertain_inputs"`` lists them all. Each material has its source, its confidence and its whole record
+    in the library, with the checksum of the file: a later change of the library changes nothing here.
     """
     known = study_numbers(study) if study.distributions else {}
     uncertain = [
@@ -221,24 +220,19 @@ SHIPPED = "shipped:"
 ELSEWHERE = "elsewhere-"
 """Before the number of a folder that is named by an absolute path."""
 
-_IN_PYTHON = "The study was made in Python, not read from a file."
-_CHANGED = "The study was changed in Python after it was read."
-_TOO_MUCH = f"The files of the study are more than {MOST_FILES}, or larger than {MOST_BYTES >> 20} MB."
-_APART = "The files of the study have no folder in common."
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kept:
-    """Files of a study by relative names with slashes; `reason` says why there are none.
-
-    `links` has the name of each absolute path that a file names. `as_read` is the study as its files have it.
-    """
+    """Files of a study by relative names with slashes, or the reason why there are none."""
 
     entry: str | None = None
-    files: Mapping[str, Mapping[str, str]]
-    links: Mapping[str, str]
+    files: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    links: Mapping[str, str] = field(default_factory=dict)
+    """Name of each absolute path that a file names."""
+
     reason: str | None = None
     as_read: Study | None = None
+    """The study as its files have it."""
 
 
 def keep(study: Study, path: Path, reading: Reading) -> Study:
@@ -247,16 +241,18 @@ def keep(study: Study, path: Path, reading: Reading) -> Study:
 
 
 def _kept(path: Path, reading: Reading, study: Study) -> Kept:
-    own = {file: content for file, content in reading.files.items() if _shipped_name(file) is None}
+    own: dict[Path, bytes] = {}
     shipped = {name: {"sha256": checksum} for name, checksum in _checksums("library/data").items()}
     for file, content in reading.files.items():
         if name := _shipped_name(file):
             shipped[name] = {"sha256": _sha256(content)}
+        else:
+            own[file] = content
     if len(own) > MOST_FILES or sum(map(len, own.values())) > MOST_BYTES:
-        return Kept(files={}, links={}, reason=_TOO_MUCH, as_read=study)
-    entry = _shipped_name(path)
-    if entry is not None:
-        return Kept(entry=entry, files=shipped, links={}, as_read=study)
+        most = f"{MOST_FILES}, or larger than {MOST_BYTES >> 20} MB"
+        return Kept(reason=f"The files of the study are more than {most}.", as_read=study)
+    if entry := _shipped_name(path):
+        return Kept(entry=entry, files=shipped, as_read=study)
     try:
         names = _Names(path, own, reading.absolute)
         files = {names.of(file): _content(content) for file, content in own.items()}
@@ -265,20 +261,16 @@ def _kept(path: Path, reading: Reading, study: Study) -> Kept:
         for name in files:
             refuse_unsafe(name)
     except ValueError as error:  # InputError is one
-        reason = f"{error}" if isinstance(error, InputError) else _APART
-        return Kept(files={}, links={}, reason=reason, as_read=study)
+        apart = "The files of the study have no folder in common."
+        return Kept(reason=f"{error}" if isinstance(error, InputError) else apart, as_read=study)
     return Kept(entry=entry, files={**files, **shipped}, links=links, as_read=study)
 
 
 class _Names:
-    """Relative names of files, under which they name each other as they do where they are.
+    """Relative names of files, by which they name each other as they do in their folders.
 
-    The root is the deepest folder of all, except for what is named by an absolute path elsewhere.
-
-    Raises
-    ------
-    ValueError
-        There is no such folder but that of the whole drive.
+    The root is the deepest folder of all but the files that are named by an absolute path elsewhere. Raises
+    ValueError if there is no such folder but that of the whole drive.
     """
 
     def __init__(self, entry: Path, files: Iterable[Path], absolute: Iterable[str]) -> None:
@@ -304,7 +296,7 @@ class _Names:
 
 
 def _absolute(path: Path) -> Path:
-    """Path without ``..``; a link on the way must not change where that leads."""
+    """Path without ``..``; a link on the way must not change its target."""
     found = Path(os.path.abspath(path))
     if found != path and not (found.exists() and found.samefile(path)):
         raise ValueError
@@ -345,14 +337,9 @@ def shipped_checksums() -> dict[str, str]:
 def asked_by(
     study: Study, verb: str, question: Mapping[str, object], reading: Reading | None = None
 ) -> Study:
-    """Return the study with the question, for `provenance_of`.
+    """Return the study with the options of a verb as they were given, for `provenance_of`.
 
-    Parameters
-    ----------
-    question : mapping
-        Options of the verb as they were given.
-    reading : Reading, optional
-        Files that were read to answer: a table of cases is one.
+    `reading` has the files that were read to answer, such as a table of cases.
     """
     given, files = dict(question), dict[str, Mapping[str, str]]()
     table = given.get("cases")
@@ -367,9 +354,18 @@ def asked_by(
 def provenance_of(study: Study, verb: str) -> dict[str, object]:
     """Return, as plain data, all that is needed to compute an answer of a verb again."""
     _, question, more = study.records.get(ASKED, (verb, {}, {}))
-    found = _of(study)
+    origins = {name: study.origins.get(f"cage.{name}", "").partition(" ") for name in ("motion", "ball")}
+    # those that the command line chose in place of those of the study
+    models = {name: value for name, (option, _, value) in origins.items() if option == f"--{name}"}
+    found: Kept | None = study.records.get(KEPT)
+    if found is None:
+        found = Kept(reason="The study was made in Python, not read from a file.")
+    elif found.as_read is not None and found.reason is None:
+        expected = with_models(found.as_read, models) if models else found.as_read
+        if expected != study:
+            found = Kept(reason="The study was changed in Python after it was read.")
     return {
-        "command": {"verb": verb, "question": question, "models": _models(study)},
+        "command": {"verb": verb, "question": question, "models": models},
         "entry": found.entry,
         "files": dict(found.files) | (dict(more) if found.entry else {}),
         "links": dict(found.links),
@@ -378,28 +374,7 @@ def provenance_of(study: Study, verb: str) -> dict[str, object]:
     }
 
 
-def _of(study: Study) -> Kept:
-    found: Kept | None = study.records.get(KEPT)
-    if found is None:
-        return Kept(files={}, links={}, reason=_IN_PYTHON)
-    if found.as_read is not None and found.reason is None:
-        models = _models(study)
-        expected = with_models(found.as_read, models) if models else found.as_read
-        if expected != study:
-            return Kept(files={}, links={}, reason=_CHANGED)
-    return found
-
-
-def _models(study: Study) -> dict[str, str]:
-    """Models that the command line chose in place of those of the study."""
-    origins = {name: study.origins.get(f"cage.{name}", "").partition(" ") for name in ("motion", "ball")}
-    return {name: value for name, (option, _, value) in origins.items() if option == f"--{name}"}
-
-
 @cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that compute, without separatrix."""
-    return {
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "numba")},
-    }
+    return {"python": platform.python_version()} | {one: version(one) for one in ("numpy", "scipy", "numba")}

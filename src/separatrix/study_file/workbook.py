@@ -13,7 +13,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import SECTIONS as RECORDS
@@ -122,11 +122,11 @@ def _add_keys(document: Document, sheet: Sheet, section: str) -> None:
     if not {"key", "value"} <= columns.keys():
         cure = f"Its first row has the headings {', '.join(COLUMNS)}."
         raise InputError(sheet.place, "has no headings key and value", cure=cure)
-    entries: dict[str, Any] = {}
+    entries: dict[str, object] = {}
     for row in list(_rows(sheet, columns)):
         dotted, unit = row.key.text, "" if row.unit is None or row.unit.text == "-" else row.unit.text
         key, *inside = dotted.split(".")
-        value: Any = _written(dotted, row, unit)
+        value: object = _written(dotted, row, unit)
         path = f"[{section}] {dotted}" if section != STUDY_SHEET else dotted
         known |= {path: row.value.place, f"{path}, after +-,": (row.spread or row.value).place}
         known.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.value.place)
@@ -239,7 +239,7 @@ def _unit_of(section: str, key: str, inside: list[str]) -> str:
     return unit_of(record, name) if record is not None and known else names.get(name, "")
 
 
-def _put(table: Any, keys: tuple[str, ...], value: Any) -> bool:
+def _put(table: object, keys: tuple[str, ...], value: object) -> bool:
     """Set an item of a table, itself perhaps in a table; return whether its place was free."""
     for key in keys[:-1]:
         table = table.setdefault(key, {}) if isinstance(table, dict) else None
@@ -268,9 +268,9 @@ class _Column(NamedTuple):
 def _add_candidates(document: Document, sheet: Sheet) -> None:
     """Add the candidates as tables."""
     columns, known = list(_columns(sheet)), document.places.known
-    items: list[dict[str, Any]] = []
+    items: list[dict[str, object]] = []
     for row in range(3, sheet.last_row + 1):
-        item: dict[str, Any] = {}
+        item: dict[str, object] = {}
         at = f"[ranking] candidates[{len(items) + 1}]"
         for column in columns:
             if (cell := sheet.given(row, column.number)) is None:
@@ -289,9 +289,10 @@ def _add_candidates(document: Document, sheet: Sheet) -> None:
             rule = f"must name the candidate of row {row}"
             raise InputError(sheet.at(row, number), rule, cure="Name it, or clear the row.")
         if item:
-            given = item.get("friction", {})
-            alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
-            items.append(item | ({"friction": alone} if alone else {}))
+            if isinstance(given := item.get("friction"), dict):
+                alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
+                item["friction"] = alone
+            items.append(item)
             known[at] = f"{sheet.place}, row {row}"
     if items:
         known["[ranking] candidates"] = sheet.place
@@ -326,7 +327,7 @@ def _columns(sheet: Sheet) -> Iterator[_Column]:
         yield column
 
 
-def _part(cell: Cell, column: _Column) -> Any:
+def _part(cell: Cell, column: _Column) -> Plain | list[Plain]:
     value, is_measured = cell.value, column.what in MEASURED and column.what != "source"
     if is_measured and isinstance(value, str) and not begins_as_number(value):
         cure = "Leave the cell empty if it was not measured."
