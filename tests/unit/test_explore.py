@@ -201,4 +201,4 @@ def test_outcomes_are_counted_where_they_settle():
         kicks=np.array([0.1, 0.5]),
         outcome=np.array([[0, 0, 0], [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.WHIRLS]]),
     )
-    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)) == [False, True, False]
+    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 0.0]

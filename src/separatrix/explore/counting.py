@@ -27,10 +27,18 @@ from separatrix.chain.lubrication import LubricationCurve
 from separatrix.distribution import LogNormal
 from separatrix.draws import Case
 from separatrix.explore.records import AllowedFilm, AllowedFriction
-from separatrix.limits.response import SEARCHED_FRICTION, Count, Crossing, Response, Side, race_damping_at
+from separatrix.limits.response import (
+    SEARCHED_FRICTION,
+    Count,
+    Crossing,
+    Response,
+    Side,
+    ends_of,
+    race_damping_at,
+)
 from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner, joined
-from separatrix.units import MetrePerSecond, Ratio
+from separatrix.units import Array, MetrePerSecond, Ratio
 
 BLOCK = 64  # bearings after which a case is looked at
 RISK: Ratio = 1e-3
@@ -39,22 +47,15 @@ RISK: Ratio = 1e-3
 NORMAL = 3.2905  # normal quantile of that probability, on both sides together
 
 
-def counted(
-    bearings: DrawnBearings, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner
-) -> tuple[Judgement, Ensemble]:
+def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgement, Ensemble]:
     """Run the bearings of a case in blocks, until all have run or the verdict is plain.
 
     A kick from which plainly more bearings settle than from the worst is not run further; its count stays in
     the judgement, whose other evidence is that of the kicks that are left.
-
-    Raises
-    ------
-    Interrupted
-        The work was interrupted.
     """
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
-    total, kicks = len(bearings.runs), list(kicks)
+    total, kicks = len(bearings.runs), list(bearings.kicks)
     for first in range(0, total, BLOCK):
         parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), runner))
         found = joined(parts)
@@ -66,7 +67,8 @@ def counted(
             left_out += better
             kept = [i for i, one in enumerate(judged.by_kick) if one not in better]
             kicks = [kicks[i] for i in kept]
-            found = of_kicks(found, kept)
+            by_kick = {f.name for f in fields(found) if np.ndim(getattr(found, f.name)) > 0}
+            found = replace(found, **{name: getattr(found, name)[kept] for name in by_kick})
             judged, parts = judge(bearings.cage(case), found), [found]
     counts = sorted((*left_out, *judged.by_kick), key=lambda one: one.kick)
     return replace(judged, by_kick=tuple(counts)), found
@@ -81,16 +83,6 @@ def settles_more(count: KickCount, judged: Judgement) -> bool:
     )
 
 
-def of_kicks(found: Ensemble, places: Sequence[int]) -> Ensemble:
-    """Return the runs from some of the kicks."""
-    rows = list(places)
-    arrays = {name: value[rows] for name in FIELDS if np.ndim(value := getattr(found, name)) > 0}
-    return replace(found, **arrays)
-
-
-FIELDS = tuple(one.name for one in fields(Ensemble))
-
-
 def is_plain(judged: Judgement) -> bool:
     """Whether the shares behind a verdict lie beyond its limits by more than `RISK` leaves open."""
     worst = next(count for count in judged.by_kick if count.kick == judged.worst_kick)
@@ -99,120 +91,101 @@ def is_plain(judged: Judgement) -> bool:
     return judged.verdict is Verdict.UNSTABLE and wilson_interval(worst.whirls, worst.runs, NORMAL)[0] > FEW
 
 
-def settles(found: Ensemble, judged: Judgement) -> list[bool]:
-    """Whether each bearing settles from the worst kick."""
+def settles(found: Ensemble, judged: Judgement) -> Array:
+    """1 for each bearing that settles from the worst kick, else 0; shape (bearing,)."""
     at = found.kicks.tolist().index(judged.worst_kick)
-    return [bool(one == RunOutcome.SETTLES) for one in found.outcome[at]]
+    return np.asarray(found.outcome[at] == RunOutcome.SETTLES, dtype=np.float64)
 
 
 PROBABILITY: Ratio = 0.95  # wanted share of bearings that settle
 RUNS = 96  # bearings counted near the answer
-NONE_LOW = "fewer settle even without pocket friction"
-ALL_SETTLE = f"more settle at every friction up to {SEARCHED_FRICTION:g}"
-NO_ETA = "fewer settle at any restitution factor"
-EVERY_ETA = "more settle at every restitution factor"
+# cage of a bearing at a value that is searched, by its place
+Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
 
 
 def allowed_friction(
-    bearings: DrawnBearings,
-    names: Sequence[str],
-    scatter: Ratio,
-    kicks: Sequence[MetrePerSecond],
-    runner: Runner,
+    bearings: DrawnBearings, names: Sequence[str], scatter: Ratio, runner: Runner
 ) -> AllowedFriction:
-    """Largest mean friction of a new material that scatters by `scatter`, in the pockets of some candidates.
-
-    Raises
-    ------
-    Interrupted
-        The work was interrupted.
-    """
+    """Largest mean friction of a new material with this scatter, in the pockets of some candidates."""
     own = next(case for case in bearings.friction if case.candidate == names[0])
     law = LogNormal(mean=1.0, standard_deviation=scatter) if scatter > 0.0 else None
-    random = np.random.default_rng((bearings.study.stability.seed, len(bearings.runs)))
-    places = (random.permutation(len(bearings.runs)) + 0.5) / len(bearings.runs)
-    shares = np.ones(len(bearings.runs)) if law is None else law.quantile(places)
+    total = len(bearings.runs)
+    random = np.random.default_rng((bearings.study.stability.seed, total))
+    places = (random.permutation(total) + 0.5) / total
+    shares = np.ones(total) if law is None else law.quantile(places)
 
     def at(friction: Ratio, place: int, cage: PlanarCage) -> PlanarCage:
         return replace(cage, ball_cage_friction=friction * float(shares[place]))
 
-    found = _worst([_crossing(bearings, own, kick, at, 0.1, runner) for kick in kicks])
-    known = isinstance(found, Crossing)
+    found = _worst_crossing(bearings, own, at, 0.1, runner)
+    value, low, high = ends_of(found)
+    reasons = {
+        Side.ABOVE: "fewer settle even without pocket friction",
+        Side.BELOW: f"more settle at every friction up to {SEARCHED_FRICTION:g}",
+    }
     return AllowedFriction(
         names=tuple(names),
         probability=PROBABILITY,
         scatter=scatter,
-        friction=found.value if isinstance(found, Crossing) else None,
-        friction_low=found.low if isinstance(found, Crossing) else None,
-        friction_high=found.high if isinstance(found, Crossing) else None,
-        reason="" if known else NONE_LOW if found is Side.ABOVE else ALL_SETTLE,
+        friction=value,
+        friction_low=low,
+        friction_high=high,
+        reason=reasons[found] if isinstance(found, Side) else "",
     )
 
 
 def allowed_film(
-    bearings: DrawnBearings,
-    case: Case,
-    kicks: Sequence[MetrePerSecond],
-    films: LubricationCurve | None,
-    runner: Runner,
+    bearings: DrawnBearings, case: Case, films: LubricationCurve | None, runner: Runner
 ) -> AllowedFilm:
     """Largest restitution factor of the central bearing, the dampings of all bearings scaled with its own.
 
     A film acts on the cage by the race damping alone, so the films that keep below it are read off the
     central bearing's curve over film thickness and race friction.
-
-    Raises
-    ------
-    Interrupted
-        The work was interrupted.
     """
     central = bearings.cage(case)
     own = bearings.central[case.candidate].restitution.restitution_factor
 
     def at(eta: Ratio, _place: int, cage: PlanarCage) -> PlanarCage:
-        return replace(cage, race_damping=cage.race_damping * _ratio(central, eta))
+        ratio = race_damping_at(central, eta) / central.race_damping  # infinite at eta = 1
+        return replace(cage, race_damping=cage.race_damping * ratio)
 
-    found = _worst([_crossing(bearings, case, kick, at, max(own, 0.05), runner) for kick in kicks])
+    found = _worst_crossing(bearings, case, at, max(own, 0.05), runner)
+    value, low, high = ends_of(found)
+    reasons = {
+        Side.ABOVE: "fewer settle at any restitution factor",
+        Side.BELOW: "more settle at every restitution factor",
+    }
     empty = np.zeros(0)
     return AllowedFilm(
         name=case.candidate,
         probability=PROBABILITY,
-        restitution_factor=found.value if isinstance(found, Crossing) else None,
-        restitution_factor_low=found.low if isinstance(found, Crossing) else None,
-        restitution_factor_high=found.high if isinstance(found, Crossing) else None,
-        reason="" if isinstance(found, Crossing) else NO_ETA if found is Side.ABOVE else EVERY_ETA,
+        restitution_factor=value,
+        restitution_factor_low=low,
+        restitution_factor_high=high,
+        reason=reasons[found] if isinstance(found, Side) else "",
         film_thickness=empty if films is None else films.film_thickness,
         race_friction=empty if films is None else films.race_friction,
         film_restitution_factor=np.zeros((0, 0)) if films is None else films.restitution_factor,
     )
 
 
-# Cage of a bearing at a value that is searched, by its place.
-Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
-
-
-def _crossing(
-    bearings: DrawnBearings, case: Case, kick: MetrePerSecond, at: Changed, guess: Ratio, runner: Runner
+def _worst_crossing(
+    bearings: DrawnBearings, case: Case, at: Changed, guess: Ratio, runner: Runner
 ) -> Crossing | Side:
-    """Value at which the share of bearings that do not settle from a kick passes what may fail."""
-    total = len(bearings.runs)
+    """Least value over the kicks at which the share of bearings that do not settle passes what may fail.
 
-    def look(value: Ratio, first: int, runs: int) -> Count:
-        places = [place % total for place in range(first, first + runs)]
-        found = bearings.ensemble(case, (kick,), places, runner, lambda place, cage: at(value, place, cage))
-        return Count(runs - int(found.count(RunOutcome.SETTLES)[0]), runs)
+    ABOVE where more fail from one kick throughout.
+    """
+    total, found = len(bearings.runs), []
+    for kick in bearings.kicks:
 
-    return Response(look, RUNS).crossing(1.0 - PROBABILITY, RUNS, guess)
+        def look(value: Ratio, first: int, runs: int, kick: MetrePerSecond = kick) -> Count:
+            places = [place % total for place in range(first, first + runs)]
+            ran = bearings.ensemble(case, (kick,), places, runner, lambda place, cage: at(value, place, cage))
+            return Count(runs - int(ran.count(RunOutcome.SETTLES)[0]), runs)
 
-
-def _worst(found: Sequence[Crossing | Side]) -> Crossing | Side:
-    """Crossing of the worst kick: the least; none is left where more fail from one kick throughout."""
+        found.append(Response(look, RUNS).crossing(1.0 - PROBABILITY, RUNS, guess))
     if Side.ABOVE in found:
         return Side.ABOVE
     crossings = [one for one in found if isinstance(one, Crossing)]
     return min(crossings, key=lambda one: one.value) if crossings else Side.BELOW
-
-
-def _ratio(central: PlanarCage, eta: Ratio) -> float:
-    """Race damping at a restitution factor, over that of the central cage; infinite for 1."""
-    return race_damping_at(central, eta) / central.race_damping

@@ -49,20 +49,22 @@ CHANCE_VARIANCE = math.pi**2 / 3.0
 def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> Drivers:
     """Shares of the inputs in the variance of a case's logit, with calibration on bearings left out.
 
-    Parameters
-    ----------
-    case : Case
-        Whose.
-    names : sequence of str
-        Inputs of the columns.
-    scores : ndarray
-        Draws as standard normal numbers, shape (bearing, input).
-    settled : ndarray
-        1 where the bearing settles, shape (bearing,).
+    `names` are the inputs, `scores` their draws as standard normal numbers, shape (bearing, input); `settled`
+    is 1 where the bearing settles, shape (bearing,).
     """
     rare = int(min(settled.sum(), settled.size - settled.sum()))
     if rare < FEWEST or not names:
-        return _silent(case, f"{rare} of {settled.size} bearings end otherwise: too few to compare")
+        none = np.zeros(0)
+        return Drivers(
+            name=case.candidate,
+            environment=case.environment,
+            shares=(),
+            reason=f"{rare} of {settled.size} bearings end otherwise: too few to compare",
+            predicted=none,
+            counted=none,
+            bearings=none,
+            skill=None,
+        )
     unseen = _left_out(scores, settled)
     skill = 1.0 - _deviance(unseen, settled) / _deviance(np.full(settled.size, settled.mean()), settled)
     predicted, counted, bearings = _bins(unseen, settled)
@@ -76,20 +78,6 @@ def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> 
         counted=counted,
         bearings=bearings,
         skill=float(skill),
-    )
-
-
-def _silent(case: Case, reason: str) -> Drivers:
-    none = np.zeros(0)
-    return Drivers(
-        name=case.candidate,
-        environment=case.environment,
-        shares=(),
-        reason=reason,
-        predicted=none,
-        counted=none,
-        bearings=none,
-        skill=None,
     )
 
 
@@ -133,8 +121,8 @@ def _bins(predicted: Array, settled: Array) -> tuple[Array, Array, Array]:
     """Mean prediction, counted share and number of bearings of each bin, as many bearings in each."""
     parts = np.array_split(np.argsort(predicted, kind="stable"), BINS)
     rows = [(predicted[one].mean(), settled[one].mean(), float(one.size)) for one in parts]
-    columns = np.array(rows).T
-    return columns[0], columns[1], columns[2]
+    first, second, third = np.array(rows).T
+    return first, second, third
 
 
 def _shares(names: Sequence[str], scores: Array, settled: Array) -> tuple[Share, ...]:
@@ -170,15 +158,10 @@ def next_tests(
 ) -> tuple[TestGain, ...]:
     """What measuring each input would settle, the best first; those that would settle nothing are left out.
 
-    Parameters
-    ----------
-    inputs : sequence of UncertainInput
-        In the order of the scores.
-    known : mapping
-        Share of each friction's variance that tests could take away, by its key; of other inputs all.
-    cases : mapping
-        By the words of an undecided case: coefficients of its regression, shape (1 + input,), and scores of
-        its bearings, shape (bearing, input).
+    The inputs are in the order of the scores. `known` has the share of each friction's variance that tests
+    could take away, by its key; of other inputs it is all. `cases` have, by the words of an undecided case,
+    the coefficients of its regression, shape (1 + input,), and the scores of its bearings, shape (bearing,
+    input).
     """
     found = []
     for i, one in enumerate(inputs):
@@ -242,32 +225,17 @@ def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Rat
 BLOCKS, EACH = 8, 32  # independent scramblings, and draws in each
 HALF_STEP = 2.0**-31  # half the step of the points: keeps them off 0 and 1
 
-# Answers rows of probabilities, shape (draw, input), with shape (draw, quantity).
-Model = Callable[[Array], Array]
+Model = Callable[[Array], Array]  # from points in the unit cube, (draw, input), to (draw, quantity)
 
 
 def sobol_shares(
     model: Model, names: Sequence[str], *, seed: int
 ) -> list[tuple[tuple[Share, ...], tuple[Share, ...]]]:
-    """First-order and total indices for each quantity of a model, largest total first.
-
-    Parameters
-    ----------
-    model : callable
-        Takes points in the unit cube.
-    names : sequence of str
-        Its inputs, independent of each other.
-    seed : int
-        Of the scramblings.
-    """
+    """First-order and total indices of each quantity of a model, by its inputs, largest total first."""
     count = len(names)
     points = np.concatenate([_points(2 * count, (seed, block)) for block in range(BLOCKS)])
     a, b = points[:, :count], points[:, count:]
-    mixed = []
-    for i in range(count):
-        rows = a.copy()
-        rows[:, i] = b[:, i]
-        mixed.append(rows)
+    mixed = [np.where(np.arange(count) == i, b, a) for i in range(count)]
     answers = np.array([model(rows) for rows in (a, b, *mixed)])  # shape (matrix, draw, quantity)
     return [_indices(names, answers[:, :, q]) for q in range(answers.shape[2])]
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from separatrix.cage import PlanarCage
-    from separatrix.limits.map_records import MapQuestion
-    from separatrix.study import StabilitySettings, Study
-    from separatrix.units import Ratio, Second
+from separatrix.cage import PlanarCage, run_ensemble
+from separatrix.cage_choice import ranking_question
+from separatrix.chain.contacts import race_tracks
+from separatrix.chain.race_curve import exact_slope, strips
+from separatrix.chain.solution import solve
+from separatrix.limits.map import PointFinder, require_cage_friction
+from separatrix.limits.map_records import MapQuestion
+from separatrix.limits.point import linear_guess
+from separatrix.limits.response import GrowthCounter
+from separatrix.runner import Runner
+from separatrix.study import StabilitySettings, Study, TractionModel
+from separatrix.units import Ratio, Second
 
 SAMPLED = 3  # runs from each kick that are timed at a friction
 LONGEST_SAMPLE = 5.0  # time after which no further friction is timed [s]
@@ -31,15 +37,16 @@ it bends more, its points take longer, too."""
 
 def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
     """Time of a stability curve, with its band at every point or only at the cage's own damping."""
-    from separatrix.limits.point import linear_guess
-    from separatrix.limits.response import GrowthCounter
-
     counts = GrowthCounter(cage, settings)
     some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
     each = _mean(_time_of_a_run(one, settings) for one in some)
     points = float(len(settings.restitution_factors)) or CURVE_POINTS
     banded = points + 1.0 if band else 1.0
-    runs = points * _runs_of_a_point(settings, band=band) + banded * _runs_of_a_band(settings)
+    # of a critical friction: both ends of the ladder, the bracket, and those near the crossing
+    of_a_point = 32.0 + (1.5 if band else 0.75) * settings.runs
+    # of a band: a first look at three crossings of every kick, and more at the ends
+    of_a_band = len(settings.kicks) * (16.0 + 1.5 * settings.runs)
+    runs = points * of_a_point + banded * of_a_band
     return each * runs / jobs
 
 
@@ -60,9 +67,6 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
-    from separatrix.cage_choice import ranking_question
-    from separatrix.chain.solution import solve
-
     asked = ranking_question(study)
     keys: set[tuple[float, Ratio]] = set()
     cages: dict[float, tuple[PlanarCage, StabilitySettings]] = {}
@@ -81,9 +85,6 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    from separatrix.cage_choice import ranking_question
-    from separatrix.chain.solution import solve
-
     asked = ranking_question(study)
     smooth = SOBOL_DRAWS * (2 + sum(1 for key in study.distributions if not key.startswith("ranking.")))
     total = PICTURES + _expected_chains(study, bearings + smooth)
@@ -98,11 +99,6 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
 
 def _expected_chains(study: Study, count: int) -> Second:
     """Time of the chains of as many drawn bearings; none where only frictions are drawn."""
-    from separatrix.chain.contacts import race_tracks
-    from separatrix.chain.race_curve import exact_slope, strips
-    from separatrix.chain.solution import solve
-    from separatrix.study import TractionModel
-
     if all(key.startswith("ranking.") for key in study.distributions):
         return 0.0
     tracks = race_tracks(study.bearing, study.film, solve(study).bearing)
@@ -125,9 +121,6 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
     Those of its first row and column are not timed: with them the links of the chain are made that others
     share.
     """
-    from separatrix.limits.map import PointFinder, require_cage_friction
-    from separatrix.runner import Runner
-
     require_cage_friction(question)
     xs, ys = (_some(axis.values) for axis in (question.x, question.y))
     points = len(question.x.values) * len(question.y.values)
@@ -138,29 +131,18 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
         finder((x, ys[0]))
     for y in ys[1:]:
         finder((xs[0], y))
-    each = _mean(_time_of(finder, (x, y)) for x in xs[1:] for y in ys[1:])
-    return each * points / jobs
+
+    def timed(x: float, y: float) -> Second:
+        begun = time.perf_counter()
+        finder((x, y))
+        return time.perf_counter() - begun
+
+    return _mean(timed(x, y) for x in xs[1:] for y in ys[1:]) * points / jobs
 
 
 def _some(values: Sequence[float]) -> list[float]:
     """Three of the values of an axis, evenly chosen, or both of two."""
     return list(dict.fromkeys(values[round(i * (len(values) - 1) / 2)] for i in range(3)))
-
-
-def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, float]) -> Second:
-    begun = time.perf_counter()
-    call(at)
-    return time.perf_counter() - begun
-
-
-def _runs_of_a_point(settings: StabilitySettings, *, band: bool) -> float:
-    """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
-    return 32.0 + (1.5 if band else 0.75) * settings.runs
-
-
-def _runs_of_a_band(settings: StabilitySettings) -> float:
-    """Runs behind a band: a first look at three crossings of every kick, and more at the ends."""
-    return len(settings.kicks) * (16.0 + 1.5 * settings.runs)
 
 
 def _mean(times: Iterable[Second]) -> Second:
@@ -175,8 +157,6 @@ def _mean(times: Iterable[Second]) -> Second:
 
 def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
     """Time of a run, the mean over the kicks; the compiled code is loaded beforehand."""
-    from separatrix.cage import run_ensemble
-
     run_ensemble(cage, settings, kicks=settings.kicks[:1], runs=1)
     begun = time.perf_counter()
     run_ensemble(cage, settings, runs=SAMPLED)

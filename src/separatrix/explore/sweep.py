@@ -76,13 +76,7 @@ def orders(operation: Operation, ball_count: int, cage_speed: RadianPerSecond) -
 
 
 def time_shares(cases: Sequence[Mapping[str, float]]) -> list[Ratio]:
-    """Share of each case in the time of all; none where no case has one.
-
-    Raises
-    ------
-    InputError
-        One is below zero or not finite, or all are zero.
-    """
+    """Share of each case in the time of all, none where no case has one; `InputError` if they have no sum."""
     if TIME_SHARE not in cases[0]:
         return []
     given = [case[TIME_SHARE] for case in cases]
@@ -229,21 +223,11 @@ def sweep(
     margins: bool = False,
     runner: Runner | None = None,
 ) -> Sweep:
-    """Run the chain for each case of a study.
+    """Run the chain for each case of a study; on request its threshold and the whole ensemble, too.
 
-    Parameters
-    ----------
-    study : Study
-        Where a case says nothing.
-    cases : sequence of mapping
-        Values by the names of a study file, in SI units, and perhaps ``"time_share"`` (shares, hours: any
-        unit, for they are divided by their sum); every case has the same names.
-    verdicts : bool
-        Whether to run the whole ensemble of each case, too.
-    margins : bool
-        Whether to compute the threshold of each case, too.
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
+    Each case has values by the names of a study file, in SI units, and perhaps a ``"time_share"`` (shares,
+    hours: any unit, for they are divided by their sum); every case has the same names. The numbers do not
+    depend on the runner.
 
     Raises
     ------

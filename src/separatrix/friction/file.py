@@ -12,7 +12,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Any
 
 from separatrix import _check, units
 from separatrix.errors import InputError, together
@@ -37,7 +36,6 @@ from separatrix.units import (
     Ratio,
     format_number,
     format_quantity,
-    parse,
     printable,
     shown,
 )
@@ -254,7 +252,7 @@ def _test(item: object, number: int, file: _Places) -> FrictionTest:
     where = f"{file.of(f'test.{number}', 'test')}: [[test]]"
     if not isinstance(item, dict):
         raise InputError(where, "must be a table", shown(item), _EXAMPLE)
-    given: dict[str, Any] = {}
+    given: dict[str, object] = {}
     problems: list[InputError] = []
     try:
         for key, value in item.items():
@@ -266,8 +264,8 @@ def _test(item: object, number: int, file: _Places) -> FrictionTest:
             problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
         if problems:
             raise together(problems)
-        if "run_in_end" in given:
-            given["run_in_axis"], given["run_in_end"] = given["run_in_end"]
+        if isinstance(end := given.get("run_in_end"), tuple):
+            given["run_in_axis"], given["run_in_end"] = end
         return build(FrictionTest, given, where)
     except InputError as error:
         found = []
@@ -311,9 +309,9 @@ def _alike(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]
 def _interval(unit: str) -> Reader[tuple[float, float]]:
     """Read one quantity, or a list of the lowest and the highest."""
 
-    def read(value: Any, where: str) -> tuple[float, float]:
+    def read(value: object, where: str) -> tuple[float, float]:
         if not isinstance(value, list):
-            single = parse(value, unit, where)
+            single = quantity(unit)(value, where)
             return single, single
         if len(value) != 2:
             raise InputError(where, "must be one quantity, or [lowest, highest]", f"{len(value)} of them")

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,9 +93,8 @@ class VarianceComponents:
 
 def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | None:
     """REML estimate of the scatter that several groups share; None if no group has a test to spare."""
-    from scipy import optimize
+    from scipy.optimize import minimize
 
-    minimize: Any = optimize.minimize
     useful = [model for model in models if model.freedom > 0]
     if not useful:
         return None
@@ -118,7 +116,8 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     nodes = (scale * s) ** 2, (scale * t) ** 2
     best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in useful)))
     start = [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
-    found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
+    bounds = _SEARCHED[-len(start) :]
+    found = minimize(loss, start, method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-14, "gtol": 1e-8})
     samples, *tests = (float(x) * scale for x in found.x)
     return VarianceComponents(between_samples=samples, between_tests=tests[0] if separate else None)
 
@@ -129,7 +128,6 @@ BETWEEN_GROUPS = 0.2
 OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
-_EXACT = {"ftol": 1e-14, "gtol": 1e-8}
 _SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
 _LOGS = np.linspace(-4.0, 4.0, 65)
 _LEAST = 1e-300

@@ -20,6 +20,7 @@ from separatrix.limits.response import (
     Response,
     Side,
     cage_at,
+    ends_of,
 )
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
@@ -248,9 +249,9 @@ def _point(
     """Record of the crossings, those of the band by kick, with the reasons of those that are missing."""
     none: tuple[Ratio | None, ...] = () if lows else (None,) * len(settings.kicks)
     (low, low_kick), (high, high_kick) = _outermost(lows, 1), _outermost(highs, -1)
-    value, scatter_low, scatter_high = _ends(found)
-    low_value, low_low, low_high = _ends(low)
-    high_value, high_low, high_high = _ends(high)
+    value, scatter_low, scatter_high = ends_of(found)
+    low_value, low_low, low_high = ends_of(low)
+    high_value, high_low, high_high = ends_of(high)
     targets = (found, 0.5, settings.middle_kick), (low, BAND_FEW, low_kick), (high, BAND_MOST, high_kick)
     reasons = [_REASONS[end].format(share, kick) for end, share, kick in targets if isinstance(end, Side)]
     return CriticalFriction(
@@ -264,9 +265,9 @@ def _point(
         low_scatter_high=low_high,
         high_scatter_low=high_low,
         high_scatter_high=high_high,
-        kick_low=none or tuple(_ends(end)[0] for end in lows.values()),
-        kick_critical_friction=none or tuple(_ends(middles[kick])[0] for kick in lows),
-        kick_high=none or tuple(_ends(end)[0] for end in highs.values()),
+        kick_low=none or tuple(ends_of(end)[0] for end in lows.values()),
+        kick_critical_friction=none or tuple(ends_of(middles[kick])[0] for kick in lows),
+        kick_high=none or tuple(ends_of(end)[0] for end in highs.values()),
         side=found if isinstance(found, Side) else None,
         reason="; ".join(dict.fromkeys(reasons)) or None,
     )
@@ -286,11 +287,6 @@ def _outermost(found: Mapping[MetrePerSecond, Found], way: int) -> tuple[Found |
     crossings = [(way * end.value, way * kick) for kick, end in found.items() if isinstance(end, Crossing)]
     kick = way * (min(crossings)[1] if crossings else max(way * kick for kick in found))
     return found[kick], kick
-
-
-def _ends(found: Found | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
-    """Value and interval of a crossing; None where there is none."""
-    return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
 
 
 _REASONS = {

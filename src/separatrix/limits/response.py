@@ -153,6 +153,11 @@ class Crossing:
     high: Ratio
 
 
+def ends_of(found: Crossing | Side | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
+    """Value and interval of a crossing; None where there is none."""
+    return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
+
+
 class Response:
     """Counts on the ladder for one restitution factor and kick; no run is counted twice.
 

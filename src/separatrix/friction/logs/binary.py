@@ -17,7 +17,7 @@ import zipfile
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import IO, Any, BinaryIO
+from typing import IO, TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -29,6 +29,11 @@ from separatrix.friction.logs.names import header_parts, ranks
 from separatrix.input_files import size_of, unreadable
 from separatrix.units import Array, printable, shown
 from separatrix.workbook_files import MOST_BYTES, SAVE_AGAIN, refuse_unsafe
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+    import nptdms
 
 MOST_ROWS_ABOVE = 2000  # rows in which the first rows of numbers are looked for
 _NUMBERS = (float, datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
@@ -118,30 +123,32 @@ def _part_and_percentages(archive: zipfile.ZipFile, sheet: str) -> tuple[str, se
 
     names = {name.casefold(): name for name in archive.namelist()}
 
-    def read(part: str) -> Any:
+    def read(part: str) -> Element:
         return fromstring(archive.read(names[part.casefold()]))
 
     def related(part: str) -> tuple[dict[str, str], dict[str, str]]:
         """Return the parts that a part names, by their identifiers and by their kinds."""
         folder, _, name = part.rpartition("/")
-        links = list(read(f"{folder}/_rels/{name}.rels".lstrip("/")))
-        paths = [posixpath.normpath(posixpath.join("/", folder, one.get("Target")))[1:] for one in links]
-        kinds = [one.get("Type").rpartition("/")[2] for one in links]
-        ids = [one.get("Id") for one in links]
-        return dict(zip(ids, paths, strict=True)), dict(zip(kinds, paths, strict=True))
+        by_id, by_kind = {}, {}
+        for one in read(f"{folder}/_rels/{name}.rels".lstrip("/")):
+            path = posixpath.normpath(posixpath.join("/", folder, one.attrib["Target"]))[1:]
+            by_id[one.attrib["Id"]] = by_kind[one.attrib["Type"].rpartition("/")[2]] = path
+        return by_id, by_kind
 
     book = related("")[1]["officeDocument"]
     paths, kinds = related(book)
-    sheets = {one.get("name"): dict(one.items()) for one in read(book).iterfind("{*}sheets/{*}sheet")}
-    target = paths[next(value for key, value in sheets[sheet].items() if key.endswith("}id"))]
+    sheets = {one.attrib["name"]: one.attrib for one in read(book).iterfind("{*}sheets/{*}sheet")}
+    target = names[
+        paths[next(value for key, value in sheets[sheet].items() if key.endswith("}id"))].casefold()
+    ]
     if "styles" not in kinds:
-        return names[target.casefold()], set()
+        return target, set()
     styles = read(kinds["styles"])
     formats = {"9": "0%", "10": "0.00%"}  # those that every workbook has
-    formats |= {one.get("numFmtId"): one.get("formatCode") for one in styles.iterfind("{*}numFmts/{*}numFmt")}
-    used = [formats.get(one.get("numFmtId"), "") for one in styles.iterfind("{*}cellXfs/{*}xf")]
-    percent = {str(i) for i, text in enumerate(used) if "%" in _LITERAL.sub("", text)}
-    return names[target.casefold()], percent
+    for one in styles.iterfind("{*}numFmts/{*}numFmt"):
+        formats[one.attrib["numFmtId"]] = one.attrib["formatCode"]
+    used = [formats.get(one.get("numFmtId", ""), "") for one in styles.iterfind("{*}cellXfs/{*}xf")]
+    return target, {str(i) for i, text in enumerate(used) if "%" in _LITERAL.sub("", text)}
 
 
 def _search(part: IO[bytes], percent: Collection[str], found: OddCells) -> None:
@@ -225,11 +232,11 @@ MOST_SCALES = 100
 LONGEST_PROPERTY = 200
 _LEAD_IN = struct.Struct("<4sIIQQ")
 _EXPORT = "Export it again, or as text."
+# what npTDMS raises for a file that ends early or makes no sense
 _DAMAGED = (
     *(ValueError, TypeError, LookupError, AttributeError, OverflowError, RuntimeError),
     *(EOFError, struct.error, MemoryError),
 )
-"""What npTDMS raises for a file that ends early or makes no sense."""
 
 
 def tdms_tables(path: Path) -> list[RawTable]:
@@ -282,9 +289,9 @@ def _check_segments(file: BinaryIO, size: int, label: str) -> None:
     file.seek(0)
 
 
-def _tables(group: Any, content: Any, label: str, size: int) -> Iterator[RawTable]:
+def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size: int) -> Iterator[RawTable]:
     """Yield the tables of a group, longest first."""
-    lengths: dict[int, list[Any]] = {}
+    lengths: dict[int, list[nptdms.TdmsChannel]] = {}
     for channel in group.channels():
         if len(channel) and channel.dtype is not None and np.dtype(channel.dtype).kind in "fiubM":
             lengths.setdefault(len(channel), []).append(channel)
@@ -317,7 +324,7 @@ def _tables(group: Any, content: Any, label: str, size: int) -> Iterator[RawTabl
         )
 
 
-def _column(channel: Any) -> tuple[str, Array]:
+def _column(channel: nptdms.TdmsChannel) -> tuple[str, Array]:
     """Unit and scaled values of a channel; points in time become seconds since the first one."""
     values = channel[:]
     if values.dtype.kind == "M":
@@ -327,7 +334,7 @@ def _column(channel: Any) -> tuple[str, Array]:
     return unit, np.asarray(values, dtype=np.float64)
 
 
-def _waveform_time(channels: Sequence[Any], where: str) -> Array | None:
+def _waveform_time(channels: Sequence[nptdms.TdmsChannel], where: str) -> Array | None:
     """Time of each row, from where the waveforms start and their increment; None if they have none."""
     tracks = {
         (float(known.get("wf_start_offset", 0.0)), float(known["wf_increment"]))

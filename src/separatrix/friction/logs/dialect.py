@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 
 import numpy as np
@@ -61,17 +61,29 @@ class Dialect:
 
     def fields(self, line: str) -> list[str]:
         """The fields of a line, without quotes and the blanks around them."""
-        return fields(line, self.separator)
+        parts = line.split() if self.separator == " " else line.split(self.separator)
+        return [part.strip().strip('"').strip() for part in parts]
 
     def is_data(self, line: str) -> bool:
-        """True for a row of the table: numbers or their absence, with few words or dates beside them."""
-        return _is_data(self.fields(line), self.missing, self.separator)
+        """True for a row of the table: numbers or their absence, with few words or dates beside them.
 
-
-def fields(line: str, separator: str) -> list[str]:
-    """The fields of a line, without quotes and the blanks around them."""
-    parts = line.split() if separator == " " else line.split(separator)
-    return [part.strip().strip('"').strip() for part in parts]
+        Two numbers, or one and a time, and at most twice as many words; between blanks only as many.
+        """
+        numbers = words = absent = clocks = 0
+        for field in self.fields(line):
+            if field.casefold() in self.missing:
+                absent += 1
+            elif is_number(field) or _several_signs(field):
+                numbers += 1
+            elif is_clock(field):
+                clocks += 1
+            elif _WORD.match(field):
+                words += 1
+            else:
+                return False
+        if numbers + clocks < 2 or not numbers:
+            return numbers == 1 and absent > 0 and words == 0
+        return words + (clocks if numbers > 1 else 0) <= (1 if self.separator == " " else 2) * numbers
 
 
 def dialect_of(
@@ -90,21 +102,21 @@ def dialect_of(
     """
     if separator is None:
         scores = dict.fromkeys(_NAMES, 0)
-        for line in lines:
-            for one in scores:
-                if one in line or (one == " " and "\t" in line):
-                    scores[one] += _is_data(fields(line, one), missing, one)
+        for one in scores:
+            dialect = Dialect(separator=one, decimal=".", missing=missing)
+            near = (line for line in lines if one in line or (one == " " and "\t" in line))
+            scores[one] = sum(map(dialect.is_data, near))
         separator = max(scores, key=lambda one: scores[one])
         if scores[separator] == 0:
             cure = "It needs a line of column names above at least two rows; a column map can state where."
             if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
                 cure = NO_MOMENTS
             raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
-    if decimal is None:
-        rows = (fields(line, separator) for line in lines)
-        rows_of_data = [row for row in rows if _is_data(row, missing, separator)]
-        decimal = "." if separator == "," else _decimal(rows_of_data, source)
-    return Dialect(separator=separator, decimal=decimal, missing=missing)
+    dialect = Dialect(separator=separator, decimal=decimal or ".", missing=missing)
+    if decimal is None and separator != ",":
+        rows = [dialect.fields(line) for line in lines if dialect.is_data(line)]
+        dialect = replace(dialect, decimal=_decimal(rows, source))
+    return dialect
 
 
 def is_number(field: str) -> bool:
@@ -115,25 +127,6 @@ def is_number(field: str) -> bool:
 def is_moment(field: str) -> bool:
     """True for a date or a time of day."""
     return _MOMENT.match(field) is not None
-
-
-def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> bool:
-    """Two numbers, or one and a time, and at most twice as many words; between blanks only as many."""
-    numbers = words = absent = clocks = 0
-    for field in row:
-        if field.casefold() in missing:
-            absent += 1
-        elif is_number(field) or _several_signs(field):
-            numbers += 1
-        elif is_clock(field):
-            clocks += 1
-        elif _WORD.match(field):
-            words += 1
-        else:
-            return False
-    if numbers + clocks < 2 or not numbers:
-        return numbers == 1 and absent > 0 and words == 0
-    return words + (clocks if numbers > 1 else 0) <= (1 if separator == " " else 2) * numbers
 
 
 def _several_signs(field: str) -> bool:

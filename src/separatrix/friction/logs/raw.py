@@ -9,7 +9,6 @@ where nothing slides.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +69,6 @@ def raw_log(
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = _without_stroke_speed(table, arrays, notes)
     conditions, sentences = conditions_of(given, metadata, arrays | turns, source)
-    fields: dict[str, Any] = dict(arrays)
     return RawLog(
         source=source,
         checksum=checksum,
@@ -80,7 +78,15 @@ def raw_log(
         metadata=dict(table.metadata),
         conditions=conditions,
         notes=(*notes, *sentences),
-        **fields,
+        friction=arrays["friction"],
+        time=arrays.get("time"),
+        distance=arrays.get("distance"),
+        cycles=arrays.get("cycles"),
+        normal_force=arrays.get("normal_force"),
+        tangential_force=arrays.get("tangential_force"),
+        temperature=arrays.get("temperature"),
+        wear_depth=arrays.get("wear_depth"),
+        slip_speed=arrays.get("slip_speed"),
     )
 
 

@@ -20,7 +20,6 @@ from separatrix.friction.logs.dialect import (
     SHORT_CLOCKS,
     Dialect,
     dialect_of,
-    fields,
     is_clock,
     is_moment,
     is_number,
@@ -229,7 +228,7 @@ class _Text:
             cure = "Delete it, or write a line of column names above the second table."
             where = f"{self.source}: line {before[0] + 1}"
             return InputError(where, "breaks the table", f'"{printable(self[before[0]])}"', cure)
-        above = fields(self[before[-1]], self.dialect.separator) if before else []
+        above = self.dialect.fields(self[before[-1]]) if before else []
         if self.dialect.separator == "," and 2 * len(above) == n + 1:
             rule = f"has {len(above)} names over {n + 1} fields: comma as separator and as decimal sign"
             return InputError(

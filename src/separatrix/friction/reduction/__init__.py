@@ -13,7 +13,7 @@ from separatrix.friction.file import UNITS, in_words, place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
-from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
+from separatrix.friction.reduction.steady import METHOD, RunIn, run_in
 from separatrix.units import Array, Ratio, format_number
 
 GIVEN = "given"  # how the end of running-in was found, if a user gave it
@@ -130,7 +130,7 @@ class Reduction:
     """Step in which friction is written, and the standard error that it causes."""
     cycle_means: Array
     """Means of whole cycles of the steady part, shape (cycle,); empty where no cycle is known."""
-    oscillation: steady.Oscillation
+    oscillation: cycles.Oscillation
     events: tuple[Event, ...] = ()
 
 
@@ -174,7 +174,7 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
-    strongest = steady.oscillation(stretch.along[first : first + friction.size], friction, cycle)
+    strongest = cycles.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
         test=_test(log, axis, stretch, spans, mean, found, strongest),
@@ -202,7 +202,7 @@ def _test(
     spans: cycles.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
-    oscillation: steady.Oscillation,
+    oscillation: cycles.Oscillation,
 ) -> TestFriction:
     """Return the numbers of a test, without its flags."""
     friction, whole = stretch.within(spans), stretch.cycle_means(spans)
