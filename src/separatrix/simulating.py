@@ -50,14 +50,6 @@ def warn_of_extrapolation(solution: Solution) -> None:
         )
 
 
-def _factor(given: str | Ratio) -> Ratio:
-    """Return a restitution factor, from text or a number; one outside 0 to 1 is refused."""
-    eta = float(given) if not isinstance(given, str) or re.fullmatch(NUMBER, given.strip()) else nan
-    if not 0.0 <= eta <= 1.0:
-        raise InputError("--restitution-factor", "must be a number from 0 to 1", printable(str(given)))
-    return eta
-
-
 def simulate(
     study: Study,
     *,
@@ -82,7 +74,12 @@ def simulate(
     solution = solve(study)
     cage, settings = solution.cage, solution.stability
     if restitution_factor is not None:
-        cage = cage_at(cage, _factor(restitution_factor), cage.ball_cage_friction)
+        text = str(restitution_factor).strip()
+        eta = float(text) if re.fullmatch(NUMBER, text) else nan
+        if not 0.0 <= eta <= 1.0:
+            rule = "must be a number from 0 to 1"
+            raise InputError("--restitution-factor", rule, printable(str(restitution_factor)))
+        cage = cage_at(cage, eta, cage.ball_cage_friction)
     warn_of_extrapolation(solution)
     speed = settings.middle_kick if given is None else given
     samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
@@ -98,8 +95,9 @@ def simulate(
         course = simulate_in_space(cage, **asked)
         found = analyse(cage, course, capacity=transmitted_force(solution))
         _warn_of_motion(solution, course.largest_contact_force, found.largest_offset)
-        seen: dict[str, Any] = {"history": course, "analysis": found, "kick": speed, "run": run}
-        return SpaceSimulationAnswer(solution=solution, cage=cage, **seen)
+        return SpaceSimulationAnswer(
+            solution=solution, cage=cage, history=course, analysis=found, kick=speed, run=run
+        )
     history = follow(cage, **asked)
     force, offset = abs(history.contact_force).max(), (history.position**2).sum(axis=1).max() ** 0.5
     _warn_of_motion(solution, float(force), float(offset))

@@ -153,7 +153,6 @@ def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], Offer
 
 
 def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
-    """Return each fault with the key that it is about."""
     faults = []
     for one in error.problems or (error,):
         message, at = str(one).replace(path.name, study.name), _KEY.search(one.path)

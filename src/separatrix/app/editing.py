@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from fastapi import APIRouter
@@ -120,7 +121,8 @@ def edited_by(text: str, sent: dict[str, str]) -> str:
     """Return the text of a study with what one part of the form changes in it."""
     if "added" in sent:
         return candidates.added(text, sent["added"])
-    number = _number(sent.get("candidate", sent.get("removed", "")))
+    digits = sent.get("candidate", sent.get("removed", ""))
+    number = int(digits) if re.fullmatch("[0-9]{1,8}", digits) else -1
     if "removed" in sent:
         return candidates.removed(text, number)
     value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
@@ -136,12 +138,7 @@ def edited_by(text: str, sent: dict[str, str]) -> str:
     return draft.edited(text, section, key, value)
 
 
-def _number(text: str) -> int:
-    return int(text) if text.isascii() and text.isdigit() and len(text) < 9 else -1
-
-
 def _summary(page: Page, name: str) -> dict[str, object]:
-    """Return what the list shows of a study: its answers, and the verdicts of its ranking."""
     ranked = page.document(page.folder.answers(name), "rank") or {}
     overall = ranked.get("overall") or []
     counts = {
@@ -201,7 +198,7 @@ def _question(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dict[
         elif name in ("adaptive", "verdicts", "margins"):
             question[name] = True
         elif name in TYPED:
-            if not text.isascii() or not text.isdigit() or len(text) > 9:
+            if not re.fullmatch("[0-9]{1,9}", text):
                 raise InputError(f"--{name}", "must be a whole number", got=f'"{printable(text)}"')
             question[name] = int(text)
         else:

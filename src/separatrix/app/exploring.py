@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import xarray as xr
 from fastapi import APIRouter, Request
@@ -28,9 +28,6 @@ from separatrix.messages import noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.units import format_quantity
-
-if TYPE_CHECKING:
-    from separatrix.comparing.saved import Document
 
 POCKET_FRICTION = "cage.ball_cage_friction"
 SLIDERS = (
@@ -101,7 +98,6 @@ def _study(page: Page, name: str) -> Study:
 
 
 def _values(request: Request) -> dict[str, float]:
-    """Return the values of the sliders that were moved, in SI."""
     try:
         return {key: float(value) for key, value in request.query_params.items() if key in SLIDERS}
     except ValueError:
@@ -137,7 +133,7 @@ def _place(page: Page, name: str, values: dict[str, float]) -> Path:
 
 def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) -> dict[str, object]:
     """Return eta, the margins on the finished curve that fits best, and the figure."""
-    eta, damping = solution.restitution.restitution_factor, solution.restitution.race_damping
+    study, eta = solution.study, solution.restitution.restitution_factor
     of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
     own, other = page.folder.answers(name), _place(page, name, of_curve)
     is_refined = bool(of_curve) and (other / "stability.nc").is_file()
@@ -146,37 +142,23 @@ def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) 
     data, document = next(((a, b) for a, b in curves if a is not None and b is not None), (None, None))
     friction, threshold = _friction(solution), None
     if document is not None and friction is not None:
-        threshold = restitution_threshold(_points(document), friction).value
+        rows = document.get("stability", document)["curve"]
+        curve = [CriticalFriction(**{**row, "side": row["side"] and Side[row["side"]]}) for row in rows]
+        threshold = restitution_threshold(curve, friction).value
+    words = "not known" if threshold is None else f"{threshold:.2f}"
+    made_of, environment = cage_candidate(study), environment_of(study.ranking) if study.ranking else ""
     return {
-        "values": {one.key: one.text for one in sliders(solution.study)},
+        "values": {one.key: one.text for one in sliders(study)},
         "eta": f"{eta:.3f}",
-        "damping": format_quantity(damping, "N s/m", 3),
+        "damping": format_quantity(solution.restitution.race_damping, "N s/m", 3),
         "friction": "not known" if friction is None else f"{friction:.3g}",
-        "threshold": _threshold(threshold),
+        "threshold": "1 (not reached)" if threshold is not None and threshold >= 1.0 else words,
         "margin": "not known" if threshold is None else f"{threshold - eta:+.2f}",
         "is_refined": not of_curve or is_refined,
         "has_curve": data is not None,
-        "whose": _whose(solution.study),
+        "whose": ", ".join(one for one in (made_of.name if made_of else "", environment) if one),
         "figure": None if data is None else _figure(data, eta, friction),
     }
-
-
-def _whose(study: Study) -> str:
-    made_of = cage_candidate(study)
-    place = environment_of(study.ranking) if study.ranking else None
-    return ", ".join(one for one in (made_of.name if made_of else "", place or "") if one)
-
-
-def _points(document: Document) -> list[CriticalFriction]:
-    """Return the points of the curve of a saved answer to `stability` or `rank`."""
-    rows = document.get("stability", document)["curve"]
-    return [CriticalFriction(**{**row, "side": row["side"] and Side[row["side"]]}) for row in rows]
-
-
-def _threshold(value: float | None) -> str:
-    if value is None:
-        return "not known"
-    return "1 (not reached)" if value >= 1.0 else f"{value:.2f}"
 
 
 def _figure(data: xr.Dataset, eta: float, friction: float | None) -> Spec:

@@ -236,7 +236,6 @@ def _candidate_list(
 
 
 def _environments(items: Iterable[object], own: object) -> dict[str, None]:
-    """Return the environments of all candidates, and that of the ranking."""
     frictions = [item.get("friction") for item in items if isinstance(item, dict)]
     found = [env for one in frictions if isinstance(one, dict) for env in one]
     return dict.fromkeys([*found, own] if isinstance(own, str) else found)
@@ -304,7 +303,6 @@ def _friction(number: int, place: int, environment: str, value: object, faults: 
 
 
 def _sent(number: int, part: tuple[str, ...]) -> dict[str, str]:
-    """Return what the page sends with a part of a candidate."""
     return {"field": f"{SECTION}.{KEY}", "candidate": str(number), "part": ".".join(part)}
 
 

@@ -186,7 +186,6 @@ class Jobs:
         threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
 
     def _listen(self, pipe: Connection) -> None:
-        """Take in what the process reports, until it ends."""
         while True:
             try:
                 number, changes = pipe.recv()

@@ -80,7 +80,6 @@ def routes(page: Page) -> APIRouter:
 
 
 def _names(place: Path) -> list[str]:
-    """Return the names of the logs in a folder."""
     if not place.is_dir():
         return []
     files = (path for path in place.iterdir() if path.is_file() and not path.name.startswith("."))
@@ -104,7 +103,6 @@ def _reduced(
 
 
 def _test(one: Reduction) -> dict[str, object]:
-    """Return what the page shows of a test beside its figure."""
     found, unit = one.test, UNITS[one.test.run_in_axis]
     low, high = found.interval
     return {

@@ -106,7 +106,6 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
 
 
 def _interval(one: Series, across: bool) -> Spec:
-    """Return the bars of the interval of each point."""
     if not one.low or not one.high:
         return {}
     values = one.x if across else one.y

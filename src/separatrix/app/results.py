@@ -16,7 +16,7 @@ from separatrix.app.page import ANSWER_SUFFIXES, Form, Page
 from separatrix.app.plotly import spec
 from separatrix.app.worker import REPORT
 from separatrix.comparing.pair import compared
-from separatrix.comparing.saved import VERBS, Saved, read_answers
+from separatrix.comparing.saved import VERBS, read_answers
 from separatrix.comparing.shown import in_words, input_words, pair_words, result_words, shown_rows
 from separatrix.errors import InputError
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
@@ -137,7 +137,10 @@ def routes(page: Page) -> APIRouter:
         values = {str(data[f"{axis}_parameter"].values): _nearest(data, axis, sent) for axis in "xy"}
         folder = "_".join(f"{key.rpartition('.')[2]}-{format_number(v, 4)}" for key, v in values.items())
         place = page.folder.answers(name) / POINT / printable(folder, 100).replace("/", "-")
-        question: dict[str, object] = {"kick": values.pop(KICK, float(data["kick"])), **_models(data)}
+        cage = study_of(data).get("cage", {})  # simulated with the models of motion and ball of its map
+        question: dict[str, object]
+        question = {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
+        question["kick"] = values.pop(KICK, float(data["kick"]))
         if RESTITUTION in values:
             question["restitution_factor"] = values.pop(RESTITUTION)
         page.jobs.ask(
@@ -182,7 +185,6 @@ def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
 
 
 def _files(place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
-    """Return the names of the files of an answer."""
     if not place.is_dir():
         return []
     stems = FIGURES_OF.get(verb, (f"{verb}-",))
@@ -202,12 +204,6 @@ def _run(page: Page, name: str, point: str) -> xr.Dataset:
     if data is None:
         raise InputError(f"{name}: simulate", "has no answer yet", cure="Run the verb.")
     return data
-
-
-def _models(data: xr.Dataset) -> dict[str, str]:
-    """Return the models of motion and ball that a map was made with: its points are simulated with them."""
-    cage = study_of(data).get("cage", {})
-    return {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
 
 
 def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
@@ -259,7 +255,10 @@ def _digits(values: Array) -> object:
 
 def _compared(first: Path, second: Path, verb: str) -> dict[str, object]:
     """Return the comparison of two folders of answers, by one verb that both have."""
-    pair = [_answers(place) for place in (first, second)]
+    for place in (first, second):
+        if not place.is_dir():
+            raise InputError(place.name, "has no answers yet", cure="Run a verb of it.")
+    pair = [read_answers(place) for place in (first, second)]
     shared = [one for one in VERBS if all(one in found for found in pair)]
     if not shared:
         names = f"{first.name} and {second.name}"
@@ -279,9 +278,3 @@ def _compared(first: Path, second: Path, verb: str) -> dict[str, object]:
             for at in found.differences
         ],
     }
-
-
-def _answers(place: Path) -> dict[str, Saved]:
-    if not place.is_dir():
-        raise InputError(place.name, "has no answers yet", cure="Run a verb of it.")
-    return read_answers(place)

@@ -115,7 +115,6 @@ def work(pipe: Connection) -> None:
 
 
 def _compute(task: Task, in_hand: list[int], send: Send) -> None:
-    """Compute a task and report how it ended."""
     in_hand.append(task.number)
     send(state="running")
     try:

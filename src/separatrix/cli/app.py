@@ -77,7 +77,6 @@ def _page(
     port: Annotated[int | None, whole_number("Port to listen on [default: any that is free].")] = None,
     open_it: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
 ) -> int:
-    """Serve the page until Ctrl-C."""
     if not folder.is_dir():
         raise InputError(str(folder), "is not a folder", cure="Name the folder of your studies.")
     if port is not None and not 1 <= port <= MOST_PORT:

@@ -107,7 +107,6 @@ def report(
 
 
 def _read(asked: str) -> tuple[Study, list[str]]:
-    """Return a study with what was noted when it was read."""
     from separatrix.study_file import read_study
 
     with noted_warnings() as notes:

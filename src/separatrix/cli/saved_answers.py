@@ -128,7 +128,6 @@ def reproduce(
 
 
 def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
-    """Compute one answer from what it keeps."""
     from separatrix.present import document
     from separatrix.runner import Interrupted
 
@@ -271,7 +270,6 @@ def _is_case(value: object) -> bool:
 
 
 def _versions(stored: Document, kept: Document) -> Iterator[Version]:
-    """Versions that differ here."""
     from separatrix import __version__
     from separatrix.study_file.provenance import versions
 
@@ -284,7 +282,6 @@ def _versions(stored: Document, kept: Document) -> Iterator[Version]:
 
 
 def _lines(one: Reproduced) -> Iterator[str]:
-    """Yield the answer in words, a line each."""
     found = one.result
     said = "the same" if one.same else "different"
     how = f", {found.agreement}" if found.same else f": {found.count} values differ"

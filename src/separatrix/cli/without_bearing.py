@@ -142,8 +142,13 @@ def tribometer(
             )
         if pages is not None:
             _draw_pages(found, pages, quiet=quiet)
-        if to is not None:
-            _write_friction(found, to)
+        if to is not None and found.friction_tests is not None:
+            from separatrix.friction.file import exists_already, friction_text
+
+            with staged(to.parent) as stage:
+                (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+                if to.exists():  # since the first check
+                    raise exists_already(to)
         from separatrix.present.tribometer import document, in_words
 
         written = None if to is None else str(to)
@@ -167,16 +172,6 @@ def _refuse_out(out: Path) -> None:
         raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
     if exists:
         raise exists_already(out)
-
-
-def _write_friction(found: ReducedLogs, out: Path) -> None:
-    from separatrix.friction.file import exists_already, friction_text
-
-    if found.friction_tests is not None:
-        with staged(out.parent) as stage:
-            (stage / out.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
-            if out.exists():  # since the first check
-                raise exists_already(out)
 
 
 def _draw_pages(found: ReducedLogs, pages: Path, *, quiet: bool) -> None:

@@ -125,7 +125,6 @@ def _of_candidate(candidate: Mapping[str, object]) -> Iterator[tuple[str, Input]
 
 
 def _study(saved: Saved) -> Mapping[str, object]:
-    """Return the resolved study of an answer."""
     try:
         study = _part(saved, "study")
         if isinstance(study, dict) and dict(of_study(study)):

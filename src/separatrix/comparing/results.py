@@ -98,7 +98,6 @@ def of_document(node: Mapping[str, object], place: Place = ()) -> Nodes:
 
 
 def _label(key: str, row: Mapping[str, object], number: int) -> str:
-    """Name of a row of a list."""
     name, environment = row.get("name"), row.get("environment")
     if isinstance(name, str):
         named = f"{name} in {environment}" if isinstance(environment, str) else name

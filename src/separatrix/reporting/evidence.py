@@ -87,7 +87,6 @@ def _evidence(rank: Row) -> Iterator[Block]:
 
 
 def _in_space(rows: list[Row]) -> Table:
-    """Return the evidence that only a cage in space has."""
     return Table(
         ("candidate", "largest tilt", "axial travel", "cone ratio", "impacts at pockets [1/s]"),
         tuple(
