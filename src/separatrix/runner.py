@@ -115,7 +115,8 @@ class Runner:
             self.ledger.taken += len(kicks) * runs
             return known
         found = self._followed(*piece)
-        self.ledger.put(key, _packed(found))
+        arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
+        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
         return found
 
     def _followed(
@@ -257,12 +258,6 @@ def joined(parts: Sequence[Ensemble]) -> Ensemble:
 
     kind = type(parts[0])
     return kind(**{field.name: column(field.name) for field in fields(kind)})
-
-
-def _packed(found: Ensemble) -> bytes:
-    """Bytes of an ensemble, exact."""
-    arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
-    return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
 
 
 def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:

@@ -48,10 +48,10 @@ NORMAL = 3.2905  # normal quantile of that probability, on both sides together
 
 
 def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgement, Ensemble]:
-    """Run the bearings of a case in blocks, until all have run or the verdict is plain.
+    """Run the bearings of a case in blocks, until all have run or the verdict is decided.
 
-    A kick from which plainly more bearings settle than from the worst is not run further; its count stays in
-    the judgement, whose other evidence is that of the kicks that are left.
+    A kick from which significantly more bearings settle than from the worst is not run further; its count
+    stays in the judgement, whose other evidence is that of the kicks that are left.
     """
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
@@ -75,7 +75,7 @@ def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgem
 
 
 def settles_more(count: KickCount, judged: Judgement) -> bool:
-    """Whether plainly more bearings settle from a kick than from the worst, most do, and in their pockets."""
+    """Whether significantly more settle from a kick than from the worst, most do, and in their pockets."""
     worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
     low = wilson_interval(count.settles, count.runs, NORMAL)[0]
     return 2 * count.kept_by_land <= count.runs and low > max(

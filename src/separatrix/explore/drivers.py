@@ -39,7 +39,7 @@ from separatrix.units import Array, Ratio
 
 PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
 FOLDS = 8  # parts of the bearings, each left out of one fit
-FEWEST = 30  # bearings of the rarer outcome without which nothing is said
+FEWEST = 30  # bearings of the rarer outcome below which the inputs are not compared
 LEAST_SKILL: Ratio = 0.02  # part of the deviance below which the inputs explain nothing that counts
 BINS = 5
 CHANCE = "chance of the single run"
@@ -196,9 +196,9 @@ def _chance(b: Array, scores: Array, i: int, known: Ratio) -> Ratio:
 def reducible_shares(study: Study, inputs: Sequence[UncertainInput]) -> dict[str, Ratio]:
     """For each friction, the share of its variance that more tests of the material could take away.
 
-    The friction of a new cage scatters as single tests do, and their mean is known with an error of its own:
+    The friction of a new cage scatters as single tests do, and their mean has an error of its own:
     that part is lack of knowledge, 1/(n + 1) after n tests, and so is what the scatter was widened by for
-    conditions that were not tested. Where the tests are not known it is what lies beyond the default scatter
+    conditions that were not tested. Where the tests are unknown it is what lies beyond the default scatter
     of single tests, and a half at least, as after one test.
     """
     places, ranking = {one.key: one for one in inputs}, study.ranking
@@ -255,10 +255,15 @@ def _indices(names: Sequence[str], values: Array) -> tuple[tuple[Share, ...], tu
     scatter = np.sqrt((BLOCKS - 1.0) / BLOCKS * np.sum((others - others.mean(axis=0)) ** 2, axis=0))
     half = float(stdtrit(BLOCKS - 1, 0.975)) * scatter
     order = np.argsort(-whole[1], kind="stable")
-    first, total = (
-        tuple(_share(names[i], float(whole[kind, i]), float(half[kind, i])) for i in order) for kind in (0, 1)
-    )
-    return first, total
+
+    def shares(kind: int) -> tuple[Share, ...]:
+        values = [(names[i], float(np.clip(whole[kind, i], 0.0, 1.0)), float(half[kind, i])) for i in order]
+        return tuple(
+            Share(name=name, share=x, share_low=max(0.0, x - h), share_high=min(1.0, x + h))
+            for name, x, h in values
+        )
+
+    return shares(0), shares(1)
 
 
 def _estimates(values: Array) -> Array:
@@ -271,8 +276,3 @@ def _estimates(values: Array) -> Array:
     first = np.mean(b * (mixed - a), axis=1)
     total = 0.5 * np.mean((mixed - a) ** 2, axis=1)
     return np.array([first, total]) / variance
-
-
-def _share(name: str, value: float, half: float) -> Share:
-    value = min(max(value, 0.0), 1.0)
-    return Share(name=name, share=value, share_low=max(0.0, value - half), share_high=min(1.0, value + half))

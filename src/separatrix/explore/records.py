@@ -1,4 +1,4 @@
-"""What `sensitivity` answers."""
+"""The records of a sensitivity analysis."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ from separatrix.units import Array, MetrePerSecond, Ratio, Rows
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputRow:
-    """One uncertain input: its key in the study, its distribution in words, and where that comes from.
-
-    `source` is "study" where the study states it, "measured" for the scatter of a measured friction,
-    "assumed" for the default one, a guess. Mean and standard deviation are in SI.
-    """
+    """One uncertain input with its distribution."""
 
     name: str  # its key in the study
     unit: str  # of mean and standard deviation, SI
@@ -44,7 +40,7 @@ class UncertainMaterial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotDrawn:
-    """A candidate without a measured friction in this environment; `reason` says so."""
+    """A candidate without a measured friction in this environment."""
 
     name: str  # of the candidate
     reason: str  # which test is missing
@@ -64,10 +60,7 @@ class UncertainEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceRow:
-    """P(stable) of one case against the number of bearings, from its worst kick; `environment` "": overall.
-
-    `size` : shape (size,); `probability_stable` with its 95 % interval, shape (size,) [-].
-    """
+    """P(stable) of one case against the number of bearings, from its worst kick; shape (size,)."""
 
     name: str  # of the candidate
     environment: str  # empty: overall
@@ -116,10 +109,7 @@ class Drivers:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmoothShares:
-    """First-order and total Sobol indices of a number that the chain computes.
-
-    `quantity` is "restitution_factor" or "race_damping", `name` the candidate.
-    """
+    """First-order and total Sobol indices of a number that the chain computes."""
 
     quantity: str  # restitution_factor or race_damping
     name: str  # of the candidate
@@ -139,11 +129,7 @@ class TestGain:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllowedFriction:
-    """Largest pocket friction of a new material at which a bearing settles with a probability.
-
-    `names` are the candidates whose pockets it holds for. `friction` is None where no friction is low enough,
-    or none too high; `reason` says which.
-    """
+    """Largest pocket friction of a new material at which a bearing settles with a probability."""
 
     names: tuple[str, ...]  # candidates whose pockets it is for
     probability: Ratio  # wanted, to settle
@@ -172,12 +158,7 @@ class AllowedFilm:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainStudy:
-    """Answer of `sensitivity`.
-
-    `bearings` were drawn, of which `failed` make no bearing, for the reasons in `notes`. A case that is plain
-    before has fewer runs (`stopped_risk`: largest probability that all of them would decide otherwise).
-    `undecided` names the cases without a verdict. `complete` is False if an interrupt left something out.
-    """
+    """Answer of `sensitivity`; a case whose verdict is decided early has fewer runs."""
 
     bearings: int  # drawn for each case
     failed: int  # of these, that do not make a bearing

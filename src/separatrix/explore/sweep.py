@@ -51,13 +51,13 @@ class WorstCase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Duty:
-    """Shares of the time of a duty cycle [-]; None where the quantity was not asked for."""
+    """Shares of the time of a duty cycle [-]; None where the quantity was not computed."""
 
     below_margin: Ratio | None  # with a margin below zero
     stable: Ratio | None  # with this verdict
     unstable: Ratio | None  # with this verdict
     undecided: Ratio | None  # with this verdict
-    refused: Ratio  # without the number that decides: not known
+    refused: Ratio  # without the number that decides
 
 
 def orders(operation: Operation, ball_count: int, cage_speed: RadianPerSecond) -> dict[str, Hertz]:
@@ -129,7 +129,7 @@ class SweptCase:
     """What the chain gives for a case; None from where it was refused, with the reason.
 
     Loads, contacts and slopes are those of the most loaded ball, clearances those of the running cage.
-    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless asked for.
+    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless requested.
     Frequencies are those that a sensor on the housing would see (`orders`).
     """
 
@@ -184,15 +184,12 @@ EVIDENCE -= {"verdict", "cage_motion"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """Cases in their order, and the parameters that they vary; an interrupt leaves some out.
-
-    `worst` is None where no case has an answer, `duty` without shares of time.
-    """
+    """Cases in their order, and the parameters that they vary; an interrupt leaves some out."""
 
     parameters: tuple[Parameter, ...]  # the varied inputs
     cases: tuple[SweptCase, ...]  # a row for each
-    verdicts: bool  # whether verdicts were asked for
-    margins: bool  # whether thresholds and margins were asked for
+    verdicts: bool  # whether verdicts were computed
+    margins: bool  # whether thresholds and margins were computed
     worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
     duty: Duty | None  # time in each verdict; null without shares of time
     complete: bool  # false if an interrupt left cases out

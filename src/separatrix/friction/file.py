@@ -92,10 +92,10 @@ _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionTest:
-    """Steady friction of one test, with what is known of its scatter and of its conditions.
+    """Steady friction of one test, with its scatter and its conditions as far as known.
 
     The conditions are the lowest and the highest during the test, or over the tests behind a printed mean;
-    what is not known is None.
+    None if unknown.
     """
 
     material: str  # of the cage
@@ -225,7 +225,7 @@ class _Places:
     lines: Mapping[str, int]
 
     def of(self, *keys: str) -> str:
-        """Label and line of the first of the keys that the file holds."""
+        """Label and line of the first of these keys in the file."""
         line = next((self.lines[key] for key in keys if key in self.lines), None)
         return self.label if line is None else f"{self.label}, line {line}"
 

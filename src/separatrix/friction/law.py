@@ -206,7 +206,7 @@ def _text(value: float, name: str) -> str:
 class StatedFriction:
     """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
 
-    Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
+    Without a stated scatter it is that of an unrepeated test; the mean then has that standard error.
     Outside its conditions a sentence reports that, and its scatter is unchanged: its tests are unknown.
     """
 

@@ -84,7 +84,7 @@ def conditional(model: LinearModel, between_samples: Array, between_tests: Array
 class VarianceComponents:
     """Standard deviations of ln f, so relative ones: between samples and between tests of one sample [-].
 
-    `between_tests` is None where no sample was tested twice: then `between_samples` holds both.
+    `between_tests` is None where no sample was tested twice: then `between_samples` contains both.
     """
 
     between_samples: Ratio

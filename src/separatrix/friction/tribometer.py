@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TypeVar
 
 from separatrix.errors import InputError, together
-from separatrix.friction.file import NAMES, FrictionTest
+from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
@@ -215,22 +215,7 @@ def friction_test(test: TestFriction) -> FrictionTest:
     if missing := [name for name in NAMES if getattr(known, name) is None]:
         cure = "Give it under [test] of a column map: --map map.toml."
         raise InputError(test.source, f"does not state: {', '.join(missing)}", cure=cure)
-    points = {name: getattr(known, name) for name in ("temperature", "slip_speed", "pressure")}
-    return FrictionTest(
-        material=str(known.material),
-        counterface=str(known.counterface),
-        medium=str(known.medium),
-        friction=test.friction,
-        standard_error=test.standard_error,
-        standard_deviation=test.standard_deviation,
-        effective_count=test.effective_count,
-        sample=known.sample,
-        test=known.test,
-        run_in_end=test.run_in_end,
-        run_in_axis=test.run_in_axis,
-        flags=test.flags,
-        source=test.source,
-        checksum=test.checksum,
-        reduced_by=f"separatrix {__version__}",
-        **{name: None if value is None else (value, value) for name, value in points.items()},
-    )
+    own = {f.name for f in fields(FrictionTest)}
+    given = {f.name: getattr(one, f.name) for one in (known, test) for f in fields(one) if f.name in own}
+    given |= {name: (given[name], given[name]) for name in CONDITIONS if given[name] is not None}
+    return FrictionTest(reduced_by=f"separatrix {__version__}", **given)

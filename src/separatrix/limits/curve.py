@@ -63,13 +63,13 @@ def _threes(eta: Ratio) -> Iterator[tuple[Ratio, Ratio, Ratio]]:
 
 
 ETA = "restitution_factor"
-FLAT: Ratio = 0.002  # friction by which a line may miss a point however well that is known
+FLAT: Ratio = 0.002  # friction by which a line may miss a point, whatever the scatter of that
 OWN_DAMPING = -1.0  # in place of a restitution factor: the cage's own race damping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityCurve:
-    """Stability curve, its limits, and the ensemble it holds for."""
+    """Stability curve, its limits, and its ensemble."""
 
     curve: Annotated[tuple[CriticalFriction, ...], Rows(ETA, label=ETA)]  # rising restitution factors
     here: CriticalFriction | None = None
@@ -89,7 +89,7 @@ class StabilityCurve:
     duration: Second  # of a run
     ball_scatter: Ratio
     searched_friction: Ratio  # highest friction that was searched
-    drifts: bool  # whether nothing holds the cage centre: a kick may settle, but no verdict is STABLE
+    drifts: bool  # whether nothing returns the cage centre: a kick may settle, but no verdict is STABLE
     drift_rate_law: PerSecond  # growth of the offset by the linear law; 0 with a land or a ball set at rest
     adaptive: bool  # whether the restitution factors were chosen here
     complete: bool  # false if an interrupt left points out

@@ -88,7 +88,7 @@ def settled(now: Tally, most: int) -> bool:
     """Whether decision and side of a point are the same however the rest of its `most` runs end.
 
     This is exact: shares only rise with the runs that do so. A point that may still become STABLE is not
-    settled, for that asks for more than counts.
+    settled, for that needs more than counts.
     """
     left = most - now.runs
     calmest = Tally(runs=most, whirls=now.whirls, settles=now.settles + left)

@@ -18,7 +18,7 @@ THICKNESS = "film.thickness"  # of a film; a map may begin at 0, where the races
 SHORT = {"cage.ball_cage_friction": FRICTION}  # so that one parameter has one name
 LONG = {name: key for key, name in SHORT.items()}
 _MADE = {RADIAL_CLEARANCE: "m", "film.elastic_modulus": "Pa", "film.poisson_ratio": "-"}
-"""Keys of a study file that its records hold under another name, and their units."""
+"""Keys of a study file that have another name in its records, and their units."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class MapAxis:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapPoint:
-    """What the runs at one point of a map say; None where it could not be run, with the reason."""
+    """Result of the runs at one point of a map; None where it could not be run, with the reason."""
 
     x: float  # value of the parameter x, SI
     y: float  # value of the parameter y, SI
@@ -167,7 +167,7 @@ class Inference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapQuestion:
-    """What a map is asked for."""
+    """The question of a map."""
 
     study: Study  # with a [cage]
     x: MapAxis  # another parameter than y
@@ -187,11 +187,7 @@ class MapQuestion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityMap:
-    """A map: its points, column after column of x, and the bands in which the answer changes.
-
-    `counts` has the number of points of each decision, of those refused, inferred, and not run;
-    `inference` is None where every point is run; `complete` is False if an interrupt left points out.
-    """
+    """A map: its points, column after column of x, and the bands in which the answer changes."""
 
     x: MapAxis  # horizontal axis
     y: MapAxis  # vertical axis

@@ -26,8 +26,8 @@ from separatrix.study import Guidance, StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
 
 CROSSINGS, ANY_KICK = 3000, 1.0
-"""Length of a run of hard impacts, in times that the kick takes to cross a pocket's play: no other time is in
-them, so that any kick [m/s] gives the same."""
+"""Length of a run of hard impacts, in times that the kick takes to cross a pocket's clearance. There is no
+other time in it, so that any kick [m/s] gives the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,7 +107,7 @@ def hard_cage(cage: PlanarCage) -> PlanarCage:
     )
 
 
-BAND_FEW, BAND_MOST = 0.1, 0.9  # shares of whirling runs at which a kick is said to settle, and to whirl
+BAND_FEW, BAND_MOST = 0.1, 0.9  # shares of whirling runs at which a kick counts as settling, and as whirling
 MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
 """Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
 band, for kicks that may set it, and on a critical friction without its band; on a first look at where each
@@ -122,10 +122,10 @@ class CriticalFriction:
     """Critical friction at one restitution factor; None where there is none, with the reason.
 
     The intervals come from the number of runs. The frictions of each kick by itself are None, too, where the
-    band was not asked for.
+    band was not computed.
     """
 
-    restitution_factor: Ratio
+    restitution_factor: Ratio  # nominal, of the whole cage mass
     critical_friction: Ratio | None = None  # at which half the runs whirl from the reference kick
     critical_friction_low: Ratio | None = None  # below it nine in ten runs settle from every kick
     critical_friction_high: Ratio | None = None  # above it nine in ten runs whirl from every kick
@@ -135,9 +135,9 @@ class CriticalFriction:
     low_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_low`
     high_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_high`
     high_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_high`
-    kick_low: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # a tenth of the runs whirl
-    kick_critical_friction: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # half whirl
-    kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # nine tenths whirl
+    kick_low: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which a tenth of its runs whirl
+    kick_critical_friction: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which half do
+    kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which nine tenths do
     side: Side | None = None  # of one half on which P(whirl) lies throughout, if `critical_friction` is None
     reason: str | None = None  # why one of the first three frictions is None
 

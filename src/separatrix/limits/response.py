@@ -1,6 +1,6 @@
 """Whirling runs, counted, and the friction at which their share passes a target: a response curve.
 
-Near its target P is taken as logistic in the logarithm of friction. Place and slope are not known; both are
+Near its target P is taken as logistic in the logarithm of friction. Place and slope are unknown; both are
 summed over on a grid, weighted with the probability of the counts. So the estimate has an interval from the
 first run on, and the next runs are counted where the target most likely is.
 """
@@ -176,7 +176,7 @@ class Response:
         return self.counts[cell]
 
     def first(self, cell: int) -> Count:
-        """Return what is known at a place, after a first look."""
+        """Return the count at a place, after a first look."""
         return self.counts.get(cell) or self.add(cell, min(BATCH, self._runs))
 
     def reaches(self, cell: int, target: Ratio) -> bool:

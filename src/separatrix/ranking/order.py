@@ -19,7 +19,7 @@ class MeanFriction:
     """Mean friction with its scatter, and what to report with it."""
 
     mean: Ratio
-    error: Ratio | None = None  # standard error, with that of extrapolation; None if no scatter is known
+    error: Ratio | None = None  # standard error, with that of extrapolation; None if the scatter is unknown
     deviation: Ratio | None = None  # standard deviation of a new sample
     assumed: bool = False  # whether the scatter was not measured
     extrapolation: tuple[str, ...] = ()

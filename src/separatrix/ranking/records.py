@@ -1,4 +1,4 @@
-"""What a ranking answers."""
+"""The records of a ranking."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Rati
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotMeasured:
-    """A candidate without a measured friction in this environment; `reason` says so."""
+    """A candidate without a measured friction in this environment."""
 
     name: str  # of the candidate
     reason: str  # which test is missing
@@ -24,8 +24,8 @@ class NotMeasured:
 class NotFinished:
     """A candidate that has no rank, because of an interrupt or a number that is not finite.
 
-    `judgement` is None if it has no verdict either; `reason` says what is missing. The other fields are those
-    of `Ranked`.
+    `judgement` is None if it has no verdict either; `reason` states what is missing. The other fields are
+    those of `Ranked`.
     """
 
     name: str  # of the candidate
@@ -103,18 +103,10 @@ class RankedEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ranking:
-    """Answer of a ranking.
+    """Answer of a ranking, with the chain and the stability curve of `candidate`.
 
-    `environment` is the bearing's own, the headline. `restitution_factor` is the chain's for
-    `ball_cage_stiffness`, and so is the stability curve; where each candidate has a pocket stiffness, and so
-    a restitution factor, of its own, these are those of `candidate`: the cage's material, or the first
-    candidate where the study does not name it. `pocket` is what rubs there, `friction_scatter` what an
-    unrepeated test is assumed to scatter. `overall` takes the mean friction over the measured environments.
-    Where candidates differ in stiffness, each has its curve in `own_curves`, at the restitution factors
-    `own_eta`. `notes` say where pocket forces or offsets leave the range of the model. `complete` is False if
-    an interrupt left something out. `ball_model` and `motion_model` are those of the verdicts, `capacity` is
-    what the races can transmit to the most loaded ball; beyond a tenth of it each candidate has a second
-    verdict, by the other model of the ball.
+    That is the cage's material, or the first candidate where the study does not name it. Beyond a tenth of
+    `capacity` each candidate has a second verdict, by the other model of the ball.
     """
 
     environment: str  # the bearing's own, of the headline

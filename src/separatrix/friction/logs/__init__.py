@@ -1,4 +1,4 @@
-"""Reading tribometer logs: the format is detected from what the file holds, not from its name."""
+"""Reading tribometer logs: the format is detected from its content, not from its name."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ _BLANKS = str.maketrans("\t\r\n", "   ")
 
 
 def sheets_as_text(path: Path, label: str) -> dict[str, bytes]:
-    """Return the text of each sheet that holds a table of numbers, by its name."""
+    """Return the text of each sheet with a table of numbers, by its name."""
     import python_calamine
 
     refuse_unsafe(path, label)
@@ -92,10 +92,10 @@ def _written(cell: object) -> str:
 
 @dataclass(frozen=True, slots=True)
 class OddCells:
-    """Cells of a sheet that are not what their value says, by column from 0 and row from 1."""
+    """Cells of a sheet that differ from their value, by column from 0 and row from 1."""
 
     percentages: dict[int, list[int]] = field(default_factory=dict)
-    """Rows of the cells that are shown as percentages, by column. They hold fractions."""
+    """Rows of the cells that are shown as percentages, by column. Their values are fractions."""
     valueless: list[tuple[int, int, str]] = field(default_factory=list)
     """Column, row and error of each error cell; no error for a formula that was never computed."""
 
@@ -118,7 +118,7 @@ def odd_cells(path: Path, sheet: str, label: str) -> OddCells:
 
 
 def _part_and_percentages(archive: zipfile.ZipFile, sheet: str) -> tuple[str, set[str]]:
-    """Return the part that holds a sheet, and the numbers of the cell styles that show percentages."""
+    """Return the part of a sheet, and the numbers of the cell styles that show percentages."""
     from openpyxl.xml.functions import fromstring
 
     names = {name.casefold(): name for name in archive.namelist()}
@@ -185,7 +185,7 @@ def _search(part: IO[bytes], percent: Collection[str], found: OddCells) -> None:
 def checked(
     table: RawTable, odd: OddCells, where: str, read: Sequence[int], percent: Sequence[int], form: TextFormat
 ) -> RawTable:
-    """Return a table of a sheet, its columns of percent in percent where their cells hold fractions.
+    """Return a table of a sheet, its columns of percent in percent where their cells are fractions.
 
     `where` names the workbook and the sheet in a refusal, `percent` the columns that are in percent by their
     name or the column map. An error that `form` names means a missing value.
@@ -337,9 +337,9 @@ def _column(channel: nptdms.TdmsChannel) -> tuple[str, Array]:
 def _waveform_time(channels: Sequence[nptdms.TdmsChannel], where: str) -> Array | None:
     """Time of each row, from where the waveforms start and their increment; None if they have none."""
     tracks = {
-        (float(known.get("wf_start_offset", 0.0)), float(known["wf_increment"]))
-        for known in (channel.properties for channel in channels)
-        if "wf_increment" in known and known.get("wf_xunit_string", "s") in ("s", "", "Seconds")
+        (float(properties.get("wf_start_offset", 0.0)), float(properties["wf_increment"]))
+        for properties in (channel.properties for channel in channels)
+        if "wf_increment" in properties and properties.get("wf_xunit_string", "s") in ("s", "", "Seconds")
     }
     if not tracks:
         return None

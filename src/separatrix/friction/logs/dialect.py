@@ -25,7 +25,7 @@ SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": "
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk")
 """What `[format] encoding` of a column map may be."""
 
-QUOTED = "\x1f"  # stands for the comma between fields, where fields in quotes hold commas
+QUOTED = "\x1f"  # replaces the comma between fields, where fields in quotes contain commas
 _NAMES = {
     "\t": "tab",
     ";": "semicolon",
@@ -174,7 +174,7 @@ _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes, str]:
     """The file as UTF-8 with line feeds only, and the encoding it had.
 
-    A byte order mark decides; without one, UTF-16 is known by the NUL bytes that its Latin letters have in
+    A byte order mark decides; without one, UTF-16 is detected by the NUL bytes that its Latin letters have in
     every second place, UTF-8 by being valid, and what is left is Windows-1252 if no byte is undefined in it.
     """
     for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
@@ -240,7 +240,7 @@ _DATE_AND_TIME = re.compile(rf"(?:{_DATE}[\sT,_]\s*)?{_TIME}{_ZONE}")
 
 
 def is_clock(field: str) -> bool:
-    """Return whether a field holds a time of day or a duration, with or without a date before it.
+    """Return whether a field is a time of day or a duration, with or without a date before it.
 
     Examples
     --------

@@ -74,7 +74,7 @@ class ColumnRead:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RawTable:
-    """One table as a file holds it, before its columns have a meaning."""
+    """One table of a file, before its columns have a meaning."""
 
     name: str  # of the sheet, channel group or section; empty where the file has one table only
     headers: tuple[str, ...]

@@ -91,7 +91,7 @@ def raw_log(
 
 
 def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
-    """Refuse columns of one name that hold different numbers, where one of them is needed."""
+    """Refuse columns of one name with different numbers, where one of them is needed."""
     for meaning, others in understood.twins.items():
         if meaning not in understood.used:
             continue
@@ -356,21 +356,21 @@ def _by_force(signed: Array, friction: Array, kept: Rows) -> Rows | None:
     crossings = np.flatnonzero(np.diff(np.sign(f)) != 0.0) if strokes or turns.size == 0 else turns
     rows = ~_around(np.abs(f) < TURNING * usual, np.append(crossings, 0))
     for one in (slice(None), slice(None, None, -1)):
-        rows[one][: _held(size[one])] = False
+        rows[one][: _still_rows(size[one])] = False
     found = np.zeros(kept.size, dtype=bool)
     found[kept] = rows
     return found if rows.sum() >= FEWEST * rows.size else None
 
 
 def _around(low: Rows, places: NDArray[np.int64]) -> Rows:
-    """Rows of the stretches of low friction that hold one of the places."""
+    """Rows of the stretches of low friction with one of the places in them."""
     stretch = np.cumsum(np.diff(low, prepend=not low[0]))
     held = np.zeros(stretch[-1] + 1, dtype=bool)
     held[stretch[places]] = True
     return np.asarray(low & held[stretch])
 
 
-def _held(friction: Array) -> int:
+def _still_rows(friction: Array) -> int:
     """Rows at the start in which friction does not fluctuate as it does while sliding."""
     steps = np.abs(np.diff(friction))
     usual = float(np.percentile(steps, 60.0))

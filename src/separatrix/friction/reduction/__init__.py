@@ -70,7 +70,7 @@ class ReductionOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TestFriction:
-    """Friction of one test, with its error and what a reader should know about it."""
+    """Friction of one test, with its error and flags."""
 
     __test__ = False
 
@@ -97,7 +97,7 @@ class TestFriction:
     """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
     stick_slip_frequency: float
     """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
-    flags: tuple[str, ...] = ()  # what a reader should know, a sentence each
+    flags: tuple[str, ...] = ()  # what a reader has to consider, a sentence each
 
     @property
     def half_width(self) -> Ratio:
@@ -120,7 +120,7 @@ class Reduction:
     rows: slice  # rows between loading and the end of the test
     along: Array  # abscissa of every row of the log, shape (row,)
     stretch: cycles.Stretch  # rows in which the contact slid under its load
-    cycle: float | None  # length of a cycle in the unit of the abscissa; None where it is not known
+    cycle: float | None  # length of a cycle in the unit of the abscissa; None if unknown
     run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""

@@ -32,7 +32,7 @@ class Spans:
 
     start: float
     width: float
-    means: Array  # shape (span,); where a span holds no row, the straight line between its neighbours
+    means: Array  # shape (span,); where a span has no row, the straight line between its neighbours
     counts: Array  # rows in each span, shape (span,)
 
     @property
@@ -105,14 +105,14 @@ class Stretch:
         return (first if start is None else max(first, int(np.ceil(start - 1e-9)))), last
 
     def cycle_means(self, spans: Spans) -> Array:
-        """Return the mean of each cycle that the spans hold, shape (cycle,); empty without cycles."""
+        """Return the mean of each cycle in the spans, shape (cycle,); empty without cycles."""
         if self.done is None:
             return np.empty(0)
         first, last = round(spans.start), round(spans.end)
         return means(self.done, self.friction, float(first), float(last), last - first).means
 
     def within(self, spans: Spans) -> Array:
-        """Return friction of the rows that the spans hold, shape (row,)."""
+        """Return friction of the rows in the spans, shape (row,)."""
         first = int(np.searchsorted(self.ruler, spans.start))
         return self.friction[first : int(np.searchsorted(self.ruler, spans.end, side="right"))]
 
