@@ -10,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.contact import SavedArea, saved_area, slip_and_power, tractions
+from separatrix.figures.contact import Area, saved_area, slip_and_power, tractions
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -140,8 +140,7 @@ def _by_race(panels: Sequence[Axes], data: xr.Dataset) -> Iterator[tuple[Axes, x
         yield axes, of, 100 * of["creep_increment"].values
 
 
-def _area(data: xr.Dataset) -> tuple[SavedArea, Array | None]:
-    """Fields of one exact contact, and the end of stick by strips."""
+def _area(data: xr.Dataset) -> tuple[Area, Array | None]:
     names = {str(name): str(name).removeprefix("area_") for name in data if str(name).startswith("area_")}
     case = data[[*names]].rename(names)
     line = case["stick_line"].values[np.isfinite(case["across"].values)]

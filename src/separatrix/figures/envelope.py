@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from separatrix.figures import map
 from separatrix.figures.hover import Plot, Series, floats, plain
-from separatrix.figures.map import MOST_PANELS, axis_label, axis_values, is_proportional
+from separatrix.figures.map import MOST_PANELS, axis_label, axis_values, is_proportional, sweep
 from separatrix.figures.stability import ETA_LABEL
 from separatrix.figures.style import (
     BLACK,
@@ -60,7 +58,8 @@ Place = tuple[Array, bool]
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the pictures of `sweep`; one without a finished case has none."""
-    yield from map.sweep_figures(data)
+    if "case" in data.sizes:
+        yield "sweep", sweep(data)
     if has_envelope(data):
         yield "envelope", envelope(data)
 
@@ -144,7 +143,6 @@ def _margin(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def _probability(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw P(stable) with its interval, marked by verdict."""
     x, _ = place
     value, low, high = (data[f"probability_{end}"].values.astype(float) for end in ("stable", "low", "high"))
     verdict = data["verdict"].values.astype(str)
@@ -181,7 +179,6 @@ def _frequencies(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def _time(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw the share of the time that each case takes."""
     x, _ = place
     step = float(np.diff(np.sort(x)).min()) if x.size > 1 else 1.0
     axes.bar(x, 100.0 * data["time_share"].values.astype(float), width=0.6 * step, color=GREY)
@@ -240,10 +237,9 @@ def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
 
 
 def _mark_refused(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Mark cases without a restitution factor at the foot of the first panel."""
     refused = np.isnan(data["restitution_factor"].values.astype(float))
     if refused.any() and not refused.all():
-        foot: Any = axes.get_xaxis_transform()
+        foot = axes.get_xaxis_transform()
         look: Look = {"color": GREY, "transform": foot, "clip_on": False, "label": "refused: see reason"}
         axes.plot(place[0][refused], np.full(refused.sum(), 0.04), "x", ls="", ms=4.0, **look)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=2.6)
@@ -300,7 +296,6 @@ def sweep_plots(data: xr.Dataset) -> tuple[Plot, ...]:
 
 
 def _names(data: xr.Dataset) -> list[str]:
-    """Return the number of each case with the values of its parameters."""
     parts = [[f"case {one}" for one in data["case"].values.tolist()]]
     for name in map(str, data["parameter"].values):
         words, unit = name.rpartition(".")[2].replace("_", " "), str(data[name].attrs.get("units", "-"))
@@ -344,7 +339,6 @@ def _margin_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator
 
 
 def _probability_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
-    """Yield P(stable), a series of points for each verdict."""
     stable = column(data, "probability_stable")
     if stable is None:
         return
@@ -359,7 +353,6 @@ def _probability_series(data: xr.Dataset, place: Place, names: list[str]) -> Ite
 
 
 def _frequencies_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
-    """Yield the whirl without clearance, the orders of the bearing, and orbits of runs that whirl."""
     rows = [("linear_whirl_frequency", "whirl without clearance", BLACK)]
     rows += [(name, words, colour) for name, (words, colour, _) in ORDERS.items()]
     for name, words, colour in rows:
@@ -383,7 +376,6 @@ def _hertz(names: list[str], words: str, values: Array) -> list[str]:
 
 
 def _time_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
-    """Yield the share of the time that each case of a duty cycle takes."""
     if has_duty(data):
         share = 100.0 * data["time_share"].values.astype(float)
         yield Series(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Literal
@@ -13,8 +13,17 @@ from matplotlib.axes import Axes
 
 from separatrix.figures.map import axis_label, axis_values, cells, is_proportional, parameter
 from separatrix.figures.ranking import own_environment, shift, text_order
-from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, band_ends, has_band, highest, linear_limit
-from separatrix.figures.style import BLACK, BLUE, CYCLE, GREEN, GREY, VERDICT_COLOURS, VERMILION
+from separatrix.figures.stability import (
+    ETA_LABEL,
+    FRICTION_LABEL,
+    band_ends,
+    hard_limit,
+    has_band,
+    highest,
+    linear_limit,
+    own_point,
+)
+from separatrix.figures.style import BLACK, BLUE, CYCLE, GREEN, GREY, VERDICT_COLOURS, VERMILION, Json
 from separatrix.present.text.tables import interval, number, quantity, significant
 
 Floats = tuple[float | None, ...]
@@ -90,16 +99,9 @@ def _curve(data: xr.Dataset) -> Iterator[Series]:
         for e, c, a, b in zip(eta[at], critical[at], low[at], high[at], strict=True)
     ]
     if has_band(data):
-        ends = [floats(one) for one in band_ends(data, top)]
-        yield Series(
-            name="band in which the kick decides",
-            kind="band",
-            x=floats(eta),
-            y=floats(critical),
-            colour=BLUE,
-            low=ends[0],
-            high=ends[1],
-        )
+        first, last = map(floats, band_ends(data, top))
+        name, x, y = "band in which the kick decides", floats(eta), floats(critical)
+        yield Series(name=name, kind="band", x=x, y=y, colour=BLUE, low=first, high=last)
     yield Series(
         name=f"half of {int(data['runs'])} runs whirl",
         kind="line",
@@ -113,11 +115,8 @@ def _curve(data: xr.Dataset) -> Iterator[Series]:
     fine = np.linspace(1e-3, 1.0, 100)
     limit = linear_limit(fine, int(data["cage_ball_count"]))
     yield Series(name="linear limit", kind="line", x=floats(fine), y=floats(limit), colour=GREY)
-    hard = data.get("hard_limit_critical_friction")
-    if hard is not None and np.isfinite(hard.values.astype(float)).any():
-        yield Series(
-            name="hard-impact limit", kind="line", x=floats(eta), y=floats(hard.values), colour=GREEN
-        )
+    if (hard := hard_limit(data)) is not None:
+        yield Series(name="hard-impact limit", kind="line", x=floats(eta), y=floats(hard), colour=GREEN)
 
 
 def _own_point(data: xr.Dataset) -> Iterator[Series]:
@@ -130,8 +129,7 @@ def _own_point(data: xr.Dataset) -> Iterator[Series]:
         y=(None,),
         text=(f"this bearing: eta {number(eta, 2)} (Eq. 18)",),
     )
-    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-    at, middle, low, high = (float(data.get(f"here_{name}", np.nan)) for name in names)
+    at, middle, low, high = own_point(data)
     if np.isfinite([at, middle]).all():
         text = f"this bearing, eta {number(at, 2)}: critical friction {_between(middle, low, high)}"
         yield Series(
@@ -148,9 +146,8 @@ def _own_point(data: xr.Dataset) -> Iterator[Series]:
 def _candidates(data: xr.Dataset) -> Iterator[Series]:
     """Yield the candidates of one environment at their own factor, a series for each verdict."""
     rows = [(data.isel(material=i), str(name)) for i, name in enumerate(data["material"].values)]
-    each = [(one, name, str(one["material_verdict"].values)) for one, name in rows]
     for verdict, colour in VERDICT_COLOURS.items():
-        those = [(one, name) for one, name, found in each if found == verdict]
+        those = [(one, name) for one, name in rows if str(one["material_verdict"].values) == verdict]
         if those:
             yield Series(
                 name=verdict,
@@ -163,7 +160,6 @@ def _candidates(data: xr.Dataset) -> Iterator[Series]:
 
 
 def _candidate_text(one: xr.Dataset, name: str, prefix: str) -> str:
-    """Return friction, threshold, margin, P(stable) and verdict of a candidate."""
     known = {
         key: _or_none(float(one[f"{prefix}{key}"]))
         for key in (
@@ -185,14 +181,11 @@ def candidates_plot(data: xr.Dataset) -> Plot:
     """Return the restitution threshold of every candidate, a series for each environment and one overall."""
     data = data.isel(material=text_order(data)[::-1])
     names, count = [str(name) for name in data["material"].values], data.sizes["environment"]
-    rows = [(data.isel(environment=i), "material_", shift(i, count)) for i in range(count)]
-    titles = [str(name) for name in data["environment"].values]
     series = [
-        _thresholds(one, prefix, above, names, title, colour)
-        for (one, prefix, above), title, colour in zip(
-            [*rows, (data, "overall_", 0.0)], [*titles, "overall"], _colours(count), strict=True
-        )
+        _thresholds(data.isel(environment=i), "material_", shift(i, count), names, str(title), colour)
+        for i, (title, colour) in enumerate(zip(data["environment"].values, cycle(CYCLE), strict=False))
     ]
+    series.append(_thresholds(data, "overall_", 0.0, names, "overall", BLACK))
     return Plot(
         title="Restitution thresholds",
         x_label=f"threshold of the {plain(ETA_LABEL)}",
@@ -200,10 +193,6 @@ def candidates_plot(data: xr.Dataset) -> Plot:
         series=tuple(series),
         y_names=tuple(names),
     )
-
-
-def _colours(count: int) -> list[str]:
-    return [colour for _, colour in zip(range(count), cycle(CYCLE), strict=False)] + [BLACK]
 
 
 def _thresholds(
@@ -260,8 +249,7 @@ def map_plot(data: xr.Dataset) -> Plot:
     )
 
 
-def _cell_text(cell: Mapping[str, object], share: float) -> str:
-    """Return what is known of one point of a map."""
+def _cell_text(cell: Json, share: float) -> str:
     if str(cell["decision"]) == "" or not np.isfinite(share):
         return str(cell["reason"]) or "not run"
     low, high = (_or_none(float(cell[f"probability_{end}"])) for end in ("low", "high"))
@@ -269,7 +257,6 @@ def _cell_text(cell: Mapping[str, object], share: float) -> str:
 
 
 def _study_point(data: xr.Dataset, labels: Sequence[str]) -> Iterator[Series]:
-    """Yield the place of the study itself, if the map has it."""
     units = [axis_values(data, name)[-1] / float(data[name].values[-1] or 1.0) or 1.0 for name in "xy"]
     at = [float(data[f"{name}_here"]) * unit for name, unit in zip("xy", units, strict=True)]
     if all(np.isfinite(at)):
@@ -285,7 +272,6 @@ def _study_point(data: xr.Dataset, labels: Sequence[str]) -> Iterator[Series]:
 
 
 def _at(label: str, value: float) -> str:
-    """Return a value of an axis with its name and unit."""
     name, _, unit = label.rpartition(" [")
     unit = unit.rstrip("]")
     return f"{name} {significant(value, 3)}{'' if unit in ('-', '') else f' {unit}'}"

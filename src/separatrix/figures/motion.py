@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -150,30 +151,53 @@ def orbit_reach(data: xr.Dataset) -> float:
     return 1.12 * max(far, play or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
 
 
+def clearances(data: xr.Dataset) -> list[tuple[float, Look, str]]:
+    """Return the clearances that a picture of the offset shows [mm], each with look and name."""
+    play, land = largest_play(data), land_boundary(data)
+    found = [] if play is None else [(1e3 * play, POCKETS, "pockets")]
+    return found + ([] if land is None else [(1e3 * float(land.max()), LAND, "land")])
+
+
 def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
     """Draw the centre's path between its boundaries, on a scale that has room for the other runs."""
     path = 1e3 * smooth_path(*(data[name].values.astype(float) for name in ("time", "position", "velocity")))
-    most = 1e3 * max(map(orbit_reach, (data, *others)))
-    axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="x [mm]", ylabel="y [mm]")
+    most, land, pockets = 1e3 * max(map(orbit_reach, (data, *others))), land_boundary(data), None
+    if largest_play(data):
+        pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
+    boundaries = [
+        (ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND), look, label)
+        for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance"))
+        if radius is not None and radius.max() > 0.0
+    ]
+    draw_path(axes, path, most, boundaries, "orbits")
+    axes.set(xlabel="x [mm]", ylabel="y [mm]")
+
+
+def draw_path(
+    axes: Axes, path: Array, most: float, boundaries: Sequence[tuple[Array, Look, str]], turns: str
+) -> None:
+    """Draw a path about the axis, darker in its last turns, within boundaries that have a look and a name."""
+    axes.set(xlim=(-most, most), ylim=(-most, most))
     axes.set_aspect("equal", adjustable="box", anchor="NW")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
-    first, land = last_turns(path), land_boundary(data)
+    first = last_turns(path)
     if first:
         axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
-    pockets = (
-        pocket_boundary(data["pocket_angle"].values, data["half_play"].values) if largest_play(data) else None
-    )
-    for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance")):
-        if radius is not None and radius.max() > 0.0:
-            axes.plot(
-                *ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND).T, **look, label=label
-            )
-    label = "path" if not first else f"last {LAST} orbits"
+    for boundary, look, label in boundaries:
+        axes.plot(*boundary.T, **look, label=label)
+    label = "path" if not first else f"last {LAST} {turns}"
     axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label, zorder=3)
     axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
     axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end", zorder=4)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.5, handlelength=2.0)
+
+
+def shade_judged(axes: Axes, data: xr.Dataset) -> None:
+    """Shade the part by which the run is judged."""
+    first, last = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
+    if last > first:
+        axes.axvspan(first, last, color=GREY, alpha=0.2, lw=0, zorder=0)
 
 
 def even_velocity(time: Array, velocity: Array) -> tuple[Array, Array]:
@@ -287,7 +311,7 @@ def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
 
 def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.Image]:
     """Yield frames of a figure; what does not move is drawn once."""
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     for artist in (artist for moving, _ in parts for artist in moving):
         artist.set_animated(True)
     canvas.draw()

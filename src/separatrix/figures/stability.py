@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -48,11 +48,6 @@ LOOKS = ((BLUE, "o", "-"), (VERMILION, "s", "--"))
 
 MOST_ROWS, NAME_WIDTH, BESIDE = 30, 60, 0.17
 """Most materials in the picture; letters of a title; distance of a pair of margins from their row."""
-
-
-def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the picture of `stability`."""
-    yield "stability-curve", stability(data)
 
 
 def stability(data: xr.Dataset) -> Figure:
@@ -124,6 +119,18 @@ def draw_linear_limit(axes: Axes, ball_count: int, *, swapped: bool = False, hal
     axes.plot(*points, label="linear limit: no clearance, balls at rest", **look)
 
 
+def hard_limit(data: xr.Dataset) -> Array | None:
+    """Return the critical friction of hard impacts at each restitution factor; None if it is unknown."""
+    found = np.asarray(data.get("hard_limit_critical_friction", np.nan), dtype=float)
+    return found if np.isfinite(found).any() else None
+
+
+def own_point(data: xr.Dataset) -> list[float]:
+    """Return the restitution factor of the bearing and its critical friction with both ends; else NaN."""
+    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
+    return [float(data.get(f"here_{name}", np.nan)) for name in names]
+
+
 def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     """Draw the curve with its interval and band, the limits, and the bearing's own point."""
     axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
@@ -135,13 +142,11 @@ def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     if has_band(data):
         _band(axes, data, top)
     draw_linear_limit(axes, int(data["cage_ball_count"]))
-    hard = data.get("hard_limit_critical_friction")
-    if hard is not None and np.isfinite(hard.values.astype(float)).any():
+    if (hard := hard_limit(data)) is not None:
         label = "hard-impact limit: walls, no land, balls at rest"
-        axes.plot(eta, hard.values, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
+        axes.plot(eta, hard, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
     draw_chain(axes, data)
-    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-    at, middle, low, high = (float(data.get(f"here_{name}", np.nan)) for name in names)
+    at, middle, low, high = own_point(data)
     if np.isfinite([at, middle, low, high]).all():
         label = rf"this bearing's critical friction, {middle:#.2g} ({low:#.2g} to {high:#.2g})"
         axes.vlines(at, low, high, color=BLACK, lw=2.5, zorder=3)

@@ -30,7 +30,7 @@ Look = dict[str, Any]
 """Keyword arguments of matplotlib."""
 
 Json = Mapping[str, Any]
-"""A study, or a section or an entry of it, as documents and datasets have them."""
+"""A resolved study, or a part of it, as documents and datasets have it."""
 
 COLUMN, PAGE = 3.5, 7.0
 """Widths of one and of two columns of a journal [inch]."""

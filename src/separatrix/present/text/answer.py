@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from separatrix.answers import SimulationAnswer, SpaceSimulationAnswer
 from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
-from separatrix.present.text.chain import bearing, restitution, traction
-from separatrix.present.text.mobility import mobility
+from separatrix.present.text.chain import bearing, mobility, restitution, traction
 from separatrix.present.text.ranking import every_environment, only_table, rank
 from separatrix.present.text.sensitivity import sensitivity
-from separatrix.present.text.space import simulate_in_space
 from separatrix.present.text.stability import stability, stability_map, sweep
 from separatrix.present.text.study import at_their_means, check, every_input
 from separatrix.present.text.tables import heading, paragraph
@@ -21,14 +18,7 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 
-def simulate_either(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> list[str]:
-    """Return the text of one run, in the plane or in space."""
-    if isinstance(answer, SpaceSimulationAnswer):
-        return simulate_in_space(answer, study)
-    return simulate(answer, study)
-
-
-Parts = Callable[[Any, "Study"], list[str]]
+Parts = Callable[..., list[str]]
 """Blocks of text of an answer, whose type belongs to the verb, to a study."""
 
 REPORTS: Mapping[str, Parts] = {
@@ -39,7 +29,7 @@ REPORTS: Mapping[str, Parts] = {
     "mobility": mobility,
     "stability": stability,
     "map": stability_map,
-    "simulate": simulate_either,
+    "simulate": simulate,
     "rank": rank,
     "sensitivity": sensitivity,
     "sweep": sweep,

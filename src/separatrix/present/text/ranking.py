@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from separatrix.cage import Verdict
-from separatrix.present.text.cage import judgement_facts, motion_words
+from separatrix.present.text.cage import by_the_other_ball, judgement_facts, motion_words
 from separatrix.present.text.chain import basis
-from separatrix.present.text.second import by_the_other_ball
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
@@ -361,7 +360,6 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
 
 
 def _running_clearances(answer: RankingAnswer) -> list[tuple[str, str]]:
-    """Return the clearances of each candidate, where they follow from those at rest."""
     if answer.solution.clearances is None:
         return []
     rows = [row for row in answer.ranking.overall if not isinstance(row, NotMeasured)]

@@ -260,7 +260,6 @@ def _films(films: Sequence[AllowedFilm]) -> Iterator[str]:
 
 
 def _thicknesses(film: AllowedFilm, i: int) -> str:
-    """Return which film thicknesses are allowed at one race friction."""
     limit = 1.0 if film.reason.startswith("more") else film.restitution_factor
     allowed = [limit is not None and eta <= limit for eta in film.film_restitution_factor[i]]
     if all(allowed) or not any(allowed):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from separatrix.cage_choice import cage_candidate
 from separatrix.explore.sweep import Sweep, SweptCase
 from separatrix.limits.map_records import NOT_RUN
+from separatrix.present.nodes import field_units
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
@@ -24,7 +25,6 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.present.walk import field_units
 
 if TYPE_CHECKING:
     from separatrix.answers import MapAnswer, StabilityAnswer

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import asin, degrees, isclose, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.cage_body import cage_inertia
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.present.text.clearances import running_clearances
+from separatrix.present.nodes import Document
+from separatrix.present.text.chain import running_clearances
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -25,9 +26,6 @@ from separatrix.units import format_quantity
 if TYPE_CHECKING:
     from separatrix.answers import CheckAnswer
     from separatrix.study import CageDesign, Study
-
-Entry = Mapping[str, Any]
-"""A value of a resolved study with its unit and origin, or a section of them."""
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 NAMED = 6
@@ -118,13 +116,13 @@ def clearances(cage: CageDesign) -> list[tuple[str, str]]:
     return [*rows, ("Land clearance", f"{quantity(gap, 'm')} radial, reached {order} the pockets{stated}")]
 
 
-def _assumed(inputs: Entry) -> list[tuple[str, str]]:
+def _assumed(inputs: Document) -> list[tuple[str, str]]:
     """Defaults of each section, in a line; where the default is an absence, what that means."""
     found = []
     for name in (*SECTIONS, "ranking"):
         each = []
         for key, entry in (inputs[name] or {}).items():
-            origin = str(entry.get("origin", "")) if isinstance(entry, Mapping) else ""
+            origin = str(entry.get("origin", "")) if isinstance(entry, dict) else ""
             meaning = origin.partition(": ")[2]
             if origin.startswith("default"):
                 each.append(f"{key}: {meaning}" if meaning else f"{key} = {_entry(entry)}")
@@ -137,7 +135,7 @@ def every_input(answer: CheckAnswer, study: Study) -> list[str]:  # noqa: ARG001
     """Every resolved input, its origin, and the sources of the materials."""
     inputs, blocks = resolved(study), []
     for name in (name for name in SECTIONS if inputs[name] is not None):
-        entries = [(key, entry) for key, entry in inputs[name].items() if isinstance(entry, Mapping)]
+        entries = [(key, entry) for key, entry in inputs[name].items() if isinstance(entry, dict)]
         rows = [[key, _entry(entry), entry["origin"]] for key, entry in entries]
         blocks.append(section(f"[{name}]", table(("", "value", "from"), rows, left=3)))
         if name == "cage" and study.cage is not None:
@@ -153,7 +151,7 @@ def every_input(answer: CheckAnswer, study: Study) -> list[str]:  # noqa: ARG001
     return [*blocks, _valid(study)]
 
 
-def _uncertain(inputs: Entry) -> str:
+def _uncertain(inputs: Document) -> str:
     return facts([(one["name"], one["words"]) for one in inputs["uncertain_inputs"]])
 
 
@@ -164,7 +162,7 @@ def at_their_means(names: Sequence[str]) -> str:
     return f"{several if len(names) > 1 else 'An uncertain input is at its mean'}: {listed}."
 
 
-def _entry(entry: Entry) -> str:
+def _entry(entry: Document) -> str:
     return str(entry["name"]) if "name" in entry else shown(entry["value"], entry.get("unit", ""))
 
 

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from separatrix.present.walk import field_units
+from separatrix.present.nodes import field_units
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
