@@ -224,7 +224,7 @@ def materials(kind: str | None = None, *, libraries: Libraries = ()) -> Material
             raise InputError("--library", "does not name a file or folder", f'"{named}"')
         paths += library_files(Path(named))
     library = with_files(paths)
-    kinds = KINDS
+    kinds: tuple[str, ...] = KINDS
     if kind is not None:  # in any spelling, and in the plural too
         spelled = kind.strip().casefold().replace("_", " ")
         kinds = tuple(known for known in KINDS if spelled in (known, f"{known}s"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from separatrix.errors import InputError
 from separatrix.units import shown
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from separatrix.runner import Progress
     from separatrix.study import Study
 
@@ -175,10 +178,9 @@ def computed(
         What is asked, of which study.
     question : mapping
         Options of the verb alone, by the names of its function in `separatrix.verbs`.
-    jobs : int, optional
-        Threads, by default one for each processor.
-    folder, cluster, progress
-        As for `separatrix.verbs.long_job`.
+    jobs, folder, cluster, progress
+        Of a verb that keeps runs: threads, by default one for each processor; where finished runs are kept;
+        address of a Dask scheduler, or ``local:N``, that makes them; called with (done, total).
 
     Raises
     ------
@@ -188,24 +190,32 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
+    from separatrix.cluster import cluster as connected
     from separatrix.input_files import noting
-    from separatrix.runner import Interrupted
+    from separatrix.ledger import NAME, Ledger
+    from separatrix.runner import Interrupted, Runner
     from separatrix.study_file import asked_by
 
-    function = getattr(verbs, verb.name)
-    is_complete, taken = True, 0
-    with noting() as reading:
+    function, threads, is_complete = getattr(verbs, verb.name), jobs or processors(), True
+    ledger: Ledger | None = None
+    executor: Executor | None = None
+    with noting() as reading, contextlib.ExitStack() as stack:
         if not verb.keeps_runs:
             record = function(study, **question)
         else:
-            with verbs.long_job(jobs or processors(), folder, cluster, progress) as runner:
-                try:
-                    record = function(study, runner, **question)
-                except Interrupted as stop:
-                    if stop.finished is None:
-                        raise
-                    record, is_complete = stop.finished, False
-            taken = runner.ledger.taken if runner.ledger is not None else 0
+            if folder is not None:
+                Path(folder).mkdir(parents=True, exist_ok=True)
+                ledger = stack.enter_context(contextlib.closing(Ledger(Path(folder) / NAME)))
+            if cluster is not None:
+                executor, threads = stack.enter_context(connected(cluster))
+            try:
+                runner = Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
+                record = function(study, runner, **question)
+            except Interrupted as stop:
+                if stop.finished is None:
+                    raise
+                record, is_complete = stop.finished, False
+    taken = 0 if ledger is None else ledger.taken
     asked = asked_by(study, verb.name, question, reading)
     return Computed(record=record, study=asked, is_complete=is_complete, runs_taken=taken)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,7 +31,6 @@ from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
 from separatrix.chain.solution import Solution, solve
-from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
@@ -40,13 +39,12 @@ from separatrix.explore.sweep import Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
-from separatrix.ledger import NAME, Ledger
 from separatrix.limits.curve import stability_curve
 from separatrix.limits.map import stability_map, value_here
 from separatrix.limits.map_records import KICK, MapQuestion
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.rank import rank as rank_materials
-from separatrix.runner import Progress, Runner, made_into
+from separatrix.runner import Runner, made_into
 from separatrix.simulating import kick_speed, warn_of_extrapolation
 from separatrix.simulating import simulate as simulate
 from separatrix.study import Study, TractionModel
@@ -55,25 +53,6 @@ from separatrix.units import MetrePerSecond, format_quantity
 MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
-
-
-@contextlib.contextmanager
-def long_job(
-    jobs: int, folder: str | Path | None, cluster: str | None, progress: Progress | None
-) -> Iterator[Runner]:
-    """Yield the runner of a long job of `jobs` threads: `folder` keeps its finished runs.
-
-    `cluster` is the address of a Dask scheduler, or ``local:N``; the runs are made there.
-    """
-    with contextlib.ExitStack() as stack:
-        ledger, executor, threads = None, None, jobs
-        if folder is not None:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            ledger = Ledger(Path(folder) / NAME)
-            stack.callback(ledger.close)
-        if cluster is not None:
-            executor, threads = stack.enter_context(connected(cluster))
-        yield Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
 
 
 def check(study: Study) -> CheckAnswer:

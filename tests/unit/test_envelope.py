@@ -23,6 +23,7 @@ from separatrix.figures.hover import plain
 from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load
 from separatrix.reporting.pictures import picture
+from separatrix.reporting.record import Kept
 from separatrix.runner import Runner
 from separatrix.study import ClearanceState
 from separatrix.study_file import read_study
@@ -99,7 +100,7 @@ def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
 
 def test_the_report_marks_the_cases_in_its_picture(answered):
     """A mark lies where the picture has its point: higher values higher, and all inside."""
-    (found,) = picture("sweep", load(answered / "sweep.nc"), "envelope", "", "")
+    (found,) = picture(Kept({"verb": "sweep"}, load(answered / "sweep.nc")), "envelope", "", "")
     marks = [one for one in found.hover if "% of the time" in one.text]
     assert [one.text.partition(",")[0] for one in marks] == [f"case {number}" for number in range(4)]
     assert marks[1].y < marks[0].y < marks[2].y == marks[3].y
@@ -123,7 +124,7 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     layout = spec(*plots)["layout"]
     assert [layout[name]["anchor"] for name in ("yaxis", "yaxis2", "yaxis3")] == ["x", "x2", "x3"]
     assert layout["xaxis2"]["title"]["text"] == plots[1].x_label
-    (found,) = picture("sweep", data, "sweep", "", "")
+    (found,) = picture(Kept({"verb": "sweep"}, data), "sweep", "", "")
     assert len(found.hover) == 3 * 31  # of 61 every second
 
 

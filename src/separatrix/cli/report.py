@@ -59,13 +59,7 @@ def report(
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    """Write the report of a study, of a folder, or of two answers, and return the exit status.
-
-    Raises
-    ------
-    InputError
-        Neither, or what is there cannot be read or written; nothing was written then.
-    """
+    """Write the report of a study, of a folder, or of two answers, and return the exit status."""
     to, compute = folder(out), partial(computed_with_progress, question={}, quiet=quiet, jobs=threads(jobs))
     from separatrix.reporting.formats import typesetter, write
     from separatrix.study_file import shipped_studies

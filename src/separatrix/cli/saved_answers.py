@@ -39,13 +39,7 @@ def compare(
     out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
 ) -> int:
-    """Compare two saved answers, draw them together, and return the exit status.
-
-    Raises
-    ------
-    InputError
-        One of them is not an answer, they answer different questions, or the folder cannot be written.
-    """
+    """Compare two saved answers, draw them together, and return the exit status."""
     to = folder(out) or (None if json else Path("compare"))
     from separatrix.comparing.pair import compared, pair_of
     from separatrix.comparing.shown import comparison_document, in_words, save_comparison
@@ -103,13 +97,7 @@ def reproduce(
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    """Compute the answers of a folder or file again, and return the exit status.
-
-    Raises
-    ------
-    InputError
-        It is not an answer, or does not keep what it was made from.
-    """
+    """Compute the answers of a folder or file again, and return the exit status."""
     from separatrix import __version__
     from separatrix.present import plain
 

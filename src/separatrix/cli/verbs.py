@@ -150,13 +150,7 @@ def run(
     ball: str | None = None,
     **question: Any,
 ) -> int:
-    """Answer one question and return the exit status.
-
-    Raises
-    ------
-    SeparatrixError
-        Wrong input, found before anything is computed where it can be.
-    """
+    """Answer one question and return the exit status."""
     if animate is not None:
         _check_animation(animate, writes=not json or out is not None)
     if "vary" in question:

@@ -38,13 +38,7 @@ def contact(
     out: Annotated[str | None, typer.Option(metavar="DIR", help=CONTACT_OUT_HELP)] = None,
     quiet: Quiet = False,
 ) -> int:
-    """Read, solve, print and write one contact; return the exit status.
-
-    Raises
-    ------
-    InputError
-        The file is wrong, or the folder cannot be written; nothing is written.
-    """
+    """Read, solve, print and write one contact; return the exit status."""
     place = folder(out)
     from separatrix.contact_file import read_contact
     from separatrix.contact_file.solving import solve_cases
@@ -108,13 +102,7 @@ def tribometer(
     quiet: Quiet = False,
     jobs: Jobs = None,
 ) -> int:
-    """Read and reduce logs, show what was read, write the files; return the exit status.
-
-    Raises
-    ------
-    InputError
-        An option or a file is wrong: the first one, and how many others are; nothing is written.
-    """
+    """Read and reduce logs, show what was read, write the files; return the exit status."""
     to, pages = named(out, "--out", "a file"), named(plots, "--plots", "a folder")
     count = threads(jobs)
     if to is not None:

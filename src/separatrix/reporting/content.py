@@ -100,7 +100,7 @@ def _sections(kept: Mapping[str, Kept]) -> Iterator[Section]:
     if "map" in kept:
         words = "The verdict in the plane of two inputs; the star is the study itself."
         alt = "Map of the share of runs that whirl over two inputs of the study."
-        shown = picture("map", kept["map"].data, "stability-map", "Share of the runs that whirl.", alt)
+        shown = picture(kept["map"], "stability-map", "Share of the runs that whirl.", alt)
         yield Section("Stability map", (Paragraph(words), *shown))
     if "sweep" in kept:
         yield Section("Operating envelope", tuple(_envelope(kept["sweep"])))
@@ -123,7 +123,7 @@ def _envelope(kept: Kept) -> Iterator[Block]:
         known = {words: duty[key] for key, words in TIMES.items() if duty[key] is not None}
         yield Facts(tuple((f"Time {words}", f"{100 * share:.3g} %") for words, share in known.items()))
     words = "Stability and frequencies over the cases; orders are those of shaft, cage and balls."
-    shown = (one for name in ("envelope", "sweep") for one in picture("sweep", kept.data, name, words, words))
+    shown = (one for name in ("envelope", "sweep") for one in picture(kept, name, words, words))
     yield from islice(shown, 1)
     yield _cases(cases, names)
 

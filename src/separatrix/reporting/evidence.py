@@ -201,8 +201,7 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
         left=2,
     )
     yield from picture(
-        "sensitivity",
-        kept.data,
+        kept,
         "sensitivity-probabilities",
         "P(stable) of every candidate with the uncertain inputs drawn.",
         "Probability of a stable cage for each candidate and environment; the table has the numbers.",

@@ -56,8 +56,7 @@ def _ranking(kept: Kept) -> Iterator[Block]:
     ]
     yield Table(HEAD, tuple(cells), f"Candidates in {rank['environment']}. {EXPLAINED}", left=3)
     yield from picture(
-        "rank",
-        kept.data,
+        kept,
         own_candidates(kept.data),
         "The candidates on the stability curve of this bearing: below the curve the cage is stable.",
         "Critical friction against restitution factor, with the friction of each candidate at the "
@@ -138,8 +137,7 @@ def _stability(kept: Kept) -> Iterator[Block]:
     why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
     yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(
-        "stability",
-        kept.data,
+        kept,
         "stability-curve",
         "Critical friction against restitution factor: below the curve the cage is stable.",
         "Stability curve with its band and limits, and the bearing's own restitution factor.",

@@ -12,7 +12,7 @@ from separatrix.figures.envelope import envelope_plots, sweep_plots
 from separatrix.figures.hover import Place, candidates_plot, map_plot, places, stability_plot, traction_plot
 from separatrix.figures.ranking import file_name, own_environment
 from separatrix.figures.style import formula, journal, settled, svg_of
-from separatrix.reporting.record import Equation, Picture, Row, Target
+from separatrix.reporting.record import Equation, Kept, Picture, Row, Target
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,12 +26,12 @@ MOST_CELLS = 900
 """Places to point at in a series, and in a map."""
 
 
-def picture(verb: str, data: xr.Dataset | None, name: str, caption: str, alt: str) -> Iterator[Picture]:
+def picture(kept: Kept, name: str, caption: str, alt: str) -> Iterator[Picture]:
     """Yield the picture of this name of an answer, with its places to point at; nothing without one."""
-    if data is None:
+    if kept.data is None:
         return
-    for _, figure in draw(verb, data, only=name):
-        yield picture_of(figure, name, caption, alt, tuple(_targets(name, figure, data)))
+    for _, figure in draw(str(kept.document["verb"]), kept.data, only=name):
+        yield picture_of(figure, name, caption, alt, tuple(_targets(name, figure, kept.data)))
         return
 
 

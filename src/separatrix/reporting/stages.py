@@ -147,8 +147,7 @@ def _equilibrium(kept: Kept) -> Iterator[Block]:
     yield Table(head, tuple(rows), "Ball loads and contact angles under load and speed.")
     if not alike:
         yield from picture(
-            "bearing",
-            kept.data,
+            kept,
             "bearing-balls",
             "Ball loads and contact angles around the bearing.",
             "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers.",
@@ -163,8 +162,7 @@ def _contacts(kept: Kept) -> Iterator[Block]:
     )
     yield _both_races(at, CONTACT, "Contacts of the most loaded ball.")
     yield from picture(
-        "bearing",
-        kept.data,
+        kept,
         "bearing-contacts",
         "The contacts of the most loaded ball.",
         "Three panels: both contact ellipses to scale, pressure across the groove, creep across the groove.",
@@ -209,8 +207,7 @@ def _traction(kept: Kept) -> Iterator[Block]:
     head = ("model", "pressure", "slope inner", "slope outer", "race damping", "restitution factor")
     yield Table(head, rows, "Slopes by each model of the contact, and what follows from them.", left=2)
     yield from picture(
-        "traction",
-        kept.data,
+        kept,
         "traction-curves",
         "Traction curves of the most loaded ball (the paper's Fig. 7), and at other pivoting to rolling "
         "ratios.",
@@ -256,8 +253,7 @@ def _restitution(kept: Kept) -> Iterator[Block]:
         if name == "restitution-wear":
             caption = "Restitution factor against the width of the worn band; the star is this bearing."
         yield from picture(
-            "restitution",
-            kept.data,
+            kept,
             name,
             caption,
             f"Two panels: restitution factor against {what}, dampings summed and with the ball free to spin.",
@@ -315,8 +311,7 @@ def _stability(kept: Kept) -> Iterator[Block]:
         )
     if found["verb"] == "rank":
         yield from picture(
-            "rank",
-            kept.data,
+            kept,
             "rank-overview",
             "Restitution threshold of every candidate in every environment, and overall.",
             "One row for each candidate, the best at the top: thresholds of the restitution factor.",
