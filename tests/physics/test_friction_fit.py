@@ -14,8 +14,8 @@ from separatrix.friction.file import FrictionTest
 from separatrix.friction.fit import TestedFriction, fit_friction
 from separatrix.friction.law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
-from separatrix.ranking.order import lowest_among, lowest_of, may_be_lower
-from separatrix.ranking.order import measured as measured_mean
+from separatrix.ranking.records import lowest_among, lowest_of, may_be_lower
+from separatrix.ranking.records import measured as measured_mean
 from separatrix.study_file import read_study
 
 ENVIRONMENT = "liquid nitrogen, 440C"

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from separatrix.friction.file import FrictionTest, friction_text, read_friction
 from separatrix.friction.fit import fit_friction
-from separatrix.ranking.order import lowest_of
+from separatrix.ranking.records import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)

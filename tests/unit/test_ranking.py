@@ -14,8 +14,13 @@ from separatrix.draws import Case
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
 from separatrix.limits.curve import RestitutionThreshold
-from separatrix.ranking.order import (
+from separatrix.ranking.rank import _row, rank
+from separatrix.ranking.reason import Pocket, disagreement, reason
+from separatrix.ranking.records import (
     MeanFriction,
+    NotFinished,
+    NotMeasured,
+    Ranked,
     lowest_among,
     margin_interval,
     may_be_lower,
@@ -24,9 +29,6 @@ from separatrix.ranking.order import (
     ranks,
     same_rank,
 )
-from separatrix.ranking.rank import _row, rank
-from separatrix.ranking.reason import Pocket, disagreement, reason
-from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study

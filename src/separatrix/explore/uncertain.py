@@ -35,7 +35,6 @@ from separatrix.explore.records import (
     UncertainStudy,
 )
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.order import MeanFriction, lowest_among, overall
 from separatrix.ranking.reason import (
     NOT_FINISHED,
     Moved,
@@ -46,6 +45,7 @@ from separatrix.ranking.reason import (
     pocket_of,
     within_a_turn,
 )
+from separatrix.ranking.records import MeanFriction, lowest_among, overall
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers

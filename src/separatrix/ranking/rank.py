@@ -32,15 +32,6 @@ from separatrix.limits.curve import (
 from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import GrowthCounter
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.order import (
-    MeanFriction,
-    lowest_among,
-    margin_interval,
-    measured,
-    overall,
-    ranks,
-    same_rank,
-)
 from separatrix.ranking.reason import (
     NOT_FINISHED,
     PAPER_STATEMENT,
@@ -58,6 +49,7 @@ from separatrix.ranking.reason import (
     within_a_turn,
 )
 from separatrix.ranking.records import (
+    MeanFriction,
     NotFinished,
     NotMeasured,
     OwnCurve,
@@ -65,6 +57,12 @@ from separatrix.ranking.records import (
     RankedEnvironment,
     Ranking,
     Row,
+    lowest_among,
+    margin_interval,
+    measured,
+    overall,
+    ranks,
+    same_rank,
 )
 from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study

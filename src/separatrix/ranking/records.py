@@ -1,14 +1,18 @@
-"""The records of a ranking."""
+"""Records of a ranking: mean frictions, rows, and ranks with ties."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import hypot, log, sqrt
 from typing import Annotated
 
+import numpy as np
+
 from separatrix.cage import Judgement
-from separatrix.chain.pocket import PocketConditions
+from separatrix.chain.pocket import PocketConditions, standard_error
 from separatrix.limits.curve import StabilityCurve
-from separatrix.study import BallModel, MotionModel
+from separatrix.study import BallModel, Friction, MotionModel
 from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
 
 
@@ -135,3 +139,151 @@ class Ranking:
     capacity: Newton  # most that the races can transmit to the most loaded ball
     notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
     complete: bool  # false if an interrupt left something out
+
+
+@dataclass(frozen=True, slots=True)
+class MeanFriction:
+    """Mean friction with its scatter, and what to report with it."""
+
+    mean: Ratio
+    error: Ratio | None = None  # standard error, with that of extrapolation; None if the scatter is unknown
+    deviation: Ratio | None = None  # standard deviation of a new sample
+    assumed: bool = False  # whether the scatter was not measured
+    extrapolation: tuple[str, ...] = ()
+
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """95 % interval of the mean; the mean twice if its scatter is not known."""
+        half = 1.96 * (self.error or 0.0)
+        return max(0.0, self.mean - half), self.mean + half
+
+
+def measured(friction: Friction) -> MeanFriction:
+    """Mean and standard error of one measurement, with the widening for what was not tested."""
+    error = standard_error(friction)
+    return MeanFriction(
+        friction.mean,
+        None if error is None else hypot(error, friction.widening),
+        friction.standard_deviation,
+        friction.assumed_scatter,
+        friction.extrapolation,
+    )
+
+
+def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
+    """Mean over the measured environments, each counting once; None if there is none."""
+    found = [measured(friction) for friction in frictions if friction is not None]
+    if not found:
+        return None
+    mean = sum(one.mean for one in found) / len(found)
+    errors = [one.error for one in found if one.error is not None]
+    return MeanFriction(
+        mean,
+        sqrt(sum(e * e for e in errors)) / len(found) if errors else None,
+        assumed=any(one.assumed for one in found),
+        extrapolation=tuple(dict.fromkeys(text for one in found for text in one.extrapolation)),
+    )
+
+
+TIED_FROM: Ratio = 0.05  # probability of being below the leader from which a candidate is tied with it
+_LEAST_ERROR = 1e-9
+NODES = 32  # of Gauss's rule, between two of the places where a factor falls: the error is rounding
+_REACH = 9.0
+_STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
+"""Where a factor begins to fall, falls, and has fallen, in its own standard deviations."""
+
+
+def lowest_among(known: Mapping[str, MeanFriction]) -> dict[str, Ratio]:
+    """Probability that each mean friction is the lowest of all; none of a single one, which is not compared.
+
+    Each is log-normal about its mean with its standard error, 0 where there is none.
+    """
+    if len(known) < 2:
+        return {}
+    logs, errors = zip(*map(_log, known.values()), strict=True)
+    return dict(zip(known, lowest_of(logs, errors), strict=True))
+
+
+def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio]:
+    r"""Probability that each of several independent normal numbers is the smallest.
+
+    :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
+    Gauss's rule between the places where a factor begins to fall, falls, and has fallen.
+    """
+    from scipy.special import ndtr
+
+    mu, sigma = np.array(means, dtype=float), np.array(deviations, dtype=float)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    found = []
+    for i in range(mu.size):
+        others, widths = np.delete(mu, i), np.delete(sigma, i)
+        edges = (others - mu[i] + np.outer(_STEPS, widths)) / sigma[i]
+        ends = np.unique(np.clip(np.append(edges.ravel(), [-_REACH, 0.0, _REACH]), -_REACH, _REACH))
+        half = 0.5 * np.diff(ends)[:, None]
+        x = ends[:-1, None] + half * (1.0 + nodes)
+        beyond = ndtr((others - mu[i] - sigma[i] * x[..., None]) / widths).prod(axis=-1)
+        share = float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi))
+        found.append(min(share, 1.0))  # rounding may leave 2e-15 more
+    return found
+
+
+def may_be_lower(one: MeanFriction, leader: MeanFriction) -> bool:
+    """Whether a mean friction lies below a leader's with a probability of `TIED_FROM` or more."""
+    from scipy.special import ndtr
+
+    (mean, error), (least, other) = _log(one), _log(leader)
+    return bool(ndtr((least - mean) / hypot(other, error)) >= TIED_FROM)
+
+
+def _log(friction: MeanFriction) -> tuple[float, float]:
+    """Logarithm of a mean, and its standard error; the least of either instead of 0."""
+    mean = max(friction.mean, 1e-300)
+    return log(mean), max((friction.error or 0.0) / mean, _LEAST_ERROR)
+
+
+Interval = tuple[Ratio, Ratio, Ratio]  # a margin with the low and the high end of its scatter
+
+
+def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None = None) -> list[int]:
+    """Rank of each margin, the largest first.
+
+    The best one leads the first group. Those that do not differ from it beyond their scatter are tied with
+    it; the best of the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3).
+    As only the leader is compared, a chain of small steps does not tie the first with the last. `tied`
+    compares a candidate with its leader; by default their intervals are compared.
+    """
+    alike = tied or (lambda i, leader: _meet(margins[i], margins[leader]))
+    order = sorted(range(len(margins)), key=lambda i: (-margins[i][0], -margins[i][2]))
+    found = [0] * len(margins)
+    leader, rank = None, 0
+    for place, i in enumerate(order, start=1):
+        if leader is None or not alike(i, leader):
+            leader, rank = i, place
+        found[i] = rank
+    return found
+
+
+def _meet(other: Interval, leader: Interval) -> bool:
+    """Whether the interval of the smaller margin reaches that of its leader."""
+    return other[2] >= leader[1]
+
+
+POCKET = ("ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike for candidates of one curve
+
+
+def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
+    """Whether a row and the leader of its group do not differ beyond their scatter.
+
+    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions decide;
+    with another pocket there are another curve and eta, and the intervals of the margins decide.
+    """
+    if row.margin == leader.margin:
+        return True
+    if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
+        return may_be_lower(known[row.name], known[leader.name])
+    return _meet(margin_interval(row), margin_interval(leader))
+
+
+def margin_interval(row: Ranked) -> Interval:
+    """Margin with the ends of its interval, those of the threshold less the restitution factor."""
+    eta = row.restitution_factor
+    return row.margin, row.restitution_threshold_low - eta, row.restitution_threshold_high - eta
